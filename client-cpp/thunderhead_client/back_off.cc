@@ -5,9 +5,9 @@
 namespace thunderhead::client {
 
 std::chrono::milliseconds BackOff::Next(std::chrono::milliseconds least) {
-  constexpr int kMostDoublings = 16;
+  constexpr int kMaxDoublings = 16;
   const auto bound =
-      std::min(kLongestBound, kFirstBound * (1 << std::min(attempts_, kMostDoublings)));
+      std::min(kLongestBound, kFirstBound * (1 << std::min(attempts_, kMaxDoublings)));
   ++attempts_;
   std::uniform_int_distribution<std::chrono::milliseconds::rep> delay(0, bound.count());
   return least + std::chrono::milliseconds(delay(random_));

@@ -6,14 +6,14 @@
 namespace thunderhead::client {
 namespace {
 
-constexpr std::size_t kMostOrdered = 256;
+constexpr std::size_t kMaxOrdered = 256;
 // The server takes 30 pointers a second.
 constexpr std::chrono::milliseconds kPace{34};
 
 }  // namespace
 
 bool Outbox::Send(v1::InteractRequest request) {
-  if (ordered_.size() >= kMostOrdered) return false;
+  if (ordered_.size() >= kMaxOrdered) return false;
   ordered_.push_back(std::move(request));
   return true;
 }

@@ -16,10 +16,10 @@ namespace thunderhead::client {
 namespace {
 
 constexpr int kChannels = 4;
-constexpr int kMostSide_px = 16384;
+constexpr int kMaxSide_px = 16384;
 
 absl::Status Resize(int width_px, int height_px, Pixels& pixels) {
-  if (width_px < 1 || height_px < 1 || width_px > kMostSide_px || height_px > kMostSide_px) {
+  if (width_px < 1 || height_px < 1 || width_px > kMaxSide_px || height_px > kMaxSide_px) {
     return absl::InvalidArgumentError(
         absl::StrCat("a picture of ", width_px, " x ", height_px, " pixels cannot be shown"));
   }

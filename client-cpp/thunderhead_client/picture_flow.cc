@@ -8,7 +8,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Two frames are in flight at a time; only a decoder that is far too slow leaves so many.
-constexpr std::size_t kMostVideo = 30;
+constexpr std::size_t kMaxVideo = 30;
 
 bool IsVideo(const v1::Frame& frame) { return !frame.vp9().empty(); }
 
@@ -38,7 +38,7 @@ void PictureFlow::Offer(v1::Frame frame, std::size_t bytes) {
   {
     const std::lock_guard lock(mutex_);
     if (ends_) return;
-    if (waiting_.size() >= kMostVideo) {
+    if (waiting_.size() >= kMaxVideo) {
       lost = waiting_.back().frame;
       dropped_ += waiting_.size();
       waiting_.clear();

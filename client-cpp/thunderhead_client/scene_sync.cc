@@ -7,9 +7,9 @@ namespace {
 
 // Over a far link a drag does not wait for each answer: 26 scenes a second leave where an answer
 // takes 150 ms.
-constexpr std::size_t kMostInFlight = 4;
+constexpr std::size_t kMaxInFlight = 4;
 // Above that, edits become one: while nothing is answered they would pile up.
-constexpr std::size_t kMostEdits = 256;
+constexpr std::size_t kMaxEdits = 256;
 constexpr std::chrono::milliseconds kBusyRest{500};
 constexpr std::chrono::milliseconds kStaleRest{1000};
 
@@ -19,7 +19,7 @@ void SceneSync::Edited(Edit edit) {
   edit(scene_);
   edits_.push_back({++last_edit_, std::move(edit)});
   unsent_ = true;
-  if (edits_.size() > kMostEdits) Merge();
+  if (edits_.size() > kMaxEdits) Merge();
 }
 
 void SceneSync::Merge() {
@@ -68,7 +68,7 @@ bool SceneSync::Discard() {
 std::optional<SceneSync::Outgoing> SceneSync::Next(TimePoint now) {
   if (edits_.empty() || !revision_) return {};
   if (rests_until_ && now < *rests_until_) return {};
-  if (!sent_.empty() && (drains_ || !unsent_ || sent_.size() >= kMostInFlight)) return {};
+  if (!sent_.empty() && (drains_ || !unsent_ || sent_.size() >= kMaxInFlight)) return {};
   rests_until_.reset();
   Outgoing outgoing{++last_ticket_, scene_, sent_.empty() ? *revision_ : awaited_};
   awaited_ = outgoing.expected_revision + 1;

@@ -216,7 +216,7 @@ std::optional<v1::InteractRequest> Session::NextRequest(Call& call, Clock::time_
   if (!request) return {};
   request->set_request_id(++call.last_request);
   call.requests[call.last_request] = request->message_case();
-  if (call.requests.size() > Call::kMostRemembered) call.requests.erase(call.requests.begin());
+  if (call.requests.size() > Call::kMaxRemembered) call.requests.erase(call.requests.begin());
   return request;
 }
 

@@ -13,7 +13,7 @@ namespace thunderhead::client {
 // One call of Interact: its stream, and what awaits an answer. Guarded by the session's mutex but
 // for the stream.
 struct Session::Call {
-  static constexpr std::size_t kMostRemembered = 512;
+  static constexpr std::size_t kMaxRemembered = 512;
   struct SentScene {
     std::uint64_t ticket = 0;
     Clock::time_point at;

@@ -7,8 +7,8 @@ namespace thunderhead::client {
 namespace {
 
 constexpr std::chrono::seconds kWindow{2};
-constexpr std::size_t kMostLatencies = 60;
-constexpr std::size_t kMostOpen = 64;
+constexpr std::size_t kMaxLatencies = 60;
+constexpr std::size_t kMaxOpen = 64;
 constexpr double kSeconds = 2.0;
 
 template <typename Entries>
@@ -33,7 +33,7 @@ void Statistics::Received(std::size_t bytes, TimePoint at) {
 
 void Statistics::AddLatency(TimePoint sent_at, TimePoint shown_at) {
   latencies_ms_.push_back(std::chrono::duration<double, std::milli>(shown_at - sent_at).count());
-  if (latencies_ms_.size() > kMostLatencies) latencies_ms_.pop_front();
+  if (latencies_ms_.size() > kMaxLatencies) latencies_ms_.pop_front();
 }
 
 void Statistics::SceneTaken(std::uint64_t revision, TimePoint sent_at) {
@@ -41,14 +41,14 @@ void Statistics::SceneTaken(std::uint64_t revision, TimePoint sent_at) {
   const auto shown = shown_.lower_bound(revision);
   if (shown != shown_.end()) return AddLatency(sent_at, shown->second);
   sent_[revision] = sent_at;
-  if (sent_.size() > kMostOpen) sent_.erase(sent_.begin());
+  if (sent_.size() > kMaxOpen) sent_.erase(sent_.begin());
 }
 
 void Statistics::Shown(std::uint64_t revision, double decode_ms, TimePoint at) {
   const std::lock_guard lock(mutex_);
   Count(decode_ms, at);
   shown_.emplace(revision, at);
-  if (shown_.size() > kMostOpen) shown_.erase(shown_.begin());
+  if (shown_.size() > kMaxOpen) shown_.erase(shown_.begin());
   while (!sent_.empty() && sent_.begin()->first <= revision) {
     AddLatency(sent_.begin()->second, at);
     sent_.erase(sent_.begin());

@@ -13,7 +13,7 @@ namespace {
 
 // Corners of a line nearer than this to the last are left out.
 constexpr float kNear = 3.0F;
-constexpr std::size_t kMostCorners = 256;
+constexpr std::size_t kMaxCorners = 256;
 
 ImU32 ScreenColor(const v1::Color& color) {
   const auto encode = [](float linear) {
@@ -30,7 +30,7 @@ Stage::Stage(Ui& ui) : ui_(ui) {
   pen_.drag = [this](ScreenPoint at) {
     const ScreenPoint last = stroke_.back();
     const bool apart = std::hypot(at.x - last.x, at.y - last.y) >= kNear;
-    if (apart && stroke_.size() < kMostCorners) stroke_.push_back(at);
+    if (apart && stroke_.size() < kMaxCorners) stroke_.push_back(at);
   };
   pen_.release = [this](bool cancelled) { EndStroke(cancelled); };
   pen_.hover = [](std::optional<ScreenPoint>) {};

@@ -17,7 +17,7 @@ const seconds = Number(values.seconds);
 const restartEvery = Number(values["restart-every"]);
 const VIEWS = ["west.json", "above.json"].map((name) => fileURLToPath(new URL(`../../deploy/views/${name}`, import.meta.url)));
 // Growth over the second half that is taken for a leak, in bytes: a kiosk that leaked a picture of 960 x 540 a view would exceed it.
-const MOST_GROWTH = 4e6;
+const MAX_GROWTH = 4e6;
 
 const display = await startDisplay(960, 540);
 const state = mkdtempSync(join(tmpdir(), "thunderhead-state-"));
@@ -53,7 +53,7 @@ try {
   console.log(JSON.stringify(report));
   const minutes = Array.from({ length: 12 }, (_, i) => (peak(i / 12, (i + 1) / 12) / 1e6).toFixed(1));
   console.log(`largest resident size in each twelfth, MB: ${minutes.join(" ")}`);
-  if (end - middle > MOST_GROWTH) throw new Error(`memory grew by ${((end - middle) / 1e6).toFixed(1)} MB`);
+  if (end - middle > MAX_GROWTH) throw new Error(`memory grew by ${((end - middle) / 1e6).toFixed(1)} MB`);
   if (views.size < VIEWS.length) throw new Error("not every view was shown");
 } catch (error) {
   failures = 1;

@@ -11,7 +11,7 @@ import { BLOBS, type Blob3 } from "./fake_storm";
 
 const SIDE_PX = 64;
 const HALF_M = 40_000;
-const MOST_KG_PER_KG = 4e-3;
+const MAX_KG_PER_KG = 4e-3;
 const DOMAIN = {
   low: { xM: -HALF_M, yM: -HALF_M, zM: 0 },
   high: { xM: HALF_M, yM: HALF_M, zM: 20_000 },
@@ -38,7 +38,7 @@ export function fakeStormMap(stormId: string, timeIndex: number) {
   const maxima = FIELDS.map((hydrometeor) => {
     const blob = BLOBS.find((each) => each.hydrometeor === hydrometeor);
     const [xM, yM, zM] = blob?.at ?? [0, 0, 0];
-    const value = MOST_KG_PER_KG;
+    const value = MAX_KG_PER_KG;
     return {
       hydrometeor,
       variable: `Q${hydrometeor}`,
@@ -78,7 +78,7 @@ export function fakeProbe({ through, samples = 128 }: ProbeRayRequest) {
     const values = distancesM.map((distanceM) => {
       const { xM, yM, zM } = place(distanceM).position;
       const blobs = BLOBS.filter((blob) => blob.hydrometeor === hydrometeor);
-      return MOST_KG_PER_KG * blobs.reduce((sum, blob) => sum + bell(blob, xM, yM, zM), 0);
+      return MAX_KG_PER_KG * blobs.reduce((sum, blob) => sum + bell(blob, xM, yM, zM), 0);
     });
     const maximum = Math.max(0, ...values);
     const maximumPlace = place(distancesM[values.indexOf(maximum)] ?? 0);

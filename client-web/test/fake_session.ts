@@ -25,8 +25,8 @@ import { placeMet, viewOfCamera } from "./fake_view";
 const REFINE_AFTER_MS = 120;
 const TRACE_EVERY_MS = 1000;
 const PATHS_A_TRACE = 100_000n;
-const MOST_PATHS = 1_000_000n;
-const MOST_IN_FLIGHT = 2;
+const MAX_PATHS = 1_000_000n;
+const MAX_IN_FLIGHT = 2;
 const COLORS = [
   { red: 1, green: 0.75, blue: 0.1 },
   { red: 0.2, green: 0.9, blue: 0.4 },
@@ -357,7 +357,7 @@ export class FakeSession {
   // The refined frame, and then frames with ever more traced paths if the scene has traced light.
   #rest(tracedPaths: bigint): void {
     this.#publish(true, tracedPaths);
-    if (!this.tracing || !tracesLight(this.scene) || tracedPaths >= MOST_PATHS) return;
+    if (!this.tracing || !tracesLight(this.scene) || tracedPaths >= MAX_PATHS) return;
     this.#refine = setTimeout(() => this.#rest(tracedPaths + PATHS_A_TRACE), TRACE_EVERY_MS);
   }
 
@@ -404,7 +404,7 @@ export class FakeSession {
 
   #pump(person: FakePerson, lane: FrameLane): void {
     const { waiting } = lane;
-    if (person.hidden || waiting === undefined || lane.sent.length >= MOST_IN_FLIGHT) return;
+    if (person.hidden || waiting === undefined || lane.sent.length >= MAX_IN_FLIGHT) return;
     lane.waiting = undefined;
     lane.sent.push(waiting.sequence);
     this.mostUnacknowledged = Math.max(this.mostUnacknowledged, lane.sent.length);

@@ -2,7 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { awayInWords, type ComparisonChoice, timeOfB } from "../src/core/comparison";
-import { joined, leftOutInWords, letterStrokes, MOST_LETTERS } from "../src/core/lettering";
+import { joined, leftOutInWords, letterStrokes, MAX_LETTERS } from "../src/core/lettering";
 import { dayInWords, sunHeightsDeg } from "../src/core/sun_clock";
 import { SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { type StormDescription, StormDescriptionSchema } from "../src/gen/thunderhead/v1/storm_pb";
@@ -84,7 +84,7 @@ test("German words and the signs of a forecast are written in full", () => {
 test("what no mark can hold is said, and the rest keeps within what the session takes", () => {
   expect(leftOutInWords("hail ☂ 2 cm ☂")).toBe("Cannot be written: ☂");
   expect(written("A☂B")).toEqual(written("AB"));
-  const longest = "8".repeat(MOST_LETTERS);
+  const longest = "8".repeat(MAX_LETTERS);
   const corners = joined(written(longest)).length;
   expect(corners).toBeLessThanOrEqual(256);
   expect(corners).toBeGreaterThan(200);

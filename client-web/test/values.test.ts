@@ -5,7 +5,7 @@ import { biasInWords, errorSource } from "../src/core/picture_error";
 import {
   effectiveField,
   LIMITS,
-  MOST_LIGHTS,
+  MAX_LIGHTS,
   outputSize,
   sceneFromUrlText,
   sceneToUrlText,
@@ -76,7 +76,7 @@ describe("scenes", () => {
     expect(one.lights.map((each) => each.azimuthDeg)).toEqual([20]);
     expect(withLights(one, changed.lights.slice(1))).toEqual(one);
     expect(scene.lights).toEqual([]);
-    expect(MOST_LIGHTS).toBe(4);
+    expect(MAX_LIGHTS).toBe(4);
     expect(LIMITS.lightElevation).toMatchObject({ minimum: -90, maximum: 90, unit: "deg" });
   });
 

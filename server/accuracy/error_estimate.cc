@@ -15,8 +15,8 @@ constexpr double kStudent = 2.0227;
 constexpr std::int64_t kMinPixels = 160;
 // No interval is narrower: shares of the error and of the mean radiance by which a reference of
 // 1000 samples a pixel is itself uncertain.
-constexpr double kLeastReach = 0.03;
-constexpr double kLeastBiasReach = 0.002;
+constexpr double kMinReach = 0.03;
+constexpr double kMinBiasReach = 0.002;
 
 // Half the width of the 95 % interval of `whole` by Tukey's jackknife: the same without each of the
 // groups.
@@ -156,8 +156,8 @@ std::optional<MeasuredError> ErrorEstimate::Result() const {
   }
   const double squared_reach = Reach(whole.squared_rmse, squared_errors) +
                                Misplaced(whole.squared_rmse, whole.lost) +
-                               2.0 * kLeastReach * std::max(whole.squared_rmse, 0.0);
-  const double bias_reach = Reach(whole.bias, biases) + kLeastBiasReach;
+                               2.0 * kMinReach * std::max(whole.squared_rmse, 0.0);
+  const double bias_reach = Reach(whole.bias, biases) + kMinBiasReach;
   const auto root = [](double square) { return std::sqrt(std::max(square, 0.0)); };
   MeasuredError error;
   error.relative_rmse = {root(whole.squared_rmse), root(whole.squared_rmse - squared_reach),

@@ -18,7 +18,7 @@ namespace {
 constexpr char kWho[] = "Who may come";
 constexpr char kHowMuch[] = "Limits; what is beyond them is refused with the time to try again";
 
-constexpr std::size_t kLeastBudget = std::size_t{64} << 20U;
+constexpr std::size_t kMinBudget = std::size_t{64} << 20U;
 // Where the system does not tell how much there is.
 constexpr std::size_t kSomeMemory = std::size_t{4} << 30U;
 constexpr std::size_t kGpuMemory = std::size_t{4} << 30U;
@@ -126,7 +126,7 @@ void AddMemoryFlag(CLI::App& serve, const std::string& name, std::uint64_t& byte
                    const std::string& help) {
   serve.add_option(name, bytes, help)
       ->transform(CLI::AsSizeValue(false))
-      ->check(CLI::Range(std::uint64_t{kLeastBudget}, std::uint64_t{1} << 50U))
+      ->check(CLI::Range(std::uint64_t{kMinBudget}, std::uint64_t{1} << 50U))
       ->group(kHowMuch);
 }
 
@@ -182,7 +182,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
 Budgets BudgetsOf(const ServeFlags& flags) {
   const std::size_t machine = base::MachineMemoryBytes();
   std::size_t bytes = flags.memory_bytes;
-  if (bytes == 0) bytes = std::max(machine == 0 ? kSomeMemory : machine / 2, kLeastBudget);
+  if (bytes == 0) bytes = std::max(machine == 0 ? kSomeMemory : machine / 2, kMinBudget);
   const std::size_t gpu_bytes = flags.gpu_memory_bytes == 0 ? kGpuMemory : flags.gpu_memory_bytes;
   return {base::MemoryBudget::Make({.bytes = bytes,
                                     .kept_for_drawing = static_cast<std::size_t>(

@@ -12,7 +12,7 @@ namespace thunderhead::frame {
 namespace {
 
 // Automatic exposures lie between these factors of 0 EV: nights stay dark.
-constexpr float kLeastFactor = 1.0F / 16.0F;
+constexpr float kMinFactor = 1.0F / 16.0F;
 constexpr float kMaxFactor = 64.0F;
 // And at most this times the exposure of a white card in the sun: a storm in shadow stays dark.
 constexpr float kMaxAboveCard = 2.0F;
@@ -51,7 +51,7 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
   glGetTextureImage(brightest_.Get(), 0, GL_RED, GL_FLOAT, sizeof(brightest), &brightest);
   const float of_card = std::max(LuminanceOf(card.radiance), 1e-12F);
   brightest = std::max(brightest, of_card / kMaxAboveCard);
-  return std::clamp(kJustBelowWhite / brightest, kExposureAtZeroEv * kLeastFactor,
+  return std::clamp(kJustBelowWhite / brightest, kExposureAtZeroEv * kMinFactor,
                     kExposureAtZeroEv * kMaxFactor);
 }
 

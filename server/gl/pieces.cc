@@ -27,7 +27,7 @@ constexpr double kForgetting = 0.98;
 constexpr int kBlock_px = 8;
 // Height of tiles where a row of the picture is too much for a piece: such tiles stay wide, and
 // their parts are drawn at the same time.
-constexpr int kLeastRows = 8;
+constexpr int kMinRows = 8;
 
 }  // namespace
 
@@ -111,8 +111,8 @@ absl::Status Pieces::Tiles(const PieceCost& cost, const PixelRect& whole,
   };
   for (int y = whole.low.y; y < whole.high.y;) {
     const double pixels = ItemsNow(cost);
-    const int rows = std::min(
-        pixels < 1.0 * kLeastRows * width ? kLeastRows : blocks(pixels / width), whole.high.y - y);
+    const int rows = std::min(pixels < 1.0 * kMinRows * width ? kMinRows : blocks(pixels / width),
+                              whole.high.y - y);
     for (int x = whole.low.x; x < whole.high.x;) {
       const int columns = std::min(blocks(ItemsNow(cost) / rows), whole.high.x - x);
       const base::Stopwatch stopwatch;

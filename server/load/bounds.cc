@@ -26,7 +26,7 @@ void CheckMost(const std::optional<double>& bound, const std::optional<double>& 
 
 std::vector<std::string> NotKept(const Bounds& bounds, const Report& report) {
   std::vector<std::string> not_kept;
-  const ViewerFigures& viewers = report.healthy;
+  const ViewerFigures& viewers = report.Main();
   if (bounds.min_fps.has_value()) {
     Check(viewers.fps_min >= *bounds.min_fps,
           absl::StrFormat("least frames/s %.1f", viewers.fps_min),

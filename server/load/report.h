@@ -65,6 +65,12 @@ struct Report {
   std::map<std::string, int> errors;    // counts by message
 
   int ErrorCount() const;
+  // The viewers that the figures of the whole load are of: those that read all they get, or if all
+  // are throttled these.
+  const ViewerFigures& Main() const { return healthy.viewers > 0 ? healthy : throttled; }
+  const FirstFrames& MainFirst() const {
+    return healthy.viewers > 0 ? healthy_first : throttled_first;
+  }
 };
 
 Report ReportOf(const Recording& recording);

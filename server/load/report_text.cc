@@ -141,12 +141,10 @@ void AppendServer(const Report& report, std::string& text) {
 }  // namespace
 
 std::string ToText(const Report& report) {
-  const bool all_throttled = report.healthy.viewers == 0;
   std::string text = absl::StrFormat(
-      "%d viewers by %s for %.1f s, %d x %d pixels, %g updates a second\n",
-      all_throttled ? report.throttled.viewers : report.healthy.viewers, report.transport,
-      report.seconds, report.width_px, report.height_px, report.steer_hz);
-  if (!all_throttled) text += Text(report.healthy);
+      "%d viewers by %s for %.1f s, %d x %d pixels, %g updates a second\n", report.Main().viewers,
+      report.transport, report.seconds, report.width_px, report.height_px, report.steer_hz);
+  if (report.healthy.viewers > 0) text += Text(report.healthy);
   AppendFirst(report.healthy_first, text);
   AppendThrottled(report, text);
   if (report.stalled > 0) absl::StrAppendFormat(&text, "stalled: %d\n", report.stalled);
@@ -180,9 +178,9 @@ std::string ToJson(const Report& report) {
       "%.3g,\n"
       "  \"errors\": %d, \"error_messages\": {%s}\n}\n",
       Quoted(report.transport), report.seconds, report.width_px, report.height_px, report.steer_hz,
-      report.healthy.viewers, Keys(report.healthy), Json(report.healthy_first),
-      ThrottledJson(report), report.stalled, PassingJson(report), StillsJson(report.stills),
-      ServerJson(report.server), report.own_cpu, report.ErrorCount(), errors);
+      report.Main().viewers, Keys(report.Main()), Json(report.MainFirst()), ThrottledJson(report),
+      report.stalled, PassingJson(report), StillsJson(report.stills), ServerJson(report.server),
+      report.own_cpu, report.ErrorCount(), errors);
 }
 
 }  // namespace thunderhead::load

@@ -23,7 +23,7 @@ constexpr int kLimit = 2048;  // slices, in place of infinitely many
 constexpr double kFrameRounding = 0x1p-12;
 
 // Value drawn in place of zero on a logarithmic axis.
-constexpr double kLeastSliceError = 1e-9;
+constexpr double kMinSliceError = 1e-9;
 
 absl::StatusOr<picture::LinearPicture> DrawWith(
     renderers::SceneRenderer& renderer, scene::Scene scene, int slices,
@@ -46,7 +46,7 @@ double OrderOf(const std::vector<SlicePoint>& all) {
   double y_mean = 0.0;
   const auto count = static_cast<double>(points.size());
   const auto y_of = [](const SlicePoint& point) {
-    return std::log(std::max(point.relative_rmse, kLeastSliceError));
+    return std::log(std::max(point.relative_rmse, kMinSliceError));
   };
   for (const SlicePoint& point : points) {
     x_mean += std::log(point.slices) / count;
@@ -144,7 +144,7 @@ std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curve
   for (std::size_t i = 0; i < curves.size(); ++i) {
     for (const SlicePoint& point : curves[i].points) {
       slices.push_back(point.slices);
-      errors.push_back(std::max(point.relative_rmse, kLeastSliceError));
+      errors.push_back(std::max(point.relative_rmse, kMinSliceError));
     }
     names.push_back(absl::StrFormat("%s: %s, order %.2f", kColorNames[i], curves[i].transport.name,
                                     curves[i].order));
@@ -154,7 +154,7 @@ std::string ToSvg(const std::string& title, const std::vector<SliceCurve>& curve
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<std::pair<double, double>> line;
     for (const SlicePoint& point : curves[i].points) {
-      line.emplace_back(point.slices, std::max(point.relative_rmse, kLeastSliceError));
+      line.emplace_back(point.slices, std::max(point.relative_rmse, kMinSliceError));
     }
     plot.Line(line, kColors[i]);
     for (const auto& [x, y] : line) {

@@ -32,8 +32,8 @@ const char* PrecisionOf(const Setting& setting) {
 }
 
 // Values drawn in place of zero on a logarithmic axis.
-constexpr double kLeastMilliseconds = 1e-3;
-constexpr double kLeastTradeError = 1e-6;
+constexpr double kMinMilliseconds = 1e-3;
+constexpr double kMinTradeError = 1e-6;
 
 std::optional<TradeRow> RowOf(absl::string_view line) {
   const std::vector<absl::string_view> cells = absl::StrSplit(line, ',');
@@ -94,8 +94,8 @@ void AddDot(const TradeRow& row, LogPlot* plot) {
       row.setting.image_scale, row.setting.light_detail, PrecisionOf(row.setting),
       row.setting.million_paths, row.setting.jpeg_quality, row.milliseconds, row.relative_rmse,
       row.flip);
-  plot->Dot(std::max(row.milliseconds, kLeastMilliseconds),
-            std::max(row.relative_rmse, kLeastTradeError), row.pareto ? 5 : 3,
+  plot->Dot(std::max(row.milliseconds, kMinMilliseconds),
+            std::max(row.relative_rmse, kMinTradeError), row.pareto ? 5 : 3,
             hollow ? "#ffffff" : color, color, tip);
 }
 
@@ -103,8 +103,8 @@ std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows
   std::vector<std::pair<double, double>> front;
   for (const TradeRow& row : rows) {
     if (!row.pareto) continue;
-    front.emplace_back(std::max(row.milliseconds, kLeastMilliseconds),
-                       std::max(row.relative_rmse, kLeastTradeError));
+    front.emplace_back(std::max(row.milliseconds, kMinMilliseconds),
+                       std::max(row.relative_rmse, kMinTradeError));
   }
   std::sort(front.begin(), front.end());
   return front;
@@ -193,8 +193,8 @@ std::string TradeSvg(const TradeTitle& title, const std::vector<TradeRow>& rows)
   std::vector<double> times;
   std::vector<double> errors;
   for (const TradeRow& row : rows) {
-    times.push_back(std::max(row.milliseconds, kLeastMilliseconds));
-    errors.push_back(std::max(row.relative_rmse, kLeastTradeError));
+    times.push_back(std::max(row.milliseconds, kMinMilliseconds));
+    errors.push_back(std::max(row.relative_rmse, kMinTradeError));
   }
   LogPlot plot(times, errors,
                absl::StrFormat("%s, %s: relative RMSE against milliseconds a frame (%dx%d)",

@@ -19,7 +19,7 @@ constexpr double kBillowPersistence = 0.65;
 constexpr double kWarpDeviation = 0.4;  // of the full displacement
 constexpr double kFibreStretch = 6.0;   // along the shear
 constexpr double kFibreWidth = 0.7;     // across it, of the billows'
-constexpr double kLeastShear_m_per_s = 1.0;
+constexpr double kMinShear_m_per_s = 1.0;
 constexpr double kWarpInCells = 1.0;
 constexpr double kUpwardWarpInCells = 2.0;  // layers are thin
 constexpr double kWarpInWavelengths = 0.25;
@@ -117,7 +117,7 @@ std::vector<std::uint8_t> CoarserLevel(const std::vector<std::uint8_t>& texels, 
 }
 
 glm::dmat3 FibresAlong(const glm::dvec2& shear_m_per_s) {
-  const glm::dvec2 along = glm::length(shear_m_per_s) > kLeastShear_m_per_s
+  const glm::dvec2 along = glm::length(shear_m_per_s) > kMinShear_m_per_s
                                ? glm::normalize(shear_m_per_s)
                                : glm::dvec2(1.0, 0.0);
   const glm::dvec2 x = along / kFibreStretch;

@@ -15,7 +15,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kWater_kg_per_m3 = 1000.0;
 
 // WRF's limits of the effective radius of droplets.
-constexpr double kLeastDroplet_m = 2.51e-6;
+constexpr double kMinDroplet_m = 2.51e-6;
 constexpr double kLargestDroplet_m = 50e-6;
 
 // Spheres of one density whose numbers fall off exponentially with diameter.
@@ -45,7 +45,7 @@ double Wsm6Droplets_m(double content_kg_per_m3) {
   constexpr double kDroplets_per_m3 = 3e8;
   const double slope_per_m =
       std::cbrt(kPi * kWater_kg_per_m3 * kDroplets_per_m3 / content_kg_per_m3);
-  return std::clamp(1.5 / slope_per_m, kLeastDroplet_m, kLargestDroplet_m);
+  return std::clamp(1.5 / slope_per_m, kMinDroplet_m, kLargestDroplet_m);
 }
 
 double Wsm6Crystals_m(double content_kg_per_m3) {
@@ -88,7 +88,7 @@ double ThompsonDroplets_m(double content_kg_per_m3) {
   constexpr double kGammaRatio = (kShape + 1.0) * (kShape + 2.0) * (kShape + 3.0);
   const double slope_per_m =
       std::cbrt(kPi / 6.0 * kWater_kg_per_m3 * kDroplets_per_m3 * kGammaRatio / content_kg_per_m3);
-  return std::clamp(0.5 * (kShape + 3.0) / slope_per_m, kLeastDroplet_m, kLargestDroplet_m);
+  return std::clamp(0.5 * (kShape + 3.0) / slope_per_m, kMinDroplet_m, kLargestDroplet_m);
 }
 
 // The more there is, the larger it is still: the intercept grows by its 2/7th power only.

@@ -21,7 +21,7 @@ constexpr double kStep_m = 500.0;
 constexpr double kMaxSteps = 4000.0;  // to outside the domain
 
 // Shares of the picture's height.
-constexpr double kLeastGround = 1.0 / 6.0;
+constexpr double kMinGround = 1.0 / 6.0;
 constexpr double kMaxGround = 0.25;
 constexpr double kSkyAboveTop = 0.05;
 
@@ -41,7 +41,7 @@ constexpr double kNearEqual = 0.02;
 // The storm's core as a camera sees it. Angles are elevations in radians.
 struct CoreView {
   double lowest_tilt = 0.0;   // of the camera: shows kMaxGround
-  double highest_tilt = 0.0;  // shows kLeastGround
+  double highest_tilt = 0.0;  // shows kMinGround
   double to_sky = 0.0;        // from the picture's middle to kSkyAboveTop below its upper edge
   double top = 0.0;           // of the core
 
@@ -61,7 +61,7 @@ CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields
       view.local_from_world * (glm::dvec3(core.place_m, core.top_m) - view.eye_m);
   // Its near side hides the top's middle.
   const double distance_m = std::max(glm::length(glm::dvec2(top)) - core.Radius_m(), 1.0);
-  return {to_band(kMaxGround) - dip, to_band(kLeastGround) - dip, to_band(kSkyAboveTop),
+  return {to_band(kMaxGround) - dip, to_band(kMinGround) - dip, to_band(kSkyAboveTop),
           std::atan2(top.z, distance_m)};
 }
 

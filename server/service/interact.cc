@@ -464,7 +464,7 @@ class InteractCall : public InteractReactor,
   // Calls `then` with the camera whose defaults are filled in: at once, or on the executor if they
   // depend on the storm.
   absl::Status WithCamera(std::uint64_t request_id, const v1::Camera& message,
-                          std::function<void(const scene::Camera&)> then) {
+                          std::function<absl::Status(const scene::Camera&)> then) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const ReadScene newest, NewestSceneOf(*session_));
     const auto scene = std::make_shared<v1::Scene>(newest.scene);
     if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene->mutable_camera() = message;
@@ -473,17 +473,21 @@ class InteractCall : public InteractReactor,
     FrameThen(engine_, *scene,
               [self = shared_from_this(), request_id, scene,
                then = std::move(then)](const absl::Status& framed) {
-                if (framed.ok()) then(ToCamera(scene->camera()));
-                self->UpdateDone(request_id, framed);
+                self->UpdateDone(request_id,
+                                 framed.ok() ? then(ToCamera(scene->camera())) : framed);
               });
     return absl::OkStatus();
   }
 
   absl::Status Detach(std::uint64_t request_id, const v1::Detach& detach) {
-    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().Change(
-        [this](session::Roster& roster) { return roster.Detach(person_id_); }, Clock::now()));
-    return WithCamera(request_id, detach.camera(),
-                      [this](const scene::Camera& camera) { LookFrom(camera); });
+    // Not before there is a view of one's own: who is refused a camera goes on following.
+    return WithCamera(
+        request_id, detach.camera(), [this](const scene::Camera& camera) -> absl::Status {
+          THUNDERHEAD_RETURN_IF_ERROR(session_->audience().Change(
+              [this](session::Roster& roster) { return roster.Detach(person_id_); }, Clock::now()));
+          LookFrom(camera);
+          return absl::OkStatus();
+        });
   }
 
   void LookFrom(const scene::Camera& camera) {
@@ -510,6 +514,7 @@ class InteractCall : public InteractReactor,
     }
     return WithCamera(request_id, move.camera(), [this](const scene::Camera& camera) {
       if (const auto own_view = OwnView(); own_view != nullptr) own_view->MoveCamera(camera);
+      return absl::OkStatus();
     });
   }
 

@@ -1,8 +1,12 @@
 #include "service/interact_messages.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
@@ -74,6 +78,32 @@ std::size_t CharacterBytes(unsigned char byte) {
   if (byte >= 0xc2 && byte < 0xe0) return 2;
   if (byte >= 0xe0 && byte < 0xf0) return 3;
   return byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
+}
+
+// Of one UTF-8 character.
+std::uint32_t CodePointOf(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character[0]);
+  if (character.size() == 1) return first;
+  std::uint32_t code = first & (0x7fU >> character.size());
+  for (const char byte : character.substr(1)) {
+    code = code << 6U | (static_cast<unsigned char>(byte) & 0x3fU);
+  }
+  return code;
+}
+
+// Controls, and what has no width or turns the direction of the text: a name with them could pass
+// for another's. Joiners, which scripts need, are none of these.
+bool IsHidden(std::uint32_t code) {
+  constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 8> kHidden{{{0x00, 0x1f},
+                                                                            {0x7f, 0x9f},
+                                                                            {0x61c, 0x61c},
+                                                                            {0x200b, 0x200b},
+                                                                            {0x200e, 0x200f},
+                                                                            {0x2028, 0x202e},
+                                                                            {0x2060, 0x206f},
+                                                                            {0xfeff, 0xfeff}}};
+  return std::ranges::any_of(
+      kHidden, [code](const auto& range) { return range.first <= code && code <= range.second; });
 }
 
 v1::End::Reason EndReason(const absl::Status& why) {
@@ -210,10 +240,7 @@ absl::StatusOr<std::string> NameOf(const std::string& name, const std::string& p
     if (size == 0 || at + size > name.size()) {
       return base::InvalidField(path, "is not UTF-8", "TEXT_NOT_UTF8");
     }
-    // Control characters, also those of two bytes, become spaces.
-    const bool is_control = first < 0x20 || first == 0x7f ||
-                            (first == 0xc2 && static_cast<unsigned char>(name[at + 1]) < 0xa0);
-    shown += is_control ? " " : name.substr(at, size);
+    shown += IsHidden(CodePointOf(name.substr(at, size))) ? " " : name.substr(at, size);
     at += size;
     ++characters;
   }

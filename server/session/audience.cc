@@ -215,7 +215,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
 // In turn, so that many who point do not hold up one another for long.
 std::map<std::uint64_t, Ray> Audience::TakeRays() {
   std::map<std::uint64_t, Ray> taken;
-  while (!rays_.empty() && taken.size() < kMostFound) {
+  while (!rays_.empty() && taken.size() < kMaxFound) {
     auto next = rays_.upper_bound(last_found_);
     if (next == rays_.end()) next = rays_.begin();
     last_found_ = next->first;

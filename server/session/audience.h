@@ -60,7 +60,7 @@ class Audience {
   static constexpr std::chrono::milliseconds kPointersPause{33};
   static constexpr std::chrono::milliseconds kMarksPause{200};
   // Places of pointers found in one Tick; further people wait for the next.
-  static constexpr std::size_t kMostFound = 8;
+  static constexpr std::size_t kMaxFound = 8;
 
   // `on_due` is called, without the lock, when Tick is to be called soon.
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,

@@ -22,7 +22,7 @@ void FlightWindow::Acknowledged(std::chrono::nanoseconds round_trip, bool was_fu
   if (ms > kQueued * shortest_ms_ + kQueued_ms) {
     size_ = std::max(size_ - 1, kLeast);
   } else if (was_full && ms < kFree * shortest_ms_ + kFree_ms) {
-    size_ = std::min(size_ + 1, kMost);
+    size_ = std::min(size_ + 1, kMax);
   }
 }
 

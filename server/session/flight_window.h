@@ -11,7 +11,7 @@ namespace thunderhead::session {
 class FlightWindow {
  public:
   static constexpr std::size_t kLeast = 2;
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMax = 8;
 
   std::size_t size() const { return size_; }
 

@@ -85,7 +85,7 @@ void Turns::Used(const Contender& contender, double milliseconds) {
   // Where nobody else had work it owes the others no more than its last turn.
   owed_ms_[used] = std::max(owed_ms_[used] - milliseconds, -milliseconds);
   for (std::size_t i = used + 1; i < kTurnClasses; ++i) {
-    owed_ms_[i] += milliseconds * kLeastShare / (1.0 - kLeastShare);
+    owed_ms_[i] += milliseconds * kMinShare / (1.0 - kMinShare);
   }
 }
 

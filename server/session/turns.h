@@ -23,7 +23,7 @@ enum class TurnClass {
 inline constexpr std::size_t kTurnClasses = 3;
 
 // Of the time that the classes before it use.
-inline constexpr double kLeastShare = 0.1;
+inline constexpr double kMinShare = 0.1;
 
 // Those who may have a turn.
 struct Contender {

@@ -47,7 +47,7 @@ std::optional<codec::Vp9Kind> VideoStream::Next(Time now) const {
     return codec::Vp9Kind::kKey;
   }
   if (!asked_.next) return std::nullopt;
-  const bool droppable = asked_.others_wait && droppable_ < kMostDroppable;
+  const bool droppable = asked_.others_wait && droppable_ < kMaxDroppable;
   return droppable ? codec::Vp9Kind::kDroppable : codec::Vp9Kind::kBase;
 }
 

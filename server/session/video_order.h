@@ -69,7 +69,7 @@ class VideoStream {
   // Key pictures that viewers ask for come at most so often.
   static constexpr std::chrono::seconds kKeyPause{1};
   // At most so many pictures in a row that no other needs, for viewers who cannot take all.
-  static constexpr int kMostDroppable = 3;
+  static constexpr int kMaxDroppable = 3;
 
   // A viewer of the stream, when a picture is drawn.
   struct Follower {

@@ -141,6 +141,24 @@ bool RawClient::IsEnded() {
   return error == net::error::eof || error == net::error::connection_reset;
 }
 
+std::string RawClient::ReadToEnd() {
+  std::string all;
+  char bytes[1024];
+  error_code error;
+  while (!error) {
+    std::size_t came = 0;
+    error = Await([&](auto handler) {
+      stream_.async_read_some(net::buffer(bytes), [&came, handler](const error_code& outcome,
+                                                                   std::size_t count) mutable {
+        came = count;
+        handler(outcome, count);
+      });
+    });
+    all.append(bytes, came);
+  }
+  return all;
+}
+
 void RawClient::SendNow(const std::string& bytes) {
   static_cast<void>(::send(stream_.socket().native_handle(), bytes.data(), bytes.size(),
                            MSG_DONTWAIT | MSG_NOSIGNAL));

@@ -42,6 +42,8 @@ class RawClient {
   bool IsClosed();
   // The same, whatever the server sends before.
   bool IsEnded();
+  // What comes until the connection ends.
+  std::string ReadToEnd();
   // Sends what the kernel takes at once; also while another thread waits for the server.
   void SendNow(const std::string& bytes);
   void ShutdownSending();

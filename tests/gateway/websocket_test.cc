@@ -347,9 +347,10 @@ TEST_F(WebSocketTest, BrokenRulesCloseWithTheirCode) {
 
 // These clients read and close nothing afterwards.
 TEST_F(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
-  // Frames of clients must be masked; a close frame.
-  const std::string last_words[] = {{"\x82\x01\x00", 3}, {"\x88\x80\0\0\0\0", 6}};
-  for (const std::string& bytes : last_words) {
+  // Frames of clients must be masked: 1002, a protocol error. A close frame is answered by 1000.
+  const std::pair<std::string, std::string> last_words[] = {{{"\x82\x01\x00", 3}, "\x03\xea"},
+                                                            {{"\x88\x80\0\0\0\0", 6}, "\x03\xe8"}};
+  for (const auto& [bytes, answer] : last_words) {
     RawClient client(Site().Port());
     Upgrade(client);
     const int before = Record().cancelled;
@@ -358,6 +359,9 @@ TEST_F(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
     const auto begin = Clock::now();
     EXPECT_TRUE(Eventually([&] { return Record().cancelled == before + 1; }));
     EXPECT_LT(Clock::now() - begin, seconds(1));
+    const std::string closing = client.ReadToEnd();
+    EXPECT_EQ(closing.substr(0, 1), "\x88");
+    EXPECT_THAT(closing, HasSubstr(answer));
   }
 }
 
@@ -507,6 +511,7 @@ TEST_F(WebSocketTest, ClientThatNeverAnswersTheCloseIsCut) {
   const auto begin = Clock::now();
   ASSERT_TRUE(Eventually([&] { return Record().done == 1; }));
   EXPECT_TRUE(client.IsCut());
+  EXPECT_GT(Clock::now() - begin, seconds(3)) << "it has time to answer";
   EXPECT_LT(Clock::now() - begin, seconds(8));
 }
 

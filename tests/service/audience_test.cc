@@ -189,7 +189,7 @@ TEST_F(AudienceTest, PointersThatGoAreToldAtThatPaceToo) {
 
 TEST_F(AudienceTest, ManyWhoPointAreFoundInTurn) {
   ASSERT_TRUE(SetRules({.viewers_may_mark = true}).ok());
-  constexpr std::size_t kPeople = 2 * Audience::kMostFound + 1;
+  constexpr std::size_t kPeople = 2 * Audience::kMaxFound + 1;
   std::vector<std::uint64_t> people;
   for (std::size_t i = 0; i < kPeople; ++i) {
     people.push_back(*audience_.Join(Role::kViewer, "", std::make_shared<ToldViewer>(), now_));
@@ -202,7 +202,7 @@ TEST_F(AudienceTest, ManyWhoPointAreFoundInTurn) {
       ++searches;
       return PlaceOf(ray);
     });
-    EXPECT_LE(searches, Audience::kMostFound);
+    EXPECT_LE(searches, Audience::kMaxFound);
     found += searches;
     now_ += Audience::kPointersPause;
   }

@@ -542,6 +542,37 @@ TEST(InteractTest, LookingAroundAndComingBack) {
   EXPECT_TRUE(group.ana->AwaitFrame(2, /*own_view=*/false));
 }
 
+TEST(InteractTest, WhoIsRefusedAViewOfTheirOwnGoesOnFollowing) {
+  Class group;
+  ASSERT_TRUE(group.ana->AwaitFrame(1));
+  ASSERT_TRUE(group.service.store->Remove("anvil").ok());
+  v1::InteractRequest detach;
+  detach.mutable_detach()->mutable_camera()->mutable_spotter();  // whose place the storm decides
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(detach)), grpc::StatusCode::NOT_FOUND);
+  v1::InteractRequest move;
+  move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
+  const Response refused = group.ana->Answer(group.ana->Send(move));
+  EXPECT_EQ(ReasonOf(refused.refused().status()), "NOT_DETACHED");
+  v1::InteractRequest rename;
+  rename.mutable_set_name()->set_name("Anna");
+  group.ana->Send(rename);
+  EXPECT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
+    const v1::Person* const ana = Find(presence, group.ana->viewer_id());
+    return ana != nullptr && ana->name() == "Anna" && ana->follows();
+  }));
+}
+
+TEST(InteractTest, NobodyPointsWithoutTheRightOrJoinsTwice) {
+  Class group;
+  v1::InteractRequest point;
+  *point.mutable_point()->mutable_ray() = RayDown();
+  EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(point)), grpc::StatusCode::PERMISSION_DENIED);
+  v1::InteractRequest join;
+  join.mutable_join()->set_session_key(group.created.session_id());
+  const Response refused = group.ana->Answer(group.ana->Send(join));
+  EXPECT_EQ(ReasonOf(refused.refused().status()), "ALREADY_JOINED");
+}
+
 TEST(InteractTest, LockedFollowingBringsEverybodyBack) {
   Class group;
   group.ana->Send(LooksFrom(90.0F));
@@ -943,10 +974,18 @@ TEST(InteractTest, NamesArePlainText) {
     return presence.people_size() == 1 && presence.people(0).name() == std::string(38, 'a');
   }));
   v1::InteractRequest rename;
-  rename.mutable_set_name()->set_name("Zoë");
-  person.Send(rename);
-  EXPECT_TRUE(person.AwaitPresence(
-      [](const v1::Presence& presence) { return presence.people(0).name() == "Zoë"; }));
+  // Without a right-to-left override and a space of no width, which would let it pass for
+  // another's.
+  for (const auto& [name, shown] :
+       {std::pair("Zoë", "Zoë"),
+        {"A\u202Enna\u200B", "A nna"},
+        {"\u0646\u200C\u0627 \U0001F329", "\u0646\u200C\u0627 \U0001F329"}}) {
+    rename.mutable_set_name()->set_name(name);
+    person.Send(rename);
+    EXPECT_TRUE(person.AwaitPresence([expected = shown](const v1::Presence& presence) {
+      return presence.people(0).name() == expected;
+    })) << shown;
+  }
 }
 
 TEST(InteractTest, AViewerWhoAcknowledgesNothingHoldsUpNobody) {

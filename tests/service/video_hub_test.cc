@@ -291,7 +291,7 @@ TEST_F(VideoHubTest, AStillOfAnOlderFrameIsDropped) {
 TEST(FlightWindowTest, GrowsOnAFarLinkAndShrinksOnAFullOne) {
   FlightWindow window;
   for (int i = 0; i < 20; ++i) window.Acknowledged(milliseconds(150), /*was_full=*/true);
-  EXPECT_EQ(window.size(), FlightWindow::kMost);
+  EXPECT_EQ(window.size(), FlightWindow::kMax);
   for (int i = 0; i < 20; ++i) window.Acknowledged(milliseconds(600), /*was_full=*/true);
   EXPECT_EQ(window.size(), FlightWindow::kLeast);
 }

@@ -86,7 +86,7 @@ export function widthForPx({ x, anchor }: TextShape, widthPx: number, letterPx: 
 
 const FAR_M = 1e7;
 const RING_CORNERS = 96;
-const MOST_RINGS = 5;
+const MAX_RINGS = 5;
 
 export function annotationsOf(picture: Annotated, choice: AnnotationChoice): Shape[] {
   const { inset, letterPx, heightPx } = picture;
@@ -218,10 +218,10 @@ function rings(picture: Annotated): Shape[] {
   const { pose, groundM } = picture;
   if (pose === undefined) return [];
   const reachM = reachOf(pose);
-  const stepM = roundLength(reachM / MOST_RINGS);
+  const stepM = roundLength(reachM / MAX_RINGS);
   const middle = middleOf(pose);
   const shapes: Shape[] = [];
-  for (let ring = 1; ring <= MOST_RINGS; ring += 1)
+  for (let ring = 1; ring <= MAX_RINGS; ring += 1)
     shapes.push(...ringAround(picture, middle, ring * stepM, groundM));
   return shapes;
 }

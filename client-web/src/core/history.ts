@@ -5,7 +5,7 @@ import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { type Change, changeBetween, withChange } from "./scene_change";
 
 const ONE_GESTURE_MS = 700;
-const MOST_STEPS = 100;
+const MAX_STEPS = 100;
 
 // The edits of one gesture, the first one first.
 type Step = readonly Change[];
@@ -35,7 +35,7 @@ export class History {
     const last = sameGesture ? past.at(-1) : undefined;
     this.#past.value =
       last === undefined
-        ? [...past, [change]].slice(-MOST_STEPS)
+        ? [...past, [change]].slice(-MAX_STEPS)
         : [...past.slice(0, -1), [...last, change]];
   }
 

@@ -68,9 +68,9 @@ const LETTERS: Readonly<Record<string, string>> = {
 const ADVANCE = 6;
 const HEIGHT = 6;
 // The most corners of a mark that the session takes.
-const MOST_CORNERS = 256;
+const MAX_CORNERS = 256;
 // Simple ones: others take more of the corners.
-export const MOST_LETTERS = 40;
+export const MAX_LETTERS = 40;
 
 interface Written {
   // The strokes of each letter, as in LETTERS.
@@ -94,7 +94,7 @@ function written(words: string): Written {
     }
     // A lift of the pen repeats a corner.
     corners += strokes.split(" ").reduce((sum, stroke) => sum + stroke.length / 2 + 1, 0);
-    if (corners > MOST_CORNERS) return { letters, unknown, tooLong: all.slice(at).join("") };
+    if (corners > MAX_CORNERS) return { letters, unknown, tooLong: all.slice(at).join("") };
     letters.push(strokes);
   }
   return { letters, unknown, tooLong: "" };

@@ -11,12 +11,12 @@ export interface MarkStroke {
 }
 
 // Straight strokes have fewer corners.
-const MOST_STRAIGHT_CORNERS = 4;
+const MAX_STRAIGHT_CORNERS = 4;
 const INK_PX = 6;
 
 export function markStrokes(projection: Projection, pointsM: readonly Vec3[]): MarkStroke[] {
   const strokes = projectLine(projection, pointsM).flatMap((part) => parted(part, samePoint));
-  const ink = strokes.length === 1 && (strokes[0]?.length ?? 0) > MOST_STRAIGHT_CORNERS;
+  const ink = strokes.length === 1 && (strokes[0]?.length ?? 0) > MAX_STRAIGHT_CORNERS;
   return strokes.map((points) => ({ ink, points }));
 }
 

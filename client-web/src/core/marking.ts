@@ -36,9 +36,9 @@ export interface MarkingSteps {
 
 const POINT_EVERY_MS = 34;
 // A mark is sent so often at most, while the server is busy with the one before.
-const MOST_SENDINGS = 25;
-const MOST_REMEMBERED = 64;
-const MOST_CORNERS = 64;
+const MAX_SENDINGS = 25;
+const MAX_REMEMBERED = 64;
+const MAX_CORNERS = 64;
 const LETTER_PX = 22;
 const RING_PX = 60;
 const ARROW_PX = 70;
@@ -155,7 +155,7 @@ export class Marking {
     this.#sent.delete(requestId);
     const { pendingMarks } = this.#session;
     const others = pendingMarks.peek().filter(({ id }) => id !== mark.pending.id);
-    if (afterMs === undefined || mark.sendings >= MOST_SENDINGS) {
+    if (afterMs === undefined || mark.sendings >= MAX_SENDINGS) {
       pendingMarks.value = others;
       return false;
     }
@@ -194,7 +194,7 @@ export class Marking {
     const places = this.stroke.peek();
     this.#draw([]);
     if (strokeLengthPx(places) < SHORTEST_STROKE_PX) return;
-    this.#addMark(simplifiedStroke(places, MOST_CORNERS));
+    this.#addMark(simplifiedStroke(places, MAX_CORNERS));
   }
 
   #finishArrow(): void {
@@ -235,7 +235,7 @@ export class Marking {
     this.#sent.set(requestId, { pending: sent, rays, sendings: sendings + 1 });
     // Those that were taken have no answer of their own.
     for (const oldest of this.#sent.keys()) {
-      if (this.#sent.size <= MOST_REMEMBERED) break;
+      if (this.#sent.size <= MAX_REMEMBERED) break;
       this.#sent.delete(oldest);
     }
     pendingMarks.value = [...others, sent];

@@ -14,7 +14,7 @@ export interface NamedView {
 }
 
 const KEY = "thunderhead.views";
-const MOST_VIEWS = 24;
+const MAX_VIEWS = 24;
 
 export class NamedViews {
   readonly #storage: TextStore | undefined;
@@ -34,7 +34,7 @@ export class NamedViews {
 
   // A name that is taken gets a number.
   keep(view: NamedView): void {
-    this.#write(withView(this.all.peek(), view).slice(-MOST_VIEWS));
+    this.#write(withView(this.all.peek(), view).slice(-MAX_VIEWS));
   }
 
   forget(name: string): void {

@@ -9,7 +9,7 @@ export interface TextStore {
 
 const KEYS_ITEM = "thunderhead.presenter-keys";
 const NAME_ITEM = "thunderhead.name";
-const MOST_KEYS = 32;
+const MAX_KEYS = 32;
 export const LONGEST_NAME = 40;
 
 type Entry = readonly [viewerKey: string, presenterKey: string];
@@ -30,7 +30,7 @@ export class OwnKeys {
 
   keep(viewerKey: string, presenterKey: string): void {
     const others = this.#read().filter(([viewers]) => viewers !== viewerKey);
-    this.#write([...others, [viewerKey, presenterKey] as const].slice(-MOST_KEYS));
+    this.#write([...others, [viewerKey, presenterKey] as const].slice(-MAX_KEYS));
   }
 
   forget(viewerKey: string): void {

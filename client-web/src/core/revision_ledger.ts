@@ -8,8 +8,8 @@ interface Sent {
 }
 
 // Sent scenes that may await their frame at a time; older ones are dropped without a latency.
-const MOST_OPEN = 64;
-const MOST_LATENCIES = 60;
+const MAX_OPEN = 64;
+const MAX_LATENCIES = 60;
 
 export class RevisionLedger {
   #open: Sent[] = [];
@@ -45,7 +45,7 @@ export class RevisionLedger {
   sent(timeIndex: number, nowMs: number): { accepted(revision: bigint): void; refused(): void } {
     const entry: Sent = { sentAtMs: nowMs, timeIndex, revision: undefined };
     this.#open.push(entry);
-    if (this.#open.length > MOST_OPEN) this.#open.shift();
+    if (this.#open.length > MAX_OPEN) this.#open.shift();
     return {
       accepted: (revision) => this.#accepted(entry, revision),
       refused: () => {
@@ -57,14 +57,14 @@ export class RevisionLedger {
   // A scene by somebody else is in force; it has no latency here.
   told(timeIndex: number, revision: bigint): void {
     this.#open.push({ sentAtMs: Number.POSITIVE_INFINITY, timeIndex, revision });
-    if (this.#open.length > MOST_OPEN) this.#open.shift();
+    if (this.#open.length > MAX_OPEN) this.#open.shift();
     this.#close();
   }
 
   // A frame of this revision is on the screen.
   shown(revision: bigint, nowMs: number): void {
     this.#recentlyShown.push({ revision, atMs: nowMs });
-    if (this.#recentlyShown.length > MOST_OPEN) this.#recentlyShown.shift();
+    if (this.#recentlyShown.length > MAX_OPEN) this.#recentlyShown.shift();
     this.settled(revision);
   }
 
@@ -97,6 +97,6 @@ export class RevisionLedger {
 
   #keepLatency(latencyMs: number): void {
     this.#latenciesMs.push(latencyMs);
-    if (this.#latenciesMs.length > MOST_LATENCIES) this.#latenciesMs.shift();
+    if (this.#latenciesMs.length > MAX_LATENCIES) this.#latenciesMs.shift();
   }
 }

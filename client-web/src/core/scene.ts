@@ -84,7 +84,7 @@ export const LIMITS = {
   maxMilliseconds: limitsOf(AccuracySchema.field.maxMilliseconds),
 } as const satisfies Record<string, Limits>;
 
-export const MOST_LIGHTS = mostItemsOf(SceneSchema.field.lights);
+export const MAX_LIGHTS = mostItemsOf(SceneSchema.field.lights);
 
 // The fields of a message, all optional.
 type Change<T extends Message> = Partial<Omit<T, keyof Message>>;

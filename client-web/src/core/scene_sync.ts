@@ -34,7 +34,7 @@ export interface SyncSteps {
 }
 
 // Over a far link a drag does not wait for each answer: 26 scenes a second leave where an answer takes 150 ms.
-const MOST_IN_FLIGHT = 4;
+const MAX_IN_FLIGHT = 4;
 const BUSY_REST_MS = 500;
 const STALE_REST_MS = 1000;
 
@@ -175,7 +175,7 @@ export class SceneSync {
     if (this.#inFlight === 0) return true;
     // The revision that a further one is made from is known only where the session's is.
     const knows = this.#revision >= 0n && !this.#drains;
-    return knows && this.#unsent && this.#inFlight < MOST_IN_FLIGHT;
+    return knows && this.#unsent && this.#inFlight < MAX_IN_FLIGHT;
   }
 
   #schedule(): void {

@@ -84,7 +84,7 @@ const JOIN_TIMEOUT_MS = 10_000;
 // A call that lasted this long resets the back-off; one that breaks sooner lengthens the next wait.
 const SOUND_MS = 2_000;
 // Requests whose refusal can be told apart.
-const MOST_REMEMBERED = 256;
+const MAX_REMEMBERED = 256;
 
 type Outcome =
   // Come back: after the server's delay, if it gave one.
@@ -308,8 +308,8 @@ export class SessionClient {
     this.#lastRequestId += 1n;
     const requestId = this.#lastRequestId;
     call.requests.set(requestId, message.case);
-    if (call.requests.size > MOST_REMEMBERED)
-      call.requests.delete(requestId - BigInt(MOST_REMEMBERED));
+    if (call.requests.size > MAX_REMEMBERED)
+      call.requests.delete(requestId - BigInt(MAX_REMEMBERED));
     call.bidi.send({ requestId, message });
     return requestId;
   }

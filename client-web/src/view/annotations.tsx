@@ -26,7 +26,7 @@ const DRAWER_RIGHT_PX = 344;
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
 const NARROW_PX = 900;
 // Between the bars.
-const LEAST_ROOM_LETTERS = 4;
+const MIN_ROOM_LETTERS = 4;
 // Of the window's height, at most, by a tool's sheet.
 const SHEET_SHARE = 0.46;
 
@@ -40,7 +40,7 @@ export function Annotations({ state }: { state: PageState }) {
   const sheetPx = narrow && state.tool.value !== undefined ? SHEET_SHARE * window.innerHeight : 0;
   // Little is left of the picture, such as of a phone's that is held across.
   const leftPx = window.innerHeight - NARROW_BARS_PX.top - NARROW_BARS_PX.bottom - sheetPx;
-  if (narrow && leftPx < LEAST_ROOM_LETTERS * LETTER_PX) return null;
+  if (narrow && leftPx < MIN_ROOM_LETTERS * LETTER_PX) return null;
   const bars = narrow
     ? { ...NARROW_BARS_PX, bottom: NARROW_BARS_PX.bottom + sheetPx }
     : wideBars(state);

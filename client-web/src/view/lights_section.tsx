@@ -2,7 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
 import { nameOfTechnique } from "../core/names";
-import { LIMITS, MOST_LIGHTS, withLight, withLights } from "../core/scene";
+import { LIMITS, MAX_LIGHTS, withLight, withLights } from "../core/scene";
 import type { PageState } from "../core/state";
 import {
   ColorSchema,
@@ -29,7 +29,7 @@ export function LightsSection({ state }: { state: PageState }) {
         <button
           type="button"
           data-testid="add-light"
-          disabled={lights.length >= MOST_LIGHTS}
+          disabled={lights.length >= MAX_LIGHTS}
           onClick={() => setLights(state, [...lights, newLight(lights.length)])}
         >
           Add a light

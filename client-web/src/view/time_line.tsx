@@ -9,7 +9,7 @@ import { Icon } from "./icons";
 import type { Page } from "./page";
 
 // Times that get their clock under their tick, at most.
-const MOST_LABELS = 6;
+const MAX_LABELS = 6;
 
 export function TimeLine({ page }: { page: Page }) {
   const { state, playback } = page;
@@ -113,7 +113,7 @@ interface StepsProps {
 function Steps({ page, times, index, fixed }: StepsProps) {
   const { state, playback } = page;
   const last = times.length - 1;
-  const every = Math.ceil(times.length / MOST_LABELS);
+  const every = Math.ceil(times.length / MAX_LABELS);
   const time = times[index];
   const spoken = state.moment.value;
   return (

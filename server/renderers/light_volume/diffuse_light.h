@@ -49,7 +49,6 @@ class DiffuseLight {
   using CellValue = std::function<float(const glm::dvec3& place_m, const glm::vec3& outward)>;
   std::vector<float> AtCells(const CellValue& value) const;
 
-  int Unknowns() const { return static_cast<int>(cell_of_.size()); }
   int LastIterations() const { return last_iterations_; }
 
  private:

@@ -75,9 +75,9 @@ float lit(vec3 point_m) {
 // To a surface, as the mean over places of it that are two coronas apart: inside the cloud light goes sideways, so that no
 // shadow on it is sharper. `cosine` is that of the sun's angle to it.
 float lit_softly(vec3 point_m, vec3 normal, float cosine) {
-  const float kLeastCosine = 0.05;  // a steeper surface's places lie too far apart in depth
+  const float kMinCosine = 0.05;  // a steeper surface's places lie too far apart in depth
   vec3 place = shadow_place(point_m);
-  vec2 tilt = vec2(dot(normalize(shadow_x.xyz), normal), dot(normalize(shadow_y.xyz), normal)) / max(cosine, kLeastCosine);
+  vec2 tilt = vec2(dot(normalize(shadow_x.xyz), normal), dot(normalize(shadow_y.xyz), normal)) / max(cosine, kMinCosine);
   float per_m = length(shadow_z.xyz);
   float sum = 0.0;
   for (int i = 0; i < 4; ++i) {

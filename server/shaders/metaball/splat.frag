@@ -37,7 +37,7 @@ const float kRelief = 0.5;      // the deepest valley's share of a ball's square
 const float kDisplaced = 0.5;   // radii
 // The logarithm of what a ball's optical depth, in the mean over its disc and over noise, is divided by where the roughness is 1.
 const float kEroded = 0.7;
-const float kLeastSeen = 0.01;  // share of a pixel below which a ball keeps its own light
+const float kMinSeen = 0.01;  // share of a pixel below which a ball keeps its own light
 
 // The ball's w across its middle, 1 - (u / R)^2, as noise at its surface leaves it.
 float eroded(float s, vec3 origin_m, vec3 ray, vec3 across_m, float surface_m, float per_radius) {
@@ -116,7 +116,7 @@ void main() {
 #endif
     vec3 light = source.rgb;
 #if DETAIL
-    if (transmittance * taken > kLeastSeen) {
+    if (transmittance * taken > kMinSeen) {
       // Where about half of what shows of the ball is in front: fields rise as the square of the depth below the surface.
       float before = half_chord * min(pow(1.4 / max(depth, 1e-6), 1.0 / 3.0), 1.0);
       // Half of it: balls that lie deeper, which weigh more there, are darker than the surface.

@@ -12,7 +12,7 @@ const float kSurfaceProfile = 0.5f;  // where the surface lies if noise is at it
 const float kSurfaceRelief = 0.8f;    // profiles between the surface's valleys and its tops
 const float kSurfaceWidth = 0.14f;    // on which the medium thins out
 const float kFibreContrast = 0.8f;
-const float kLeastWarp = 0.4f;        // of the full warp, without any turbulence: hides the grid
+const float kMinWarp = 0.4f;        // of the full warp, without any turbulence: hides the grid
 
 // Factor of the medium. Billows erode the profile up to a surface that noise moves: empty outside, unchanged inside.
 PHYSICS_FUNCTION float detail_factor(vec2 control, float noise, float faded) {
@@ -26,5 +26,5 @@ PHYSICS_FUNCTION float detail_factor(vec2 control, float noise, float faded) {
 
 // The share of the full warp by which the medium is displaced; none at the faces of empty space.
 PHYSICS_FUNCTION float detail_warp_share(vec2 control) {
-  return min(1.5f * control.x, 1.0f) * (kLeastWarp + (1.0f - kLeastWarp) * abs(control.y));
+  return min(1.5f * control.x, 1.0f) * (kMinWarp + (1.0f - kMinWarp) * abs(control.y));
 }

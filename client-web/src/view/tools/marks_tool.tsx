@@ -1,5 +1,5 @@
 // Marks that everybody sees over the picture: pen, arrow, words and a pointer, at their places in the world.
-import { leftOutInWords, MOST_LETTERS } from "../../core/lettering";
+import { leftOutInWords, MAX_LETTERS } from "../../core/lettering";
 import type { Tool } from "../../core/session_state";
 import { Icon } from "../icons";
 import type { Page } from "../page";
@@ -56,7 +56,7 @@ export function MarksTool({ page }: { page: Page }) {
           aria-label="Words to write"
           placeholder="Words to write"
           data-testid="mark-words"
-          maxLength={MOST_LETTERS}
+          maxLength={MAX_LETTERS}
           value={page.marking.words.value}
           onInput={(event) => {
             page.marking.words.value = event.currentTarget.value;
