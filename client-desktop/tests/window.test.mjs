@@ -139,8 +139,10 @@ test("a browser joins as a viewer and follows", async () => {
     await page.goto(`${server.url.replace(/\/$/, "")}/?session=${desktop.status().viewer_key}`);
     await rested(page);
     await desktop.until("two people", (now) => now.people === 2);
+    const before = desktop.status().azimuth_deg;
     await display.drag(MIDDLE, { x: MIDDLE.x - 100, y: MIDDLE.y });
-    const { azimuth_deg } = await desktop.until("a turned picture", rests);
+    // The picture before the drag rests, too.
+    const { azimuth_deg } = await desktop.until("a turned picture", (now) => rests(now) && apart(now.azimuth_deg, before) > 1);
     await until("the browser follows", async () => apart(await azimuthOf(page), azimuth_deg) < 0.5);
 
     // A line drawn in the window is seen by the browser, and the other way round.
