@@ -117,8 +117,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   absl::Status Resize(MemoryReservation& reservation, std::size_t bytes, std::string_view what);
 
   std::size_t Bytes() const { return options_.bytes; }
-  // Whether so many bytes more would leave the budget filled to no more than `share` of it, without
-  // asking anybody for theirs.
+  // True if `bytes` more fit into `share` of the budget as it is filled now; no cache gives memory
+  // back for it.
   bool HasRoom(std::size_t bytes, double share = 1.0) const;
   std::size_t Used() const;
   std::size_t Used(MemoryUse use) const;
@@ -154,7 +154,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::vector<Cache*> caches_;
 };
 
-// Whether `refused` is a refusal of more than the budget could ever hold.
+// True if `refused` says that a request is larger than the whole budget, so that waiting is of no
+// use.
 bool IsTooLargeForMemory(const absl::Status& refused);
 
 // Of the whole process: blocks from 256 KiB on come from the system and go back to it. Kept by the

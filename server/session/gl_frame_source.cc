@@ -28,15 +28,13 @@ struct Shared {
   GlSourceOptions options;
 };
 
-// The budget that the GL objects of the thread's context count in.
-std::shared_ptr<base::MemoryBudget> BudgetOf(const GlSourceOptions& options) {
-  const auto& budget = gl::DrawsInSoftware() ? options.memory : options.gpu_memory;
+std::shared_ptr<base::MemoryBudget> OrUnlimited(const std::shared_ptr<base::MemoryBudget>& budget) {
   return budget != nullptr ? budget : base::MemoryBudget::Unlimited();
 }
 
-// The budget of what tracing on the processors takes.
-std::shared_ptr<base::MemoryBudget> HostBudgetOf(const GlSourceOptions& options) {
-  return options.memory != nullptr ? options.memory : base::MemoryBudget::Unlimited();
+// The budget that the GL objects of the thread's context count in.
+std::shared_ptr<base::MemoryBudget> BudgetOf(const GlSourceOptions& options) {
+  return OrUnlimited(gl::DrawsInSoftware() ? options.memory : options.gpu_memory);
 }
 
 class GlFrameSource final : public FrameSource {
@@ -263,9 +261,10 @@ class GlFrameSource final : public FrameSource {
   const gl::DeviceMemory memory_;  // of the GL objects below
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::RendererPool renderers_{shared_.registry, programs_};
-  accuracy::CorrectorPool correctors_{programs_, shared_.lights, HostBudgetOf(shared_.options)};
+  accuracy::CorrectorPool correctors_{programs_, shared_.lights,
+                                      OrUnlimited(shared_.options.memory)};
   // Two at a time, as each holds its storm's fields and a copy of their extinction.
-  accuracy::ErrorMeters meters_{HostBudgetOf(shared_.options), 2, 3.0, 5.0};
+  accuracy::ErrorMeters meters_{OrUnlimited(shared_.options.memory), 2, 3.0, 5.0};
   frame::ToneMapper tone_mapper_{programs_};
   frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
   gl::Texture2D picture_;                             // that Tone was given

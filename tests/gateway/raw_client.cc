@@ -132,31 +132,32 @@ bool RawClient::IsClosed() {
 }
 
 bool RawClient::IsEnded() {
-  char bytes[1024];
-  error_code error;
-  while (!error) {
-    error = Await(
-        [&](auto handler) { stream_.async_read_some(net::buffer(bytes), std::move(handler)); });
-  }
+  std::string ignored;
+  const error_code error = ReadInto(&ignored);
   return error == net::error::eof || error == net::error::connection_reset;
 }
 
 std::string RawClient::ReadToEnd() {
   std::string all;
+  ReadInto(&all);
+  return all;
+}
+
+error_code RawClient::ReadInto(std::string* all) {
   char bytes[1024];
   error_code error;
   while (!error) {
-    std::size_t came = 0;
+    std::size_t count = 0;
     error = Await([&](auto handler) {
-      stream_.async_read_some(net::buffer(bytes), [&came, handler](const error_code& outcome,
-                                                                   std::size_t count) mutable {
-        came = count;
-        handler(outcome, count);
+      stream_.async_read_some(net::buffer(bytes), [&count, handler](const error_code& outcome,
+                                                                    std::size_t read) mutable {
+        count = read;
+        handler(outcome, read);
       });
     });
-    all.append(bytes, came);
+    all->append(bytes, count);
   }
-  return all;
+  return error;
 }
 
 void RawClient::SendNow(const std::string& bytes) {

@@ -42,7 +42,7 @@ class RawClient {
   bool IsClosed();
   // The same, whatever the server sends before.
   bool IsEnded();
-  // What comes until the connection ends.
+  // All bytes that the server sends before the connection ends.
   std::string ReadToEnd();
   // Sends what the kernel takes at once; also while another thread waits for the server.
   void SendNow(const std::string& bytes);
@@ -54,6 +54,8 @@ class RawClient {
   template <typename Start>
   boost::system::error_code Await(Start start);
   boost::system::error_code Write(const std::string& bytes);
+  // Appends all bytes that come; returns why no more do.
+  boost::system::error_code ReadInto(std::string* all);
 
   boost::asio::io_context io_;
   boost::beast::tcp_stream stream_;
