@@ -35,28 +35,40 @@ export function listenForErrors(page, complaints) {
 export const screenshot = (name, page) => page.screenshot({ path: `${OUTPUT}${name}.png` });
 
 export function canvasData(page) {
-  return page.getByTestId("storm-canvas").evaluate((canvas) => ({ ...canvas.dataset }));
+  return page.getByTestId("storm-canvas").evaluate((canvas) => ({
+    ...canvas.dataset,
+    canvasSize: `${canvas.width}x${canvas.height}`,
+  }));
 }
 
 // Waits until `holds` gives true.
-export async function until(what, holds) {
-  const deadline = Date.now() + PICTURE_TIMEOUT_MS;
+export async function until(what, holds, timeoutMs = PICTURE_TIMEOUT_MS) {
+  const deadline = Date.now() + timeoutMs;
   while (!(await holds())) {
     if (Date.now() >= deadline) throw new Error(`never came: ${what}`);
     await setTimeout(50);
   }
 }
 
-// Waits until a refined frame has stayed on the canvas for REST_MS.
-export async function rested(page) {
+// Waits until `holds` has held without a break for REST_MS, for one frame on the canvas.
+async function resting(what, page, holds) {
   let held = { sequence: undefined, since: 0 };
-  await until("a refined picture that rests", async () => {
-    const { sequence, refined } = await canvasData(page);
+  await until(what, async () => {
+    const data = await canvasData(page);
     const now = Date.now();
-    if (refined !== "true" || sequence !== held.sequence) held = { sequence, since: now };
-    return refined === "true" && now - held.since >= REST_MS;
+    const good = holds(data);
+    if (!good || data.sequence !== held.sequence) held = { sequence: data.sequence, since: now };
+    return good && now - held.since >= REST_MS;
   });
   return canvasData(page);
+}
+
+export const rested = (page) => resting("a refined picture that rests", page, ({ refined }) => refined === "true");
+
+// Like `rested`, of a picture that has the canvas's size: while panels open and close the picture still has the size before.
+export function restedAndFits(page) {
+  const fits = ({ refined, size, canvasSize }) => refined === "true" && size === canvasSize;
+  return resting("a refined picture of the canvas's size that rests", page, fits);
 }
 
 // Runs an action that changes the scene, and waits for the refined picture of the new scene.

@@ -17,6 +17,7 @@ import {
   openTool,
   PICTURE_TIMEOUT_MS,
   rested,
+  restedAndFits,
   screenshot,
   setNumber,
   until,
@@ -202,14 +203,14 @@ test("a view is kept with a name, and comes back", async () => {
   await openTool(page, undefined);
 });
 
-test("how wrong is this picture: it says so over it", async () => {
+test("how wrong is this picture: it says so over it", { timeout: 240_000 }, async () => {
   await until("an error in the line over the picture", async () =>
     /This picture is [\d.]+ % off/.test((await text("truth")).replaceAll("\n", " ")),
   );
   const source = page.getByTestId("error-source");
-  await until("the error to be measured while the picture rests", async () =>
-    /^measured: [\d.]+ to [\d.]+ %$/.test(await source.innerText()),
-  );
+  // By what the machine has left, which may be little.
+  const measured = async () => /^measured: [\d.]+ to [\d.]+ %$/.test(await source.innerText());
+  await until("the error to be measured while the picture rests", measured, 3 * PICTURE_TIMEOUT_MS);
   await focusPicture();
   await key("k");
   await page.getByTestId("accuracy-section").locator("summary").click();
@@ -287,6 +288,7 @@ function assertLastPictureIs(view, file) {
 }
 
 test("a picture is saved, and dropped on a fresh page it brings the same view", async () => {
+  await restedAndFits(page);
   await openPanel(page, "keep");
   const coming = page.waitForEvent("download", { timeout: PICTURE_TIMEOUT_MS });
   await page.getByTestId("save-picture").click();
@@ -295,12 +297,13 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
   saved = readFileSync(await download.path());
   assert.ok(saved.includes("thunderhead.scene"));
   await page.keyboard.press("Escape");
+  await restedAndFits(page);
   assertSameColours(PNG.sync.read(saved), await grabCanvas(page), "the saved picture");
   const fresh = await (await browser.newContext({ viewport: VIEWPORT })).newPage();
   listenForErrors(fresh, complaints);
   try {
     await fresh.goto(server.url);
-    await rested(fresh);
+    await until("the fresh page's picture", async () => (await canvasData(fresh)).refined === "true");
     await changing(
       () =>
         fresh.evaluate((base64) => {
@@ -315,8 +318,8 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
       const [there, here] = await Promise.all([canvasData(fresh), canvasData(page)]);
       return there.azimuth === here.azimuth && there.distance === here.distance && there.refined === "true";
     });
-    await rested(fresh);
-    await rested(page);
+    await restedAndFits(fresh);
+    await restedAndFits(page);
     const apart = difference(await grabCanvas(page), await grabCanvas(fresh));
     assert.ok(apart < 1, `the pictures differ by ${apart}`);
   } finally {
@@ -357,6 +360,7 @@ for (const format of ["webm", "mp4"])
     );
     const [stream] = JSON.parse(probe).streams;
     assert.deepEqual([stream.width, stream.height, stream.nb_read_frames], [500, 310, "4"], probe);
+    await restedAndFits(page);
     assertLastPictureIs(await grabCanvas(page), file);
   });
 

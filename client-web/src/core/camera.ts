@@ -37,7 +37,7 @@ export interface TopDownPose {
   readonly widthM: number;
 }
 
-// Size of the picture under the pointer, in the unit of the pointer's motions.
+// Under the pointer it is in the unit of the pointer's motions.
 export interface PictureSize {
   readonly widthPx: number;
   readonly heightPx: number;

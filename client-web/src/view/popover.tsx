@@ -1,6 +1,6 @@
 // The panel that a button of the top bar opens: takes the focus, and gives it back when it closes.
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import type { PanelName } from "../core/tools";
 import type { Page } from "./page";
 
@@ -14,7 +14,8 @@ interface PopoverProps {
 
 export function Popover({ page, name, title, label, children }: PopoverProps) {
   const dialog = useRef<HTMLElement>(null);
-  useEffect(() => {
+  // Before the next key.
+  useLayoutEffect(() => {
     const before = document.activeElement;
     dialog.current?.focus();
     return () => {

@@ -119,6 +119,7 @@ export class Screen {
       revision: String(frame.sceneRevision),
       refined: String(frame.refined),
       encoding: encodingOf(frame),
+      size: `${frame.widthPx}x${frame.heightPx}`,
       ownView: String(frame.ownView),
       tier: String(frame.tier),
       time: String(shownTimeIndex ?? ""),

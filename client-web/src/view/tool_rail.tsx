@@ -1,6 +1,6 @@
 // The rail of tools, and the panel of the one that is open: beside the rail on a wide window, a sheet from below on a narrow one.
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { TOOL_NAMES, TOOL_TEXTS, type ToolName } from "../core/tools";
 import { Icon } from "./icons";
 import type { Page } from "./page";
@@ -88,7 +88,8 @@ function OpenTool({ page, name }: { page: Page; name: ToolName }) {
   const locked = block !== undefined && STEERED.includes(name);
   const Content = CONTENTS[name];
   const { title, key } = TOOL_TEXTS[name];
-  useEffect(() => {
+  // Before the next key.
+  useLayoutEffect(() => {
     if (page.state.toolTakesFocus) panel.current?.focus();
   }, [page]);
   return (

@@ -61,16 +61,15 @@ export function Keep({ page }: { page: Page }) {
 }
 
 function useSize(page: Page) {
-  const { widthPx, heightPx } = page.screen.size;
   const [name, setName] = useState<SizeName>("window");
-  const [own, setOwn] = useState({ widthPx, heightPx });
-  const [fixedWidth, fixedHeight] = name.split("x").map(Number);
-  const size =
-    name === "window"
-      ? { widthPx, heightPx }
-      : name === "own"
-        ? own
-        : { widthPx: fixedWidth ?? widthPx, heightPx: fixedHeight ?? heightPx };
+  const [own, setOwn] = useState(page.screen.size);
+  const [fixedWidth, fixedHeight] = name === "window" ? [] : name.split("x").map(Number);
+  // When it is asked for: the window may have changed since the panel was drawn.
+  const size = () => {
+    if (name === "own") return own;
+    const window = page.screen.size;
+    return { widthPx: fixedWidth ?? window.widthPx, heightPx: fixedHeight ?? window.heightPx };
+  };
   return { name, setName, own, setOwn, size };
 }
 
@@ -113,7 +112,7 @@ function Picture({ page }: { page: Page }) {
         class="primary"
         data-testid="save-picture"
         disabled={page.keeper.work.value !== undefined}
-        onClick={() => void page.keeper.savePicture(chosen.size.widthPx, chosen.size.heightPx)}
+        onClick={() => void page.keeper.savePicture(chosen.size())}
       >
         Save the picture
       </button>
@@ -199,7 +198,7 @@ function Movie({ page }: { page: Page }) {
         class="primary"
         data-testid="save-movie"
         disabled={page.keeper.work.value !== undefined || (draft.alongViews && views < 2)}
-        onClick={() => void page.keeper.saveMovie({ ...draft, ...chosen.size })}
+        onClick={() => void page.keeper.saveMovie({ ...draft, ...chosen.size() })}
       >
         Make the movie
       </button>

@@ -2,7 +2,7 @@
 import type { Transport } from "@connectrpc/connect";
 import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
-import { poseOfCamera } from "../../core/camera";
+import { type PictureSize, poseOfCamera } from "../../core/camera";
 import { type MovieDraft, movieScenes } from "../../core/movie_plan";
 import type { NamedView } from "../../core/named_views";
 import { projectionOf } from "../../core/projection";
@@ -78,7 +78,7 @@ export class Keeper {
     this.cancel();
   }
 
-  savePicture(widthPx: number, heightPx: number): Promise<void> {
+  savePicture({ widthPx, heightPx }: PictureSize): Promise<void> {
     return this.#make("Picture", async (abort, progress) => {
       const scene = withOutput(this.sceneShown(), outputSize(widthPx, heightPx, 1));
       const picture = await this.#calls.picture(scene, ImageFormat.PNG, abort, progress);
