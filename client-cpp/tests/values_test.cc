@@ -145,6 +145,10 @@ TEST(Parameters, EveryScalarOfTheSceneIsListedWithItsLimits) {
   const Parameter* const tone = Find(parameters, "display.tone_map");
   ASSERT_NE(tone, nullptr);
   EXPECT_THAT(tone->options, ::testing::Contains(std::pair<int, std::string>(2, "filmic")));
+  EXPECT_THAT(tone->options,
+              ::testing::Contains(std::pair<int, std::string>(0, "default: filmic")));
+  EXPECT_TRUE(Find(parameters, "display.white_balance")->default_on);
+  EXPECT_FALSE(Find(parameters, "ground.rings")->default_on);
 }
 
 TEST(Parameters, ValuesAreReadSetWithinLimitsAndCleared) {

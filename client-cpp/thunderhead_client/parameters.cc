@@ -9,6 +9,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "thunderhead/v1/limits.pb.h"
 
 namespace thunderhead::client {
 namespace {
@@ -36,7 +37,6 @@ std::string NameOf(const std::string& field) {
 
 // "TONE_MAP_FILMIC" of ToneMap is "filmic".
 std::string OptionName(const google::protobuf::EnumValueDescriptor& value) {
-  if (value.number() == 0) return "default";
   std::string prefix;
   for (const char letter : value.type()->name()) {
     if (absl::ascii_isupper(static_cast<unsigned char>(letter)) && !prefix.empty()) prefix += '_';
@@ -47,6 +47,13 @@ std::string OptionName(const google::protobuf::EnumValueDescriptor& value) {
   std::string words = absl::AsciiStrToLower(name);
   std::replace(words.begin(), words.end(), '_', ' ');
   return words;
+}
+
+// Of the enumerator 0: what it stands for, where the schema says so.
+std::string DefaultName(const FieldDescriptor& field) {
+  const std::string& choice = field.options().GetExtension(v1::default_choice);
+  const auto* const value = field.enum_type()->FindValueByName(choice);
+  return value == nullptr ? "default" : absl::StrCat("default: ", OptionName(*value));
 }
 
 std::optional<Parameter::Kind> KindOf(const FieldDescriptor& field) {
@@ -112,10 +119,12 @@ class Walk {
     parameter.kind = *kind;
     parameter.steps = steps_;
     if (*kind == Parameter::Kind::kNumber) parameter.limits = LimitsOf(field);
+    parameter.default_on = field.options().GetExtension(v1::default_on);
     if (*kind == Parameter::Kind::kChoice) {
       for (int i = 0; i < field.enum_type()->value_count(); ++i) {
         const auto& value = *field.enum_type()->value(i);
-        parameter.options.emplace_back(value.number(), OptionName(value));
+        parameter.options.emplace_back(
+            value.number(), value.number() == 0 ? DefaultName(field) : OptionName(value));
       }
     }
     found.push_back(std::move(parameter));

@@ -28,6 +28,7 @@ struct Parameter {
   std::string group;      // the part of the scene, such as "sun"
   Kind kind = Kind::kNumber;
   Limits limits;                                     // of a number
+  bool default_on = false;                           // of a flag
   std::vector<std::pair<int, std::string>> options;  // of a choice: numbers and names
   std::vector<Step> steps;
 };

@@ -50,7 +50,7 @@ void NumberSetting(Ui& ui, const Parameter& parameter, const char* label) {
 }
 
 void FlagSetting(Ui& ui, const Parameter& parameter, const char* label) {
-  bool on = client::NumberIn(ui.state.scene, parameter).value_or(0.0) != 0.0;
+  bool on = client::NumberIn(ui.state.scene, parameter).value_or(parameter.default_on) != 0.0;
   if (!ImGui::Checkbox(label, &on)) return;
   ui.Edit(parameter.path, [=](v1::Scene& scene) { client::SetNumber(scene, parameter, on); });
 }
@@ -62,9 +62,9 @@ void ChoiceSetting(Ui& ui, const Parameter& parameter, const char* label) {
 }
 
 void TextSetting(Ui& ui, const Parameter& parameter, const char* label) {
-  constexpr std::size_t kMost_bytes = 256;
+  constexpr std::size_t kMaxBytes = 256;
   std::string text = client::TextIn(ui.state.scene, parameter);
-  if (!TextField(label, text, kMost_bytes)) return;
+  if (!TextField(label, text, kMaxBytes)) return;
   ui.Edit(parameter.path, [=](v1::Scene& scene) { client::SetText(scene, parameter, text); });
 }
 

@@ -1,11 +1,21 @@
 import { describe, expect, it } from "vitest";
-import { clampToLimits, limitsOf, positionOfValue, valueAtPosition } from "../src/core/limits";
-import { LIMITS } from "../src/core/scene";
+import {
+  clampToLimits,
+  defaultChoiceOf,
+  defaultNumberOf,
+  defaultOnOf,
+  limitsOf,
+  positionOfValue,
+  valueAtPosition,
+} from "../src/core/limits";
+import { DEFAULTS, LIMITS } from "../src/core/scene";
 import {
   FieldParametersSchema,
   LightVolumeSchema,
   PositionSchema,
   SceneSchema,
+  SunSchema,
+  ToneMap,
 } from "../src/gen/thunderhead/v1/scene_pb";
 
 const SLICES = limitsOf(LightVolumeSchema.field.slices);
@@ -22,6 +32,15 @@ describe("limits come from the schema", () => {
       singlePrecision: false,
     });
     expect(LIMITS.sunAzimuth).toMatchObject({ minimum: -360, maximum: 360, unit: "deg" });
+  });
+
+  it("reads the defaults of switches and choices", () => {
+    expect(DEFAULTS.visible).toBe(true);
+    expect(DEFAULTS.rings).toBe(false);
+    expect(DEFAULTS.toneMap).toBe(ToneMap.FILMIC);
+    expect(defaultChoiceOf(SunSchema.field.source)).toBe(0);
+    expect(() => defaultOnOf(SceneSchema.field.timeIndex)).toThrow("no default");
+    expect(() => defaultNumberOf(LIMITS.exposure)).toThrow("no default");
   });
 
   it("tells a default from none", () => {

@@ -5,6 +5,7 @@ import {
   drawsDetail,
   drawsFalseColors,
   hasSetting,
+  isSettingOn,
   presetOf,
   renderingOf,
   renderingOfPreset,
@@ -188,9 +189,18 @@ describe("a technique's settings", () => {
     const transports = [Transport.LOW_ALBEDO, Transport.CONSISTENT];
     const technique = create(TechniqueDescriptionSchema, { transports });
     expect(transportOf(open, technique)).toBe(Transport.LOW_ALBEDO);
-    expect(transportOf(open, undefined)).toBeUndefined();
+    expect(transportOf(open, undefined)).toBe(Transport.CONSISTENT);
     const cumulus = create(CumulusSchema);
     expect(transportOf(cumulus, described(cumulus))).toBeUndefined();
+  });
+
+  it("are on as the messages say where they are absent", () => {
+    const [volume, slices] = [create(LightVolumeSchema), create(HalfAngleSchema)];
+    expect(isSettingOn(volume, "detail")).toBe(true);
+    expect(isSettingOn(slices, "detail")).toBe(false);
+    expect(isSettingOn(slices, "perFieldPhase")).toBe(true);
+    expect(isSettingOn({ ...slices, perFieldPhase: false }, "perFieldPhase")).toBe(false);
+    expect(isSettingOn(create(CumulusSchema), "falseColors")).toBe(false);
   });
 
   it("of traced light follow the transport", () => {

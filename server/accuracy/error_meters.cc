@@ -32,9 +32,7 @@ scene::Scene WithoutDisplay(scene::Scene scene) {
   scene.display = {};
   scene.accuracy = {};
   scene.output.jpeg_quality = {};
-  if (auto* light_volume = std::get_if<scene::LightVolume>(&scene.rendering.technique)) {
-    light_volume->traced_light = scene::TracedLight::kOff;
-  }
+  scene::SetTracedLight(&scene.rendering.technique, scene::TracedLight::kOff);
   return scene;
 }
 

@@ -49,7 +49,7 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   if (row == nullptr || timed == nullptr) return std::nullopt;
   AccuracyReport report;
   report.technique = full.technique;
-  report.slices = CountOf(drawn.technique);
+  report.slices = scene::CountOf(drawn.technique);
   report.image_scale = drawn.image_scale;
   report.model_error = row->relative_rmse;
   report.discretisation_error = evidence.discretisation_error;

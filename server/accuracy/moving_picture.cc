@@ -56,7 +56,7 @@ double Sum_ms(const renderers::StageTimes& times) {
 }  // namespace
 
 bool MovesSparsely(const scene::Scene& scene) {
-  return std::holds_alternative<scene::LightVolume>(scene.rendering.technique);
+  return scene::CapabilitiesOf(scene.rendering.technique).sparse;
 }
 
 renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuality& quality) {

@@ -16,7 +16,8 @@ scene::Technique InMode(scene::Technique technique, const Mode& mode, scene::Tra
   scene::MediumSettings* medium = scene::MediumSettingsOf(&technique);
   if (medium == nullptr) return technique;
   medium->look.per_field_phase = mode.per_field_phase;
-  medium->look.detail = mode.detail && scene::CapabilitiesOf(technique).detail;
+  medium->look.detail =
+      mode.detail && scene::CapabilitiesOf(technique).detail == scene::DetailUse::kMedium;
   medium->transport = transport;
   if (!mode.translucent) {
     medium->transport = scene::IsPaper(transport) ? scene::Transport::kPaperLowAlbedo
@@ -65,16 +66,6 @@ std::optional<scene::Technique> TechniqueNamed(std::string_view name, std::strin
     return std::nullopt;
   }
   return InMode(known->settings(), *in_mode, by->value);
-}
-
-int CountOf(const scene::Technique& technique) {
-  if (const auto* metaballs = std::get_if<scene::Metaballs>(&technique)) return metaballs->count;
-  return scene::SlicesOf(technique).value_or(1);
-}
-
-void SetCount(scene::Technique* technique, int count) {
-  if (auto* metaballs = std::get_if<scene::Metaballs>(technique)) metaballs->count = count;
-  scene::SetSlices(technique, count);
 }
 
 }  // namespace thunderhead::accuracy

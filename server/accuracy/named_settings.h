@@ -118,9 +118,4 @@ std::string_view TransportNameOf(const scene::Technique& technique);
 std::optional<scene::Technique> TechniqueNamed(std::string_view name, std::string_view mode,
                                                std::string_view transport);
 
-// The number that a technique's pictures depend on, as tables have it: slices, samples or
-// metaballs; 1 for others.
-int CountOf(const scene::Technique& technique);
-void SetCount(scene::Technique* technique, int count);
-
 }  // namespace thunderhead::accuracy

@@ -102,7 +102,8 @@ scene::Technique WithTasteOf(const scene::Technique& asked, scene::Technique tec
   scene::MediumSettings* medium = scene::MediumSettingsOf(&technique);
   if (taste == nullptr || medium == nullptr) return technique;
   medium->theta_f_deg = taste->theta_f_deg;
-  medium->look.detail = taste->look.detail && scene::CapabilitiesOf(technique).detail;
+  medium->look.detail =
+      taste->look.detail && scene::CapabilitiesOf(technique).detail == scene::DetailUse::kMedium;
   medium->look.false_colors = taste->look.false_colors;
   return technique;
 }
@@ -122,18 +123,17 @@ std::vector<Offer> Offers::OffersFor(const PricedSettings& table, const scene::S
 absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
                                             const std::optional<Setting>& current) const {
   if (std::holds_alternative<std::monostate>(scene.accuracy)) return scene;
-  if (std::holds_alternative<scene::Reference>(scene.rendering.technique)) return scene;
+  if (scene::IsTraced(scene.rendering.technique)) return scene;
   const auto& table = TableFor(tables_, scene);
   if (!table.ok()) return table.status();
   const Setting setting = BestOffer(OffersFor(*table, scene), scene.accuracy, current).setting;
   scene::Scene decided = scene;
   decided.rendering.technique = WithTasteOf(scene.rendering.technique, setting.technique);
   decided.rendering.image_scale = setting.image_scale;
-  if (auto* light_volume = std::get_if<scene::LightVolume>(&decided.rendering.technique)) {
-    // A request for an error that only tracing reaches waits for it.
-    light_volume->traced_light =
-        setting.million_paths > 0.0 ? scene::TracedLight::kAwaited : scene::TracedLight::kOff;
-  }
+  // A request for an error that only tracing reaches waits for it.
+  scene::SetTracedLight(&decided.rendering.technique, setting.million_paths > 0.0
+                                                          ? scene::TracedLight::kAwaited
+                                                          : scene::TracedLight::kOff);
   return decided;
 }
 

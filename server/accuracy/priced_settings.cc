@@ -90,7 +90,7 @@ bool ReadRow(const Cells& cells, PricedSetting* row) {
   int count = 0;
   if (!technique.has_value() || !absl::SimpleAtoi(cells[3], &count) || count <= 0) return false;
   setting.technique = *technique;
-  SetCount(&setting.technique, count);
+  scene::SetCount(&setting.technique, count);
   return ReadNumber(cells[4], &setting.image_scale) && setting.image_scale > 0.0 &&
          setting.image_scale <= 2.0 && absl::SimpleAtoi(cells[5], &setting.jpeg_quality) &&
          ReadNumber(cells[6], &row->milliseconds) && row->milliseconds > 0.0 &&

@@ -32,12 +32,14 @@ bool SameModel(const scene::Technique& a, const scene::Technique& b) {
 }
 
 bool SameDrawing(const Setting& a, const Setting& b) {
-  return SameModel(a.technique, b.technique) && CountOf(a.technique) == CountOf(b.technique) &&
+  return SameModel(a.technique, b.technique) &&
+         scene::CountOf(a.technique) == scene::CountOf(b.technique) &&
          a.image_scale == b.image_scale && (a.million_paths > 0.0) == (b.million_paths > 0.0);
 }
 
 double Distance(const Setting& a, const Setting& b) {
-  return std::abs(std::log2(static_cast<double>(CountOf(a.technique)) / CountOf(b.technique))) +
+  return std::abs(std::log2(static_cast<double>(scene::CountOf(a.technique)) /
+                            scene::CountOf(b.technique))) +
          std::abs(std::log2(a.image_scale / b.image_scale));
 }
 

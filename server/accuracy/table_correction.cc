@@ -25,7 +25,8 @@ TableCorrection::Key TableCorrection::KeyOf(const Setting& setting) {
     medium->look.detail = false;
   }
   return {scene::NameOf(setting.technique), ModeOf(technique).name,
-          TransportNameOf(setting.technique), CountOf(setting.technique), setting.image_scale};
+          TransportNameOf(setting.technique), scene::CountOf(setting.technique),
+          setting.image_scale};
 }
 
 void TableCorrection::Observe(const Setting& setting, double table_ms, double measured_ms) {

@@ -7,11 +7,15 @@
 namespace thunderhead::accuracy {
 
 bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
-  const auto* of_traced = std::get_if<scene::LightVolume>(&traced.rendering.technique);
   scene::Scene alike = scene;
-  auto* technique = std::get_if<scene::LightVolume>(&alike.rendering.technique);
-  if (of_traced == nullptr || technique == nullptr) return false;
-  technique->traced_light = of_traced->traced_light;
+  // When it is traced does not matter.
+  scene::Technique technique = traced.rendering.technique;
+  for (scene::Technique* const each : {&technique, &alike.rendering.technique}) {
+    if (!scene::CapabilitiesOf(*each).traced_light) return false;
+    scene::SetTracedLight(each, scene::TracedLight::kOff);
+  }
+  if (alike.rendering.technique != technique) return false;
+  alike.rendering.technique = traced.rendering.technique;
   alike.camera = traced.camera;
   alike.lights = traced.lights;  // which the correction does not include
   alike.display = traced.display;

@@ -74,10 +74,10 @@ absl::Status MeasureSlices(const SlicesFlags& flags) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
   // Procedural detail does not converge with the number of slices.
-  const bool light_volume = flags.scene.technique == scene::LightVolume::kName;
-  subject.scene.rendering.technique = light_volume
-                                          ? accuracy::Plain<scene::LightVolume>().settings()
-                                          : accuracy::Plain<scene::HalfAngle>().settings();
+  const std::optional<accuracy::PlainTechnique> technique =
+      accuracy::PlainTechniqueNamed(flags.scene.technique);
+  THUNDERHEAD_CHECK(technique.has_value(), flags.scene.technique);
+  subject.scene.rendering.technique = technique->settings();
   subject.scene.output = {160, 160, 88};
   // Black sky and ground, so that only the light of the cloud is measured.
   subject.scene.sky = {0.0, 0.0};

@@ -109,7 +109,7 @@ std::string Table(const std::vector<measure::TradeRow>& rows) {
         "%-13s %-28s %-11s %6d %5g %5g %-6s %6g %4d %9.2f %8.4f %+8.4f %7.4f  %6.4f (%.4f to "
         "%.4f)%s\n",
         scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
-        accuracy::TransportNameOf(setting.technique), accuracy::CountOf(setting.technique),
+        accuracy::TransportNameOf(setting.technique), scene::CountOf(setting.technique),
         setting.image_scale, setting.light_detail, setting.single_precision ? "single" : "half",
         setting.million_paths, setting.jpeg_quality, row.milliseconds, row.relative_rmse,
         row.relative_bias, row.flip, row.estimated_error.value, row.estimated_error.low,

@@ -27,7 +27,7 @@ scene::Technique LightVolume(scene::Transport transport,
 }
 
 Setting WithCount(scene::Technique technique, int count) {
-  accuracy::SetCount(&technique, count);
+  scene::SetCount(&technique, count);
   return {technique};
 }
 

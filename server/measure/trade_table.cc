@@ -46,7 +46,7 @@ std::optional<TradeRow> RowOf(absl::string_view line) {
   int count = 0;
   if (!technique.has_value() || !absl::SimpleAtoi(cells[3], &count)) return std::nullopt;
   setting.technique = *technique;
-  accuracy::SetCount(&setting.technique, count);
+  scene::SetCount(&setting.technique, count);
   const bool read =
       absl::SimpleAtod(cells[4], &setting.image_scale) &&
       absl::SimpleAtod(cells[5], &setting.light_detail) &&
@@ -89,7 +89,7 @@ void AddDot(const TradeRow& row, LogPlot* plot) {
       "%s, %s, %s, %d %s, scale %g, light detail %g, %s precision, %g million paths, JPEG %d: %.2f "
       "ms, RMSE %.3f, FLIP %.3f",
       scene::NameOf(technique), accuracy::ModeOf(technique).name,
-      accuracy::TransportNameOf(technique), accuracy::CountOf(technique),
+      accuracy::TransportNameOf(technique), scene::CountOf(technique),
       std::holds_alternative<scene::Metaballs>(technique) ? "balls" : "slices",
       row.setting.image_scale, row.setting.light_detail, PrecisionOf(row.setting),
       row.setting.million_paths, row.setting.jpeg_quality, row.milliseconds, row.relative_rmse,
@@ -135,7 +135,7 @@ std::string CsvLine(const TradeRow& row) {
   return absl::StrFormat("%s,%s,%s,%d,%g,%g,%s,%g,%d,%.3f,%.3f,%d,%.5f,%.5f,%.5f,%.5f,%.5f,%.5f\n",
                          scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
                          accuracy::TransportNameOf(setting.technique),
-                         accuracy::CountOf(setting.technique), setting.image_scale,
+                         scene::CountOf(setting.technique), setting.image_scale,
                          setting.light_detail, PrecisionOf(setting), setting.million_paths,
                          setting.jpeg_quality, row.milliseconds, row.milliseconds_spread, row.bytes,
                          row.relative_rmse, row.relative_bias, row.flip, row.estimated_error.value,
@@ -179,7 +179,7 @@ std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows
         "\"milliseconds_spread\": %.3f, \"bytes\": %d, \"relative_rmse\": %.5f, "
         "\"relative_bias\": %.5f, \"flip\": %.5f, %s\"pareto\": %s}",
         scene::NameOf(setting.technique), accuracy::ModeOf(setting.technique).name,
-        accuracy::TransportNameOf(setting.technique), accuracy::CountOf(setting.technique),
+        accuracy::TransportNameOf(setting.technique), scene::CountOf(setting.technique),
         setting.image_scale, setting.light_detail, PrecisionOf(setting), setting.million_paths,
         setting.jpeg_quality, row.milliseconds, row.milliseconds_spread, row.bytes,
         row.relative_rmse, row.relative_bias, row.flip, EstimateJson(row),

@@ -42,6 +42,24 @@ enum class PhaseKind {
   kWaterNarrow
 };
 
+// The computed tables (docs/phase_tables.md) of the kinds that are no formulas. Water droplets have
+// one for each of several radii, of which the nearest is chosen; others have no radius.
+struct PhaseTableName {
+  PhaseKind kind;
+  float droplet_radius_m;
+  const char* name;  // of its recipe (tables/recipes.h) and its file in data/phase
+};
+inline constexpr std::array kPhaseTables = {
+    PhaseTableName{PhaseKind::kWaterDroplets, 5e-6F, "cloud_re05"},
+    PhaseTableName{PhaseKind::kWaterDroplets, 1e-5F, "cloud_re10"},
+    PhaseTableName{PhaseKind::kWaterDroplets, 2e-5F, "cloud_re20"},
+    PhaseTableName{PhaseKind::kWaterDroplets, 5e-4F, "rain"},
+    PhaseTableName{PhaseKind::kIceColumns, 0.0F, "ice_columns"},
+    PhaseTableName{PhaseKind::kIcePlates, 0.0F, "ice_plates"},
+    PhaseTableName{PhaseKind::kIceRough, 0.0F, "ice_rough"},
+    PhaseTableName{PhaseKind::kWaterNarrow, 0.0F, "cloud_re05_narrow"},
+};
+
 struct PhaseFunction {
   PhaseKind kind = PhaseKind::kHenyeyGreenstein;
   float asymmetry = 0.0F;  // the parameter g of Henyey and Greenstein, and of Cornette and Shanks
@@ -57,6 +75,45 @@ struct ParticleOptics {
   float albedo;
   PhaseFunction phase;    // droplet_radius_m is not set; PhaseOf (optics.h) sets it from radius_m
   glm::vec3 false_color;  // linear sRGB
+};
+
+// All that is known of a kind; in the order of Hydrometeor.
+struct HydrometeorRow {
+  Hydrometeor hydrometeor;
+  std::string_view name;
+  float papers_radius_m;
+  ParticleOptics optics;
+};
+
+// The asymmetry parameters are for the formulas, should one be chosen: water 0.85 (Mie, r_e 10 um,
+// 0.55 um, rounded down for the broad part of the lobe), smooth ice crystals 0.78, roughened and
+// rimed ice 0.76.
+inline constexpr std::array kHydrometeorRows = {
+    HydrometeorRow{Hydrometeor::kCloud,
+                   "cloud",
+                   1e-5F,
+                   {1e-5F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {1.0F, 0.0F, 0.0F}}},
+    HydrometeorRow{
+        Hydrometeor::kRain,
+        "rain",
+        1e-3F,
+        {6.7e-4F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {0.0F, 0.0F, 1.0F}}},
+    HydrometeorRow{Hydrometeor::kIce,
+                   "ice",
+                   1e-3F,
+                   {3e-5F, 917.0F, 1.0F, {PhaseKind::kIceColumns, 0.78F}, {1.0F, 0.0F, 1.0F}}},
+    HydrometeorRow{Hydrometeor::kSnow,
+                   "snow",
+                   2e-3F,
+                   {9.2e-4F, 100.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {1.0F, 1.0F, 0.0F}}},
+    HydrometeorRow{Hydrometeor::kGraupel,
+                   "graupel",
+                   2.5e-3F,
+                   {9.5e-4F, 500.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 0.0F}}},
+    HydrometeorRow{Hydrometeor::kHail,
+                   "hail",
+                   1e-2F,
+                   {2.6e-3F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 1.0F}}},
 };
 
 // The defaults of each hydrometeor.

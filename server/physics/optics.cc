@@ -1,5 +1,6 @@
 #include "physics/optics.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -27,29 +28,12 @@ double IntegrateOverAngle(double low_rad, double high_rad, const F& f) {
   return sum * step / 3.0;
 }
 
-// The tables that phase functions choose from, water first.
-struct TableName {
-  PhaseKind kind;
-  float droplet_radius_m;
-  const char* name;
-};
-constexpr std::array<TableName, 8> kTableNames = {{
-    {PhaseKind::kWaterDroplets, 5e-6F, "cloud_re05"},
-    {PhaseKind::kWaterDroplets, 1e-5F, "cloud_re10"},
-    {PhaseKind::kWaterDroplets, 2e-5F, "cloud_re20"},
-    {PhaseKind::kWaterDroplets, 5e-4F, "rain"},
-    {PhaseKind::kIceColumns, 0.0F, "ice_columns"},
-    {PhaseKind::kIcePlates, 0.0F, "ice_plates"},
-    {PhaseKind::kIceRough, 0.0F, "ice_rough"},
-    {PhaseKind::kWaterNarrow, 0.0F, "cloud_re05_narrow"},
-}};
-
-// Index in kTableNames of the table for `phase`; droplets have one for each of several radii.
+// Index in kPhaseTables of the table for `phase`; droplets have one for each of several radii.
 std::size_t TableIndexOf(const PhaseFunction& phase) {
-  std::size_t nearest = kTableNames.size();
+  std::size_t nearest = kPhaseTables.size();
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < kTableNames.size(); ++i) {
-    const TableName& table = kTableNames[i];
+  for (std::size_t i = 0; i < kPhaseTables.size(); ++i) {
+    const PhaseTableName& table = kPhaseTables[i];
     if (table.kind != phase.kind) continue;
     const double ratio = table.droplet_radius_m > 0.0F
                              ? std::fmax(phase.droplet_radius_m, 1e-9F) / table.droplet_radius_m
@@ -59,14 +43,14 @@ std::size_t TableIndexOf(const PhaseFunction& phase) {
     least = distance;
     nearest = i;
   }
-  THUNDERHEAD_CHECK(nearest < kTableNames.size(), "phase kind without a table");
+  THUNDERHEAD_CHECK(nearest < kPhaseTables.size(), "phase kind without a table");
   return nearest;
 }
 
 const PhaseTable& TableOf(const PhaseFunction& phase) {
   static const std::vector<PhaseTable> tables = [] {
     std::vector<PhaseTable> loaded;
-    for (const TableName& table : kTableNames) {
+    for (const PhaseTableName& table : kPhaseTables) {
       absl::StatusOr<PhaseTable> embedded = EmbeddedPhaseTable(table.name);
       THUNDERHEAD_CHECK(embedded.ok(), embedded.status().ToString());
       loaded.push_back(*std::move(embedded));
@@ -77,8 +61,7 @@ const PhaseTable& TableOf(const PhaseFunction& phase) {
 }
 
 bool IsFormula(const PhaseFunction& phase) {
-  return phase.kind == PhaseKind::kHenyeyGreenstein || phase.kind == PhaseKind::kCornetteShanks ||
-         phase.kind == PhaseKind::kRayleigh;
+  return std::ranges::find(kPhaseTables, phase.kind, &PhaseTableName::kind) == kPhaseTables.end();
 }
 
 template <typename F>
@@ -104,7 +87,7 @@ PhaseFunction PhaseOf(const ParticleOptics& optics) {
   PhaseFunction phase{optics.phase.kind, 0.0F, 0.0F};
   if (phase.kind == PhaseKind::kWaterDroplets) {
     phase.droplet_radius_m = optics.radius_m;
-    phase.droplet_radius_m = kTableNames[TableIndexOf(phase)].droplet_radius_m;
+    phase.droplet_radius_m = kPhaseTables[TableIndexOf(phase)].droplet_radius_m;
   } else if (IsFormula(phase) && phase.kind != PhaseKind::kRayleigh) {
     phase.asymmetry = optics.phase.asymmetry;
   }

@@ -10,7 +10,7 @@ void AddNotShown(const scene::Scene& scene, const scene::Capabilities& shows, Co
       content->fields.begin(), content->fields.end(), [&](physics::Hydrometeor hydrometeor) {
         return scene.fields[physics::IndexOf(hydrometeor)].detail.share > 0.0F;
       });
-  if (has_detail && !shows.detail) {
+  if (has_detail && shows.detail == scene::DetailUse::kNone) {
     content->not_shown.push_back({Code::kDetail, "turbulent detail finer than the grid"});
   }
   if (!scene.lights.empty() && !shows.lights) {

@@ -13,9 +13,9 @@ bool SameOptics(const physics::ParticleOptics& a, const physics::ParticleOptics&
 // The fields as they are drawn: without the detail that the technique ignores.
 std::array<FieldParameters, physics::kHydrometeorCount> FieldsShown(const Scene& scene) {
   auto fields = scene.fields;
-  // Metaballs take their roughness from it.
-  const bool balls = std::holds_alternative<Metaballs>(scene.rendering.technique);
-  if (balls || FieldLookOf(scene.rendering.technique).detail) return fields;
+  const Technique& technique = scene.rendering.technique;
+  const bool roughens = CapabilitiesOf(technique).detail == DetailUse::kRoughness;
+  if (roughens || FieldLookOf(technique).detail) return fields;
   for (FieldParameters& field : fields) field.detail = {};
   return fields;
 }

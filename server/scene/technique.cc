@@ -47,6 +47,8 @@ FieldLook FieldLookOf(const Technique& technique) {
   return std::visit([](const auto& settings) { return settings.Look(); }, technique);
 }
 
+bool IsTraced(const Technique& technique) { return !CapabilitiesOf(technique).images; }
+
 std::optional<int> SlicesOf(const Technique& technique) {
   return std::visit(
       [](const auto& settings) -> std::optional<int> {
@@ -67,6 +69,27 @@ void SetSlices(Technique* technique, int slices) {
       *technique);
 }
 
+int CountOf(const Technique& technique) {
+  return std::visit(
+      [&technique](const auto& settings) {
+        if constexpr (requires { settings.count; }) {
+          return settings.count;
+        } else {
+          return SlicesOf(technique).value_or(1);
+        }
+      },
+      technique);
+}
+
+void SetCount(Technique* technique, int count) {
+  std::visit(
+      [count](auto& settings) {
+        if constexpr (requires { settings.count; }) settings.count = count;
+        if constexpr (requires { settings.slices; }) settings.slices = count;
+      },
+      *technique);
+}
+
 double SamplesPerPixel(const Technique& technique, double slice_share) {
   return std::visit(
       [slice_share](const auto& settings) { return settings.SamplesPerPixel(slice_share); },
@@ -74,8 +97,23 @@ double SamplesPerPixel(const Technique& technique, double slice_share) {
 }
 
 TracedLight TracedLightOf(const Technique& technique) {
-  const auto* light_volume = std::get_if<LightVolume>(&technique);
-  return light_volume == nullptr ? TracedLight::kOff : light_volume->TracedLightShown();
+  return std::visit(
+      [](const auto& settings) {
+        if constexpr (requires { settings.TracedLightShown(); }) {
+          return settings.TracedLightShown();
+        } else {
+          return TracedLight::kOff;
+        }
+      },
+      technique);
+}
+
+void SetTracedLight(Technique* technique, TracedLight traced_light) {
+  std::visit(
+      [traced_light](auto& settings) {
+        if constexpr (requires { settings.traced_light; }) settings.traced_light = traced_light;
+      },
+      *technique);
 }
 
 Stage FirstDirtyStage(const Technique& before, const Technique& after) {

@@ -78,7 +78,7 @@ absl::Status Map(Engine& engine, const volume::StormInfo& storm,
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> added,
                                FieldsAdded(request, storm, *fields));
   v1::GetStormMapRequest filled = request;
-  FillNumberDefaults(filled);
+  FillDefaults(filled);
   const volume::StormMap map = volume::MapOf(
       *fields, {added, static_cast<int>(filled.max_size_px()), request.with_terrain()});
   response.set_storm_id(storm.id);

@@ -187,11 +187,26 @@ void SetNumber(Message& message, const FieldDescriptor& field, double value) {
   }
 }
 
+// `field` is one value that is absent; an enumerator of 0 counts as that.
+void FillDefault(Message& message, const FieldDescriptor& field) {
+  const google::protobuf::FieldOptions& options = field.options();
+  if (options.HasExtension(v1::default_on)) {
+    message.GetReflection()->SetBool(&message, &field, options.GetExtension(v1::default_on));
+  } else if (options.HasExtension(v1::default_choice)) {
+    const std::string& name = options.GetExtension(v1::default_choice);
+    const auto* value = field.enum_type()->FindValueByName(name);
+    THUNDERHEAD_CHECK(value != nullptr, absl::StrCat(field.full_name(), " has no ", name));
+    message.GetReflection()->SetEnum(&message, &field, value);
+  } else if (field.has_presence() && options.GetExtension(v1::number).has_default_value()) {
+    SetNumber(message, field, options.GetExtension(v1::number).default_value());
+  }
+}
+
 }  // namespace
 
 absl::Status CheckLimits(const Message& message) { return CheckMessage(message, ""); }
 
-void FillNumberDefaults(Message& message) {
+void FillDefaults(Message& message) {
   const Reflection& reflection = *message.GetReflection();
   const auto& type = *message.GetDescriptor();
   for (int i = 0; i < type.field_count(); ++i) {
@@ -199,15 +214,14 @@ void FillNumberDefaults(Message& message) {
     const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
     if (field.is_repeated()) {
       for (int j = 0; is_message && j < reflection.FieldSize(message, &field); ++j) {
-        FillNumberDefaults(*reflection.MutableRepeatedMessage(&message, &field, j));
+        FillDefaults(*reflection.MutableRepeatedMessage(&message, &field, j));
       }
     } else if (is_message) {
       if (reflection.HasField(message, &field)) {
-        FillNumberDefaults(*reflection.MutableMessage(&message, &field));
+        FillDefaults(*reflection.MutableMessage(&message, &field));
       }
-    } else if (field.has_presence() && !reflection.HasField(message, &field)) {
-      const v1::NumberLimits& limits = field.options().GetExtension(v1::number);
-      if (limits.has_default_value()) SetNumber(message, field, limits.default_value());
+    } else if (!reflection.HasField(message, &field)) {
+      FillDefault(message, field);
     }
   }
 }

@@ -12,8 +12,8 @@ namespace thunderhead::service {
 // "scene.fields[1].radius_m is 5; it must be between 1e-07 and 0.1 m", with details.
 absl::Status CheckLimits(const google::protobuf::Message& message);
 
-// Sets every absent number that has a default in the schema, in `message` and its submessages that
-// are present.
-void FillNumberDefaults(google::protobuf::Message& message);
+// Sets every absent number, bool and enumerator that has a default in the schema, in `message` and
+// its submessages that are present.
+void FillDefaults(google::protobuf::Message& message);
 
 }  // namespace thunderhead::service

@@ -35,7 +35,7 @@ absl::StatusOr<std::shared_ptr<Asked>> Check(Engine& engine, const v1::ProbeRayR
   if (request.has_ray()) THUNDERHEAD_RETURN_IF_ERROR(RayOf(request.ray(), "ray").status());
   auto asked = std::make_shared<Asked>();
   asked->request = request;
-  FillNumberDefaults(asked->request);
+  FillDefaults(asked->request);
   THUNDERHEAD_ASSIGN_OR_RETURN(asked->scene, SceneOf(engine, request));
   v1::Scene& scene = asked->scene.scene;
   if (request.has_camera()) *scene.mutable_camera() = request.camera();

@@ -110,7 +110,6 @@ constexpr std::array kProblemCodes = {
 void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydrometeor) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(hydrometeor);
   field.set_hydrometeor(ToMessage(hydrometeor));
-  if (!field.has_visible()) field.set_visible(true);
   if (field.has_radius_m()) {
     field.set_sizes(v1::PARTICLE_SIZES_GIVEN);
   } else if (field.sizes() == v1::PARTICLE_SIZES_GIVEN) {
@@ -131,7 +130,7 @@ void FillFieldDefaults(v1::FieldParameters& field, physics::Hydrometeor hydromet
   }
   v1::Detail& detail = *field.mutable_detail();
   if (!detail.has_share()) detail.set_share(scene::DefaultDetail(hydrometeor).share);
-  FillNumberDefaults(field);
+  FillDefaults(field);
 }
 
 v1::FieldParameters& FieldOf(v1::Scene& scene, physics::Hydrometeor hydrometeor) {
@@ -267,7 +266,7 @@ absl::Status CheckScene(const v1::Scene& scene) {
     }
   }
   v1::Output output = scene.output();
-  FillNumberDefaults(output);
+  FillDefaults(output);
   const std::uint64_t pixels = std::uint64_t{output.width_px()} * output.height_px();
   if (pixels > kMaxPixels) {
     return base::WithDetails(
@@ -292,7 +291,6 @@ namespace {
 // The particles' sizes are known by now.
 void FillGroundDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   v1::Ground& ground = *scene.mutable_ground();
-  if (!ground.has_rings()) ground.set_rings(scene::Ground{}.rings);
   if (ground.cover() != v1::Ground::COVER_UNSPECIFIED) return;
   const bool of_the_papers = scene.particle_sizes() == v1::PARTICLE_SIZES_PAPERS;
   ground.set_cover(of_the_papers                    ? v1::Ground::COVER_PLAIN
@@ -324,14 +322,12 @@ void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   FillSizesDefault(scene);
   FillGroundDefaults(scene, storm);
   FillTechniqueDefaults(*scene.mutable_rendering());
-  v1::Display& display = *scene.mutable_display();
-  display.set_tone_map(MessageOf(kToneMaps, ValueOf(kToneMaps, display.tone_map())));
-  if (!display.has_white_balance()) display.set_white_balance(scene::Display{}.white_balance);
+  scene.mutable_display();
   for (physics::Hydrometeor hydrometeor : storm.fields) FieldOf(scene, hydrometeor);
   for (v1::FieldParameters& field : *scene.mutable_fields()) {
     FillFieldDefaults(field, physics::kHydrometeors[IndexOf(field.hydrometeor())]);
   }
-  FillNumberDefaults(scene);
+  FillDefaults(scene);
 }
 
 physics::SizeSource SizesOf(const v1::Scene& scene) {

@@ -22,7 +22,7 @@ absl::StatusOr<session::DecodedScene> DecodeStoredScene(
   if (storm != nullptr && scene.time_index() < storm->times.size()) {
     FillSceneDefaults(scene, *storm);
   } else {
-    FillNumberDefaults(scene);
+    FillDefaults(scene);
   }
   return session::DecodedScene{ToScene(scene), scene.SerializeAsString()};
 }

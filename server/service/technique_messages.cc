@@ -298,7 +298,7 @@ void ToMessage(const scene::Technique& technique, v1::Rendering& message) {
 void ToMessage(const session::TechniqueInfo& technique, v1::TechniqueDescription& message) {
   message.set_name(technique.name);
   message.set_shows_lights(technique.capabilities.lights);
-  message.set_shows_detail(technique.capabilities.detail);
+  message.set_shows_detail(technique.capabilities.detail != scene::DetailUse::kNone);
   message.set_shows_field_optics(technique.capabilities.field_optics);
   message.set_shows_traced_light(technique.capabilities.traced_light);
   message.set_has_slices(technique.capabilities.slices);

@@ -9,7 +9,7 @@ namespace thunderhead::session {
 
 void SessionReference::EndUnless(const scene::Scene& newest) {
   if (!traced_.has_value()) return;
-  if (!std::holds_alternative<scene::Reference>(newest.rendering.technique)) {
+  if (!scene::IsTraced(newest.rendering.technique)) {
     Release();
   } else if (scene::FirstDirtyStage(*traced_->shown.scene, newest) < scene::Stage::kTone) {
     tracer_.Stop(id_);

@@ -38,7 +38,7 @@ SessionView::State SessionView::EnteredFor(const NewestScene& newest,
   if (scene.revision == failed_revision_) return State::kFailed;
   if (!drawable.has_value()) return State::kWaitingForFields;
   const scene::Technique& technique = scene.scene->rendering.technique;
-  if (std::holds_alternative<scene::Reference>(technique)) return State::kReference;
+  if (scene::IsTraced(technique)) return State::kReference;
   if (scene.revision > planner_.revision()) return State::kMoving;
   // Its fields were released while nobody watched.
   return state_ == State::kWaitingForFields ? State::kRefining : state_;

@@ -203,8 +203,8 @@ void OwnView::Show() {
   scene::Scene scene = *scene_->scene;
   scene.camera = camera_;
   // The reference traces what many see; one who looks around has the default technique.
-  if (std::holds_alternative<scene::Reference>(scene.rendering.technique)) {
-    scene.rendering.technique = scene::LightVolume();
+  if (scene::IsTraced(scene.rendering.technique)) {
+    scene.rendering.technique = scene::Rendering().technique;
   }
   drawn_->Show(drawn_->TakeRevision(), std::move(scene));
 }

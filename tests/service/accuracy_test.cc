@@ -27,7 +27,7 @@ accuracy::OfferTables Tables() {
   accuracy::Setting setting{test_support::PlainScene().rendering.technique};
   for (const auto& [slices, cost_ms, error] :
        {std::tuple{25, 5.0, 0.4}, std::tuple{50, 10.0, 0.3}, std::tuple{100, 20.0, 0.2}}) {
-    accuracy::SetCount(&setting.technique, slices);
+    scene::SetCount(&setting.technique, slices);
     table.rows.push_back({setting, cost_ms, error});
   }
   accuracy::OfferTables tables;

@@ -23,7 +23,7 @@ accuracy::OfferTables Tables() {
   table.size_px = {64, 36};
   accuracy::Setting setting{test_support::PlainScene().rendering.technique};
   for (const auto& [slices, ms, error] : {std::tuple{64, 10.0, 0.3}, std::tuple{128, 20.0, 0.2}}) {
-    accuracy::SetCount(&setting.technique, slices);
+    scene::SetCount(&setting.technique, slices);
     table.rows.push_back({setting, ms, error});
   }
   accuracy::OfferTables tables;

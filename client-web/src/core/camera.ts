@@ -9,7 +9,7 @@ import {
   SpotterCameraSchema,
   TopDownCameraSchema,
 } from "../gen/thunderhead/v1/scene_pb";
-import { clampToLimits, type Limits, limitsOf } from "./limits";
+import { clampToLimits, defaultNumberOf, type Limits, limitsOf } from "./limits";
 
 export interface OrbitPose {
   readonly kind: "orbit";
@@ -88,10 +88,10 @@ export function poseOfCamera(camera: Camera | undefined): Pose | undefined {
       return {
         kind: "orbit",
         targetM: [target.xM, target.yM, target.zM],
-        azimuthDeg: azimuthDeg ?? AZIMUTH.defaultValue ?? 0,
+        azimuthDeg: azimuthDeg ?? defaultNumberOf(AZIMUTH),
         elevationDeg,
         distanceM,
-        fieldOfViewDeg: fieldOfViewDeg ?? FIELD_OF_VIEW.defaultValue ?? 35,
+        fieldOfViewDeg: fieldOfViewDeg ?? defaultNumberOf(FIELD_OF_VIEW),
       };
     }
     case "spotter": {
@@ -101,10 +101,10 @@ export function poseOfCamera(camera: Camera | undefined): Pose | undefined {
       return {
         kind: "spotter",
         placeM: [xM, yM],
-        eyeHeightM: eyeHeightM ?? SPOTTER_LIMITS.eyeHeight.defaultValue ?? 0,
+        eyeHeightM: eyeHeightM ?? defaultNumberOf(SPOTTER_LIMITS.eyeHeight),
         azimuthDeg,
         elevationDeg,
-        focalLengthMm: focalLengthMm ?? SPOTTER_LIMITS.focalLength.defaultValue ?? FRAME_HEIGHT_MM,
+        focalLengthMm: focalLengthMm ?? defaultNumberOf(SPOTTER_LIMITS.focalLength),
       };
     }
     case "topDown": {

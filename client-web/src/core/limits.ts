@@ -1,7 +1,9 @@
-// Range, default and unit of each number, read from the field options in proto/, and the mapping between a value and
-// its slider's position. Independent of widgets.
-import { type DescField, getOption, ScalarType } from "@bufbuild/protobuf";
+// Range, default and unit of each number and the defaults of switches and choices, read from the field options in proto/, and
+// the mapping between a value and its slider's position. Independent of widgets.
+import { type DescField, getOption, hasOption, ScalarType } from "@bufbuild/protobuf";
 import {
+  default_choice as defaultChoiceOption,
+  default_on as defaultOnOption,
   max_items as maxItemsOption,
   number$ as numberOption,
 } from "../gen/thunderhead/v1/limits_pb";
@@ -40,6 +42,27 @@ export function limitsOf(field: DescField): Limits {
     integer: INTEGER_SCALARS.has(field.scalar),
     singlePrecision: field.scalar === ScalarType.FLOAT,
   };
+}
+
+// The value of an absent bool.
+export function defaultOnOf(field: DescField): boolean {
+  if (!hasOption(field, defaultOnOption)) {
+    throw new Error(`${field.toString()} has no default in the schema`);
+  }
+  return getOption(field, defaultOnOption);
+}
+
+// The enumerator that an absent one stands for; 0, that of an absent one, where it depends on the storm or on other fields.
+export function defaultChoiceOf(field: DescField): number {
+  if (field.fieldKind !== "enum") throw new Error(`${field.toString()} is no choice`);
+  const name = getOption(field, defaultChoiceOption);
+  return field.enum.values.find((value) => value.name === name)?.number ?? 0;
+}
+
+// Of a number whose default does not depend on the storm.
+export function defaultNumberOf({ defaultValue }: Limits): number {
+  if (defaultValue === undefined) throw new Error("the schema has no default of this number");
+  return defaultValue;
 }
 
 // The most elements that a list may have.

@@ -1,8 +1,14 @@
 // Every parameter of a scene, read from the messages' descriptors: a field that is added to scene.proto is in this list without
 // a line of code. Values are read and changed by their way through the messages.
-import { create, type DescField, type DescMessage, type Message } from "@bufbuild/protobuf";
+import {
+  create,
+  type DescField,
+  type DescMessage,
+  type Message,
+  ScalarType,
+} from "@bufbuild/protobuf";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
-import { type Limits, limitsOf } from "./limits";
+import { defaultChoiceOf, defaultOnOf, type Limits, limitsOf } from "./limits";
 
 interface Step {
   readonly field: DescField;
@@ -25,7 +31,8 @@ interface Common {
 export type Parameter = Common &
   (
     | { readonly kind: "number"; readonly limits: Limits }
-    | { readonly kind: "flag" | "text" }
+    | { readonly kind: "flag"; readonly defaultOn: boolean }
+    | { readonly kind: "text" }
     | { readonly kind: "choice"; readonly options: readonly ParameterOption[] }
   );
 
@@ -88,21 +95,23 @@ function leaf(
   const common = { path, fullName, name: nameOf(field.name), group, steps };
   if (field.fieldKind === "enum") {
     const { enum: desc } = field;
-    const options = desc.values.map(({ number, localName, name }) => ({
+    const words = (number: number) =>
+      desc.value[number]?.localName.toLowerCase().replaceAll("_", " ") ?? "";
+    const standsFor = defaultChoiceOf(field);
+    const absent = standsFor === 0 ? "default" : `default: ${words(standsFor)}`;
+    const options = desc.values.map(({ number, name }) => ({
       value: number,
-      name: number === 0 ? "default" : localName.toLowerCase().replaceAll("_", " "),
+      name: number === 0 ? absent : words(number),
       fullName: `${desc.typeName}.${name}`,
     }));
     return { ...common, kind: "choice", options };
   }
   if (field.fieldKind !== "scalar") return undefined;
-  const kind = SCALAR_KINDS[field.scalar];
-  if (kind !== undefined) return { ...common, kind };
+  if (field.scalar === ScalarType.STRING) return { ...common, kind: "text" };
+  if (field.scalar === ScalarType.BOOL)
+    return { ...common, kind: "flag", defaultOn: defaultOnOf(field) };
   return { ...common, kind: "number", limits: limitsOf(field) };
 }
-
-// By protobuf's numbers of scalar types: bool and string. Others are numbers.
-const SCALAR_KINDS: Readonly<Record<number, "flag" | "text">> = { 8: "flag", 9: "text" };
 
 const UNIT_ENDINGS = /_(deg|m|mm|px|ev|kg_per_m3|per_m|milliseconds)$/;
 

@@ -21,7 +21,7 @@ import {
   Transport,
 } from "../gen/thunderhead/v1/scene_pb";
 import type { PresetDescription, TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
-import { type Limits, limitsOf } from "./limits";
+import { defaultChoiceOf, defaultOnOf, type Limits, limitsOf } from "./limits";
 
 // The settings of any one technique.
 export type Settings = Exclude<Rendering["technique"]["value"], Preset | undefined>;
@@ -80,12 +80,24 @@ export function settingLimits(settings: Settings, name: keyof SharedSettings): L
   return field === undefined ? undefined : limitsOf(field);
 }
 
+// A switch of the technique's; false where it has no such setting.
+export function isSettingOn(
+  settings: Settings,
+  name: "detail" | "falseColors" | "perFieldPhase",
+): boolean {
+  const field = fieldOf(settings)?.message.field[name];
+  return field !== undefined && (sharedSettingsOf(settings)[name] ?? defaultOnOf(field));
+}
+
 // Undefined for a technique without a choice of transport.
 export function transportOf(
   settings: Settings,
   technique: TechniqueDescription | undefined,
 ): Transport | undefined {
-  return sharedSettingsOf(settings).transport || technique?.transports[0];
+  const given = sharedSettingsOf(settings).transport || technique?.transports[0];
+  if (given) return given;
+  const field = fieldOf(settings)?.message.field.transport;
+  return field === undefined ? undefined : defaultChoiceOf(field);
 }
 
 // True if the setting `traced_light` has an effect.
@@ -99,13 +111,13 @@ export function tracesLight(settings: Settings, technique: TechniqueDescription)
 
 // True if the picture shows the fields' turbulent detail.
 export function drawsDetail(settings: Settings, technique: TechniqueDescription): boolean {
-  const asked = !hasSetting(settings, "detail") || sharedSettingsOf(settings).detail === true;
+  const asked = !hasSetting(settings, "detail") || isSettingOn(settings, "detail");
   return technique.showsDetail && asked;
 }
 
 // True if the picture shows the fields' false colours.
 export function drawsFalseColors(settings: Settings, technique: TechniqueDescription): boolean {
-  return technique.showsFieldOptics && sharedSettingsOf(settings).falseColors === true;
+  return technique.showsFieldOptics && isSettingOn(settings, "falseColors");
 }
 
 export function withSettings(rendering: Rendering, change: SettingsChange): Rendering {

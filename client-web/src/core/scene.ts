@@ -13,7 +13,9 @@ import {
   type Accuracy,
   AccuracySchema,
   type Camera,
+  type Cumulus_Component as CumulusComponent,
   CumulusSchema,
+  type Cumulus_Source as CumulusSource,
   type Detail,
   DetailSchema,
   type DirectionalLight,
@@ -25,6 +27,7 @@ import {
   type Ground,
   GroundSchema,
   type Hydrometeor,
+  LightVolumeSchema,
   MetaballsSchema,
   type Output,
   OutputSchema,
@@ -41,8 +44,17 @@ import {
   type SunClock,
   SunClockSchema,
   SunSchema,
+  type ToneMap,
+  type TracedLight,
 } from "../gen/thunderhead/v1/scene_pb";
-import { clampToLimits, type Limits, limitsOf, mostItemsOf } from "./limits";
+import {
+  clampToLimits,
+  defaultChoiceOf,
+  defaultOnOf,
+  type Limits,
+  limitsOf,
+  mostItemsOf,
+} from "./limits";
 import { QUALITY_PRESETS, renderingOfPreset } from "./rendering";
 
 export const LIMITS = {
@@ -83,6 +95,18 @@ export const LIMITS = {
   maxError: limitsOf(AccuracySchema.field.maxError),
   maxMilliseconds: limitsOf(AccuracySchema.field.maxMilliseconds),
 } as const satisfies Record<string, Limits>;
+
+// Of absent switches and choices.
+export const DEFAULTS = {
+  visible: defaultOnOf(FieldParametersSchema.field.visible),
+  rings: defaultOnOf(GroundSchema.field.rings),
+  whiteBalance: defaultOnOf(DisplaySchema.field.whiteBalance),
+  toneMap: defaultChoiceOf(DisplaySchema.field.toneMap) as ToneMap,
+  tracedLight: defaultChoiceOf(LightVolumeSchema.field.tracedLight) as TracedLight,
+  metaballIsotropic: defaultOnOf(MetaballsSchema.field.isotropic),
+  cumulusSource: defaultChoiceOf(CumulusSchema.field.source) as CumulusSource,
+  cumulusComponent: defaultChoiceOf(CumulusSchema.field.component) as CumulusComponent,
+} as const;
 
 export const MAX_LIGHTS = mostItemsOf(SceneSchema.field.lights);
 
@@ -260,7 +284,7 @@ export function effectiveField(
   });
   return create(FieldParametersSchema, {
     hydrometeor,
-    visible: set?.visible ?? defaults?.visible ?? true,
+    visible: set?.visible ?? defaults?.visible ?? DEFAULTS.visible,
     sizes: sizesOf(scene, set),
     scale: set?.scale ?? defaults?.scale ?? LIMITS.fieldScale.defaultValue,
     radiusM: set?.radiusM,

@@ -1,5 +1,5 @@
 // The surface of a cumulus and its shading (Neyret 2000).
-import { LIMITS } from "../core/scene";
+import { DEFAULTS, LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";
 import {
   Cumulus_Component as Component,
@@ -32,7 +32,7 @@ interface CumulusProps {
 }
 
 export function CumulusControls({ state, cumulus }: CumulusProps) {
-  const source = cumulus.source || Source.STORM;
+  const source = cumulus.source || DEFAULTS.cumulusSource;
   return (
     <>
       <Choice
@@ -45,7 +45,7 @@ export function CumulusControls({ state, cumulus }: CumulusProps) {
       <Choice
         label="Light shown"
         testId="cumulus-component"
-        value={cumulus.component || Component.ALL}
+        value={cumulus.component || DEFAULTS.cumulusComponent}
         options={COMPONENTS}
         onChange={(component) => state.editSettings({ component })}
       />

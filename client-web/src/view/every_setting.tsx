@@ -82,7 +82,12 @@ function Setting({ state, parameter }: { state: PageState; parameter: Parameter 
         </>
       )}
       {parameter.kind === "flag" && (
-        <Switch label={label} checked={value === true} testId={testId} onChange={set} />
+        <Switch
+          label={label}
+          checked={(value as boolean | undefined) ?? parameter.defaultOn}
+          testId={testId}
+          onChange={set}
+        />
       )}
       {parameter.kind === "choice" && (
         <Choice

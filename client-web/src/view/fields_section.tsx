@@ -3,6 +3,7 @@ import { create, isMessage } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
 import { nameOfHydrometeor, namesOfPhases } from "../core/names";
 import {
+  DEFAULTS,
   effectiveField,
   LIMITS,
   withAsymmetry,
@@ -75,7 +76,7 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
         <Switch
           label={name}
           testId={`field-${id}-visible`}
-          checked={shown.visible ?? true}
+          checked={shown.visible ?? DEFAULTS.visible}
           onChange={(visible) => edit({ visible })}
         />
         {state.falseColorsShown.value && (

@@ -1,6 +1,6 @@
 // The number of metaballs and how they scatter light (Man).
 import { transportOf } from "../core/rendering";
-import { LIMITS } from "../core/scene";
+import { DEFAULTS, LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";
 import { type Metaballs, Transport } from "../gen/thunderhead/v1/scene_pb";
 import type { TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
@@ -25,7 +25,7 @@ export function MetaballControls({ state, metaballs, technique }: MetaballProps)
       />
       <Switch
         label="Scatter isotropically"
-        checked={metaballs.isotropic ?? false}
+        checked={metaballs.isotropic ?? DEFAULTS.metaballIsotropic}
         testId="metaball-isotropic"
         onChange={(isotropic) => state.editSettings({ isotropic })}
       />

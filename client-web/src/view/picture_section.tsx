@@ -1,5 +1,5 @@
 // How bright the picture is, and what sky and ground are like.
-import { LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
+import { DEFAULTS, LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
 import type { PageState } from "../core/state";
 import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";
 import { Choice, Section, Slider, Switch } from "./controls";
@@ -62,14 +62,14 @@ export function PictureSection({ page }: { page: Page }) {
     <Section title="Sky, ground and picture" testId="picture-section">
       <Switch
         label="White balance"
-        checked={display?.whiteBalance ?? true}
+        checked={display?.whiteBalance ?? DEFAULTS.whiteBalance}
         testId="white-balance"
         onChange={(whiteBalance) => state.edit((scene) => withDisplay(scene, { whiteBalance }))}
       />
       <Choice
         label="Tone map"
         testId="tone-map"
-        value={display?.toneMap || ToneMap.FILMIC}
+        value={display?.toneMap || DEFAULTS.toneMap}
         options={TONE_MAPS}
         onChange={(toneMap) => state.edit((scene) => withDisplay(scene, { toneMap }))}
       />
@@ -101,7 +101,7 @@ export function PictureSection({ page }: { page: Page }) {
       )}
       <Switch
         label="Rings every 10 km"
-        checked={ground?.rings ?? false}
+        checked={ground?.rings ?? DEFAULTS.rings}
         testId="rings"
         onChange={(rings) => state.edit((scene) => withGround(scene, { rings }))}
       />

@@ -3,6 +3,7 @@ import { isMessage } from "@bufbuild/protobuf";
 import { nameOfPreset, nameOfTechnique, nameOfTracedLight, nameOfTransport } from "../core/names";
 import {
   hasSetting,
+  isSettingOn,
   QUALITY_PRESETS,
   type Settings,
   type SharedSettings,
@@ -14,7 +15,7 @@ import {
   withTechnique,
   withTransport,
 } from "../core/rendering";
-import { withPreset } from "../core/scene";
+import { DEFAULTS, withPreset } from "../core/scene";
 import type { PageState } from "../core/state";
 import {
   CumulusSchema,
@@ -98,7 +99,7 @@ function MediumControls({ state, settings, technique }: MediumProps) {
       <Switch
         label={label}
         testId={testId}
-        checked={shared[name] ?? false}
+        checked={isSettingOn(settings, name)}
         onChange={(checked) => state.editSettings({ [name]: checked })}
       />
     );
@@ -119,7 +120,7 @@ function MediumControls({ state, settings, technique }: MediumProps) {
         <Choice
           label="Traced light"
           testId="traced-light"
-          value={shared.tracedLight || TracedLight.AT_REST}
+          value={shared.tracedLight || DEFAULTS.tracedLight}
           options={TRACED_LIGHTS}
           onChange={(tracedLight) => state.editSettings({ tracedLight })}
         />

@@ -15,8 +15,10 @@ struct HalfAngle {
   static constexpr std::string_view kName = "half_angle";
   static constexpr std::array kTransports = {Transport::kConsistent, Transport::kLowAlbedo,
                                              Transport::kPaper, Transport::kPaperLowAlbedo};
-  static constexpr Capabilities kCapabilities{
-      .detail = true, .field_optics = true, .slices = true, .transports = kTransports};
+  static constexpr Capabilities kCapabilities{.detail = DetailUse::kMedium,
+                                              .field_optics = true,
+                                              .slices = true,
+                                              .transports = kTransports};
 
   // kDiffusion is drawn as kConsistent
   MediumSettings medium{.transport = kTransports.front()};

@@ -22,10 +22,11 @@ struct LightVolume {
   static constexpr std::array kTransports = {Transport::kDiffusion, Transport::kConsistent,
                                              Transport::kLowAlbedo, Transport::kPaper,
                                              Transport::kPaperLowAlbedo};
-  static constexpr Capabilities kCapabilities{.detail = true,
+  static constexpr Capabilities kCapabilities{.detail = DetailUse::kMedium,
                                               .field_optics = true,
                                               .traced_light = true,
                                               .slices = true,
+                                              .sparse = true,
                                               .transports = kTransports};
 
   MediumSettings medium{.transport = kTransports.front(), .look = {.detail = true}};

@@ -15,8 +15,10 @@ struct Metaballs {
   static constexpr std::string_view kName = "metaball";
   static constexpr std::array kTransports = {Transport::kConsistent, Transport::kLowAlbedo,
                                              Transport::kPaper};
-  static constexpr Capabilities kCapabilities{
-      .lights = true, .field_optics = true, .transports = kTransports};
+  static constexpr Capabilities kCapabilities{.lights = true,
+                                              .detail = DetailUse::kRoughness,
+                                              .field_optics = true,
+                                              .transports = kTransports};
 
   MediumSettings medium{.transport = kTransports.front()};
   int count = 1200;  // at most; the paper's first scene

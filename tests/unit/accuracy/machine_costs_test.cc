@@ -15,7 +15,7 @@ OfferTables Tables() {
   PricedSettings table;
   table.size_px = {200, 100};
   Setting setting{test_support::kLightVolume.settings()};
-  SetCount(&setting.technique, 64);
+  scene::SetCount(&setting.technique, 64);
   table.rows.push_back({setting, kTableMs, 0.3});
   OfferTables tables;
   tables.fill(absl::FailedPreconditionError("none"));

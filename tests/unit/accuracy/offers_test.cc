@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 
 Setting Slices(int slices, const PlainTechnique& plain = test_support::kLightVolume) {
   Setting setting{plain.settings()};
-  SetCount(&setting.technique, slices);
+  scene::SetCount(&setting.technique, slices);
   return setting;
 }
 
@@ -112,7 +112,7 @@ class OffersTest : public ::testing::Test {
 
   int SlicesFor(const scene::Accuracy& limit) {
     scene_.accuracy = limit;
-    return CountOf(desk_.Decide(scene_)->rendering.technique);
+    return scene::CountOf(desk_.Decide(scene_)->rendering.technique);
   }
 
   Desk desk_{Tables()};
@@ -129,7 +129,7 @@ TEST_F(OffersTest, DecidesWhatTheSceneLeavesToThem) {
   EXPECT_EQ(test_support::PlainTechniqueOf(decided.rendering.technique),
             test_support::kLightVolume);
   EXPECT_EQ(ModeOf(decided.rendering.technique).name, "per_field_phase_translucent");
-  EXPECT_EQ(CountOf(decided.rendering.technique), 64);
+  EXPECT_EQ(scene::CountOf(decided.rendering.technique), 64);
   EXPECT_TRUE(scene::FieldLookOf(decided.rendering.technique).false_colors);
   EXPECT_EQ(decided.output.jpeg_quality, 40);
 }
@@ -160,7 +160,7 @@ TEST_F(OffersTest, LargerPicturesCostMore) {
 TEST_F(OffersTest, TimesAreCorrectedByWhatFramesCost) {
   scene_.accuracy = MaxMilliseconds{20.0};
   const scene::Scene decided = *desk_.Decide(scene_);
-  EXPECT_EQ(CountOf(decided.rendering.technique), 128);
+  EXPECT_EQ(scene::CountOf(decided.rendering.technique), 128);
   desk_.Observe(decided, 45.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 32);
   // A cheaper machine than the table's, once that is known of the setting itself.
@@ -223,7 +223,7 @@ class TracedOffersTest : public ::testing::Test {
     Setting setting = Slices(64);
     test_support::SetTransport(&setting.technique, scene::Transport::kDiffusion);
     table.rows.push_back({setting, 9.0, 0.12});
-    SetCount(&setting.technique, 128);
+    scene::SetCount(&setting.technique, 128);
     table.rows.push_back({setting, 10.0, 0.11});
     for (const auto& [paths, error] : {std::pair{0.1, 0.08}, std::pair{1.0, 0.05}}) {
       setting.million_paths = paths;
@@ -251,7 +251,7 @@ TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.06})), scene::TracedLight::kAwaited);
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})),
             scene::TracedLight::kAwaited);  // the nearest
-  EXPECT_EQ(CountOf(TechniqueFor(MaxError{0.01})), 128);
+  EXPECT_EQ(scene::CountOf(TechniqueFor(MaxError{0.01})), 128);
   // With a limit of time no light is traced.
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxMilliseconds{50.0})), scene::TracedLight::kOff);
 }

@@ -10,7 +10,7 @@ namespace {
 
 Setting SlicesOf(int slices, const PlainTechnique& plain = test_support::kLightVolume) {
   Setting setting{plain.settings()};
-  SetCount(&setting.technique, slices);
+  scene::SetCount(&setting.technique, slices);
   return setting;
 }
 

@@ -1,6 +1,6 @@
 // How the picture is made and how far to trust it: quality, what it misses, colours, exposure, detail, what is written over it.
 import type { AnnotationChoice } from "../../core/annotations";
-import { hasSetting, sharedSettingsOf } from "../../core/rendering";
+import { hasSetting, isSettingOn } from "../../core/rendering";
 import type { PageState } from "../../core/state";
 import { AccuracySection } from "../accuracy_section";
 import { Section, Segments, Switch } from "../controls";
@@ -33,7 +33,6 @@ function Colours({ state }: { state: PageState }) {
   const settings = state.settings.value;
   const technique = state.technique.value;
   if (settings === undefined || technique === undefined) return null;
-  const shared = sharedSettingsOf(settings);
   const hasColours = technique.showsFieldOptics && hasSetting(settings, "falseColors");
   const hasDetail = technique.showsDetail && hasSetting(settings, "detail");
   return (
@@ -42,7 +41,7 @@ function Colours({ state }: { state: PageState }) {
         <Segments
           label="Colours"
           testId="colours"
-          value={shared.falseColors ? "false" : "photograph"}
+          value={isSettingOn(settings, "falseColors") ? "false" : "photograph"}
           options={COLOURS}
           otherwise=""
           onChange={(chosen) => state.editSettings({ falseColors: chosen === "false" })}
@@ -52,7 +51,7 @@ function Colours({ state }: { state: PageState }) {
         <Switch
           label="Detail finer than the model's grid"
           testId="look-detail"
-          checked={shared.detail ?? false}
+          checked={isSettingOn(settings, "detail")}
           onChange={(detail) => state.editSettings({ detail })}
         />
       )}
