@@ -125,7 +125,7 @@ class Walk {
   std::string group_;
 };
 
-// The message that holds the parameter; null if it, or one on the way to it, is absent.
+// The message that holds the parameter; null if it, or one on the path to it, is absent.
 const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   const Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
@@ -142,7 +142,7 @@ const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   return at;
 }
 
-// Null if the element of a list on the way is not there any more.
+// Null if an element of a list on the path is not there any more.
 Message* MutableHolder(v1::Scene& scene, const Steps& steps) {
   Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {

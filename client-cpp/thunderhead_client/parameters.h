@@ -1,6 +1,6 @@
 // Every parameter of a scene, read from the messages' descriptors: a field that is added to
-// scene.proto is in this list without a line of code. Values are read and changed by their way
-// through the messages.
+// scene.proto is in this list without a line of code. Values are read and changed by their
+// path of fields.
 #pragma once
 
 #include <optional>

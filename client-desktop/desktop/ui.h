@@ -1,5 +1,5 @@
-// What the panels show and act upon: copies of what the session and the catalogue know, taken once
-// a frame, and what is chosen in this window.
+// The state that the panels show and act upon: copies of the session's state and the catalogue's,
+// taken once a frame, and the choices made in this window.
 #pragma once
 
 #include <functional>

@@ -30,7 +30,7 @@ import {
   zoneOfLongitude,
 } from "../src/core/moment";
 import { parametersOf, parameterValue, withParameter } from "../src/core/parameters";
-import { wayBetween } from "../src/core/probe";
+import { displacementBetween } from "../src/core/probe";
 import type { Projection } from "../src/core/projection";
 import { withTechnique } from "../src/core/rendering";
 import { withField, withRendering } from "../src/core/scene";
@@ -258,14 +258,14 @@ test("places of the map are those of the model's projection", () => {
   check(polar, [10, 70], [15, 72], [164_084, 2_095_925.08 - 1_875_485.56]);
 });
 
-test("a way has distance, height and direction", () => {
+test("a displacement has distance, height and direction", () => {
   const place = (xM: number, yM: number, zM: number) =>
     create(RayPlaceSchema, { position: { xM, yM, zM } });
-  const way = wayBetween(place(0, 0, 1000), place(3000, 4000, 3000));
-  expect(way?.distanceM).toBeCloseTo(5000, 6);
-  expect(way?.heightM).toBe(2000);
-  expect(way?.azimuthDeg).toBeCloseTo(36.87, 2);
-  expect(wayBetween(undefined, place(0, 0, 0))).toBeUndefined();
+  const displacement = displacementBetween(place(0, 0, 1000), place(3000, 4000, 3000));
+  expect(displacement?.distanceM).toBeCloseTo(5000, 6);
+  expect(displacement?.heightM).toBe(2000);
+  expect(displacement?.azimuthDeg).toBeCloseTo(36.87, 2);
+  expect(displacementBetween(undefined, place(0, 0, 0))).toBeUndefined();
 });
 
 test("letters and arrows are one line that is parted again", () => {

@@ -141,7 +141,7 @@ std::size_t ErrorEstimate::BestClamp(const Group& all) const {
 
 std::optional<MeasuredError> ErrorEstimate::Result() const {
   const Group all = All();
-  // What is left is the true mean radiance.
+  // The difference is the true mean radiance, which must be positive.
   if (pixels_ < kMinPixels || !(mean_drawn_ * all.pixels > all.drawn - all.clamped.back().truth)) {
     return std::nullopt;
   }

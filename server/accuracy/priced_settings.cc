@@ -43,7 +43,7 @@ bool IsFixed(absl::string_view name) {
                      [&](const Fixed& fixed) { return fixed.column == name; });
 }
 
-// Whether a scene can ask for the row's setting. `names` are the columns'.
+// True if a scene can ask for the row's setting. `names` are the columns'.
 bool IsOnOffer(const Cells& names, const Cells& cells) {
   if (names.size() != cells.size()) return true;
   for (std::size_t i = 0; i < names.size(); ++i) {

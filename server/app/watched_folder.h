@@ -71,7 +71,8 @@ class WatchedFolder {
   absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names,
                     Time now);
   void See(const std::string& path, pipeline::SeenFile& seen, std::int64_t changed_ns, Time now);
-  // What is not `there` any more; what has another name now counts by that alone.
+  // Marks files that are not `there` any more as gone. Forgets those of them that are not done yet,
+  // and those that are there under another name.
   void ForgetGone(const std::set<std::string>& there);
   void Open(const std::string& path, File& file, RunProgress& progress) const;
   int Count(State state) const;

@@ -66,9 +66,11 @@ class MemoryReservation {
 
 class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
  public:
-  // Whether somebody waits for what the memory is for, and so whether a refusal counts; and whether
-  // the caller may wait until others have answered to the pressure.
-  enum class Urgency { kAwaited, kPatient, kAhead };
+  enum class Urgency {
+    kAwaited,  // somebody waits for the result: a refusal counts, and is returned at once
+    kPatient,  // the same, but the caller can wait until others have given memory back
+    kAhead,    // nobody waits for it yet: a refusal does not count
+  };
 
   struct Options {
     std::string name = "memory";  // for messages: "memory", "GPU memory"

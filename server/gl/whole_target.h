@@ -8,7 +8,7 @@
 
 namespace thunderhead::gl {
 
-// Whether the thread's device draws whole targets faster by compute shaders; measured once a
+// True if the thread's device draws whole targets faster by compute shaders; measured once a
 // process. Software GL always rasterizes. THUNDERHEAD_WHOLE_TARGETS=raster or compute in the
 // environment decides instead.
 bool ComputesWholeTargets();

@@ -140,7 +140,7 @@ std::string_view NameOf(Microphysics microphysics) {
 }
 
 bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor) {
-  // Whether there is one depends on neither content nor temperature.
+  // The existence of a distribution depends on neither content nor temperature.
   return Radius_m(microphysics, hydrometeor, 1e-3, 260.0).has_value();
 }
 

@@ -16,7 +16,7 @@ struct Span {
 Span SpanWithin(const glm::dvec3& low_m, const glm::dvec3& high_m, const glm::dvec3& origin_m,
                 const glm::dvec3& direction, double end_m);
 
-// Half of the shortest way through a cell from side to side.
+// Half of the shortest path through a cell from side to side.
 double HalfCell_m(const volume::RegularGrid& grid, const glm::dvec3& direction);
 
 }  // namespace thunderhead::scene

@@ -39,8 +39,8 @@ struct EncodedFrame {
   std::optional<AccuracyReport> accuracy;
   // When the scene became what it shows; none if that has changed since.
   std::optional<std::chrono::steady_clock::time_point> changed_at;
-  // What its pixels and bytes count in, while a frame made of the picture is kept or waits to be
-  // sent.
+  // The reservation of its pixels' and bytes' memory, held while a frame made of the picture is
+  // kept or waits to be sent.
   std::shared_ptr<const base::MemoryReservation> memory;
   // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
   std::string serialized;

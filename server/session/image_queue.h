@@ -50,8 +50,8 @@ struct ImageJob {
   bool gives_way = false;
   bool linear = false;         // the picture is also to be had as light
   double error_seconds = 0.0;  // of tracing, for its error to be measured
-  // What reading, drawing and encoding it may take, without waiting for others; more ends it with
-  // `too_long`.
+  // Maximum time for reading, drawing and encoding it, not counting the time spent waiting for
+  // others; beyond it the job ends with `too_long`.
   double max_work_ms = 1e15;
   absl::Status too_long = absl::OkStatus();
   // Who asked for it; all get the same time to draw. Empty: nobody's share counts.

@@ -64,7 +64,7 @@ class SessionLane {
   // Returns when the next piece is drawn.
   void GiveTurn() { lane_.GiveTurn(); }
 
-  // What the lane's source drew last, whose stages it can reuse; none after a failure.
+  // The frame that the lane's source drew last, whose stages it can reuse; none after a failure.
   const std::optional<LastDrawn>& Last() const { return last_drawn_; }
   // The lane's source is another from now on.
   void Forget() { last_drawn_.reset(); }

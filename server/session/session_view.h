@@ -113,7 +113,7 @@ class SessionView {
   // The newest revision that was shown, or has failed.
   std::uint64_t shown_revision() const { return planner_.revision(); }
   bool LightIsTraced() const { return light_.ended(); }
-  // What is known of the error of the picture at full quality.
+  // Estimates of the error of the picture at full quality.
   accuracy::Evidence evidence() const {
     return {.discretisation_error = setting_.discretisation_error(), .measured = error_.error()};
   }

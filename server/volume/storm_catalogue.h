@@ -46,10 +46,11 @@ struct StormSearch {
   // Called with every folder before it is listed; may be empty.
   std::function<void(const std::string&)> on_folder;
   std::string examples;  // of files, for messages
-  // Asked before each path is searched: false where its storage hangs, which then has the storms
-  // that it had in the search before. Empty: all answer.
+  // Called before each path is searched. Where it returns false the path's storage hangs, and the
+  // storms found there by the search before are used again. Empty: all storage answers.
   std::function<bool(const std::string&)> answers = nullptr;
-  // What was found by path, for that; kept by who searches again and again.
+  // The storms found by the search before, for that purpose; owned by callers who search again and
+  // again, and updated by each search.
   FoundByPath* found = nullptr;
 };
 

@@ -32,7 +32,7 @@ const ASK_AGAIN_AFTER_MS = 5100;
 const ANSWER_WITHIN_MS = 20_000;
 const AWAY_AFTER_MS = 60_000;
 const TOLD_WITHIN_MS = 300;
-// What a busy machine may add.
+// Delay that a busy machine may add.
 const LATE_MS = 10_000;
 
 let server;

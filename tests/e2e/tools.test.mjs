@@ -84,7 +84,7 @@ const degreesOnHorizon = () =>
     .locator("[data-testid=annotations] text")
     .evaluateAll((texts) => texts.map(({ textContent }) => textContent).filter((each) => /^(\d{3}°|[NESW]{1,2})$/.test(each)));
 
-// What the program says of the file, by another way than the page.
+// The program's own description of the file, to compare the page with.
 const inspected = JSON.parse(execFileSync(BINARY, ["inspect", "--json", SAMPLE], { encoding: "utf8" }));
 const maximumOf = (name) =>
   1000 * inspected.fields.find(({ hydrometeor }) => hydrometeor === `HYDROMETEOR_${name}`).maximum;
@@ -127,8 +127,8 @@ test("a second click measures from the first", async () => {
   await page.getByTestId("probe-found").waitFor();
   const first = await text("probe-found");
   await page.mouse.click(middle.x + 80, middle.y);
-  await page.getByTestId("probe-way").waitFor();
-  assert.match(await text("probe-way"), /From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
+  await page.getByTestId("probe-displacement").waitFor();
+  assert.match(await text("probe-displacement"), /From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
   assert.notEqual(await text("probe-found"), first);
   await focusPicture();
   await key("Escape");

@@ -107,7 +107,7 @@ test("a browser that saves data sees video while the camera turns, and a still o
   assert.deepEqual(complaints, []);
 });
 
-// What the readout says of the picture shown.
+// The readout's text about the encoding of the picture shown.
 async function sentAs(page) {
   await page.getByTestId("readout-summary").click();
   const text = await page.getByTestId("encoding").innerText();

@@ -96,7 +96,7 @@ TEST_F(PeerLivenessTest, ClosingEndsUnlessSomethingIsStillBeingDelivered) {
   EXPECT_EQ(At(50), Verdict::kFine);
   seen_.delivered_bytes = 1;
   EXPECT_EQ(At(200), Verdict::kFine);
-  // What a client still sends does not prolong it.
+  // Bytes that the client still sends do not prolong it.
   seen_.received_bytes = 1000;
   EXPECT_EQ(At(399), Verdict::kFine);
   EXPECT_EQ(At(400), Verdict::kDrop);

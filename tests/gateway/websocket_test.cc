@@ -196,7 +196,7 @@ TEST_F(WebSocketTest, ATokenBesideTheSubprotocolIsAuthorization) {
   EXPECT_EQ(metadata["authorization"],
             "Bearer anna?"
             "?>");
-  // What the client says about its address is not passed on.
+  // The client's own claim about its address is not passed on.
   EXPECT_THAT(metadata["x-forwarded-for"], ::testing::StartsWith("127.0.0.1:"));
 }
 

@@ -40,7 +40,7 @@ class AnnotationTest(ProductTest):
         self.assertGreater(differs[240:, :160].sum(), 200)
         self.assertEqual(differs[45:235].sum(), 0)
         self.assertEqual(differs[:, 300:].sum(), 0)
-        # What it shows stays inside.
+        # The scene in the PNG's text is the same.
         with Image.open(annotated) as a, Image.open(plain) as b:
             self.assertEqual(a.text, b.text)
         titled = self.folder / "titled.png"

@@ -32,7 +32,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Stub = v1::ThunderheadService::Stub;
 
-// What a role may call, beside operators, who may call all. An rpc that is missing here fails.
+// The roles that may call each rpc, beside operators, who may call all. An rpc that is missing here
+// fails the test.
 const std::map<std::string, std::set<std::string>> kMayCall = {
     {"GetServerInfo", {"viewer", "presenter", "pipeline"}},
     {"ListStorms", {"viewer", "presenter", "pipeline"}},
@@ -345,7 +346,7 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
       context.AddMetadata("x-forwarded-for", forwarded_for);
       return stub->ListStorms(&context, request, &response).error_code();
     };
-    // What the client itself wrote stands before what the proxy adds.
+    // The client's own entry stands before the one that the proxy adds.
     bool refused = false;
     for (int i = 0; i < 100 && !refused; ++i) {
       refused = ask(absl::StrCat("203.0.113.", i, ", 192.0.2.7")) != grpc::StatusCode::OK;

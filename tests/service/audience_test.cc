@@ -1,5 +1,5 @@
-// What the people of a session are told, and when: at a pace, the newest only, once for all of
-// them; and what runs out without anybody doing anything.
+// The updates that the people of a session get: at a limited rate, the newest only, made once for
+// all of them; and the states that time out without anybody doing anything.
 #include "session/audience.h"
 
 #include <atomic>

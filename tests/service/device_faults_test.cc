@@ -1,4 +1,4 @@
-// What the device's memory and its loss do to pictures, on a real context.
+// Pictures when the device runs out of memory or is lost, on a real context.
 #include "gl/device_memory.h"
 
 #include <deque>

@@ -52,7 +52,7 @@ class FrameEncoderTest : public ::testing::Test {
     return viewers;
   }
 
-  // What the viewers take now, each in its own way; the same object counts once.
+  // The frames that the viewers take now; an object that several viewers share counts once.
   std::set<const EncodedFrame*> TakeAll(const std::vector<std::uint64_t>& viewers) {
     std::set<const EncodedFrame*> frames;
     for (const std::uint64_t viewer : viewers) {

@@ -71,8 +71,8 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
   }
   ServedProgram program(PROGRAM, first, "none", more);
   ASSERT_NE(program.stub(), nullptr);
-  // What software GL, the shaders' programs and gRPC take is there once a picture has been drawn,
-  // and does not count.
+  // The memory of software GL, the shaders' programs and gRPC is taken once a picture has been
+  // drawn, and does not count.
   double shown_mib = 0.0;
   std::vector<std::unique_ptr<Interacting>> viewers;
   for (int i = 0; i < kStorms; ++i) {

@@ -53,7 +53,7 @@ class VideoHubTest : public ::testing::Test {
     return hub_.Publish(frame, jpeg, std::move(video), still_follows, now_);
   }
 
-  // What the viewer takes now: the encoding, or "nothing".
+  // The picture that the viewer takes now, in whichever encoding, or "nothing".
   std::string Take(std::uint64_t viewer) {
     const auto event = hub_.Take(viewer, now_);
     if (!event.has_value()) return "nothing";

@@ -103,7 +103,8 @@ class WatchCommand : public ::testing::Test {
   const std::string err_ = folder_.File("stderr");
 };
 
-// What the issue asks for: slowly, in pieces, one cut short, one twice, and killed on the way.
+// Files are written slowly, in pieces, one cut short, one twice, while the program is killed again
+// and again.
 TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
   constexpr int kFiles = 5;
   const char* wanted = std::getenv("THUNDERHEAD_KILLS");

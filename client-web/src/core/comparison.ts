@@ -78,6 +78,6 @@ export function awayInWords({ awayS }: TimeOfB): string | undefined {
   if (awayS === 0) return undefined;
   if (awayS === undefined)
     return "The dates of A and B cannot be compared: B shows the time of the same number.";
-  const way = formatElapsed(Math.abs(awayS)).slice(1);
-  return `B has no such valid time: it shows the nearest, ${way} ${awayS < 0 ? "earlier" : "later"}.`;
+  const duration = formatElapsed(Math.abs(awayS)).slice(1);
+  return `B has no such valid time: it shows the nearest, ${duration} ${awayS < 0 ? "earlier" : "later"}.`;
 }

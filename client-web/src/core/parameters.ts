@@ -1,5 +1,5 @@
 // Every parameter of a scene, read from the messages' descriptors: a field that is added to scene.proto is in this list without
-// a line of code. Values are read and changed by their way through the messages.
+// a line of code. Values are read and changed by their path of fields.
 import { create, type DescField, type DescMessage, type Message } from "@bufbuild/protobuf";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { type Limits, limitsOf } from "./limits";

@@ -57,7 +57,7 @@ export function sunriseAndSunset(
   };
 }
 
-// What the sun does on the local day: "Sunrise 06:12 · sunset 20:29".
+// Sunrise and sunset of the local day: "Sunrise 06:12 · sunset 20:29".
 export function dayInWords(here: ClockHere, zone: string): string {
   const { sunrise, sunset } = sunriseAndSunset(here, zone);
   if (sunrise !== undefined && sunset !== undefined)

@@ -19,7 +19,7 @@ export class Probing {
   constructor(calls: ServerCalls, state: PageState) {
     this.#calls = calls;
     this.#state = state;
-    // What was found is of the storm and time that were shown.
+    // Answers belong to the storm and time that were shown, and are dropped with them.
     this.#stop = effect(() => {
       void [state.stormId.value, state.timeIndex.value];
       untracked(() => this.forget());

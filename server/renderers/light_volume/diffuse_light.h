@@ -64,9 +64,10 @@ class DiffuseLight {
 
   // Sunlight in a cell, by number, of the sun that is being solved for.
   struct SunAt {
-    float depth = 0.0F;      // optical, of sunlight that arrives
-    float passed = 1.0F;     // its transmittance
-    float decay_up[3] = {};  // mean transmittance on the way to the next cell up each axis
+    float depth = 0.0F;          // optical, of sunlight that arrives
+    float transmittance = 1.0F;  // exp(-depth)
+    // Mean transmittance on the path to the next cell up each axis.
+    float mean_transmittance_up[3] = {};
   };
 
   void Number();
@@ -74,7 +75,7 @@ class DiffuseLight {
   // Calls `use` with the cells that are not empty beside `cell`, corner by corner too.
   template <typename Use>
   void ForNeighbours(std::size_t cell, const Use& use) const;
-  void FindDecays(const std::vector<float>& arrived_root);
+  void FindTransmittances(const std::vector<float>& arrived_root);
   float SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const;
   void FindExits();
   void ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all);

@@ -36,7 +36,7 @@ class DiffusionPass {
   void Bind() const;
 
   std::size_t Bytes() const {
-    return sampled_cells_.Bytes() + sampled_light_.Bytes() + ways_out_.Bytes() +
+    return sampled_cells_.Bytes() + sampled_light_.Bytes() + exits_.Bytes() +
            net_inward_.Bytes();
   }
 
@@ -66,7 +66,7 @@ class DiffusionPass {
   gl::Texture3D sampled_light_;
   // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
   // x of its net flux.
-  gl::Texture3D ways_out_;
+  gl::Texture3D exits_;
   // Of sunlight; the fluence from other walls; the y of the sky's; LitGround::ShareAt.
   gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;

@@ -38,8 +38,8 @@ const int kTrapScales = 6;
 const float kCoronaVariance = 0.16;     // of the scattering angle at the deepest corona: sigma_max 0.4 rad
 const float kNarrowest = 400.0;         // power of the cosine of droplets' own forward lobe
 const int kReliefScales = 3;
-// Wavelengths of the roughness over the noise's, and its heights over them. Light that is scattered inside the cloud evens out
-// what is smaller than the way it goes, so the finest is the lowest.
+// Wavelengths of the roughness over the noise's, and its heights over them. Light scattered inside the cloud smooths
+// out whatever is smaller than the distance it travels, so the finest scale is the lowest.
 const vec3 kReliefWave = vec3(4.0, 1.0, 0.25);
 const vec3 kReliefHeight = vec3(0.35, 0.2, 0.06);
 
@@ -171,8 +171,8 @@ vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #endif
 }
 
-// Radiance of the corona with the sun behind it (section 4.2, appendix A): the variance of the angle grows
-// with the droplets passed, and the lobe is a power of the cosine, scaled so that it sends as much as it takes.
+// Radiance of the corona with the sun behind it (section 4.2, appendix A): the variance of the
+// scattering angle grows with the droplets on the path, and the lobe is a power of the cosine, scaled to conserve energy.
 vec3 corona(Meeting meeting, float rho) {
   float mu = dot(meeting.ray, towards_sun);
   if (mu <= 0.0) return vec3(0.0);

@@ -106,15 +106,15 @@ void main() {
     layer -= layer < layers ? 0.0 : layers;
     vec2 light_place = light_start + distance_m * light_step;
     vec2 arrived = texture(light, vec3(light_place, layer)).rg;
-    float passed = exp(-depth);
+    float slice_transmittance = exp(-depth);
     float seen = mean_transmittance(depth);
 
     float shows = front_to_back ? transmittance * counts : counts;
     if (!front_to_back) {
-      fade(scattered, passed);
-      shown_m *= passed;
+      fade(scattered, slice_transmittance);
+      shown_m *= slice_transmittance;
     }
-    shown_m += shows * (1.0 - passed) * (towards * distance_m);
+    shown_m += shows * (1.0 - slice_transmittance) * (towards * distance_m);
 #if CONSISTENT
     // The buffer holds the light that enters the slice; inside, light fades as the view does.
     float light_depth = weigh(medium, light_depths);
@@ -134,7 +134,7 @@ void main() {
 #else
     add_direct(scattered, medium, shows * arrived.r * seen);
 #endif
-    transmittance *= passed;
+    transmittance *= slice_transmittance;
     slice += 1.0;
     if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
   }

@@ -1,6 +1,7 @@
 // Carries sunlight once through the medium into a volume whose depth runs along the sun's rays: one invocation a ray.
 // r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
-// optical depth passed, whose end is the ray's thickness. `shadow` is that of the whole medium (common/storm_shadow.glsl).
+// optical depth from the sun, which at the ray's end is its thickness. `shadow` is that of the whole medium
+// (common/storm_shadow.glsl).
 // Layers that arrive.comp does not use are left as they are.
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
@@ -63,7 +64,7 @@ void main() {
 
   float depth = 0.0;
   float medium_depth = 0.0;
-  float lit = 1.0;  // share of sunlight that has passed the medium
+  float lit = 1.0;  // transmittance of the medium so far
   vec2 moments = vec2(0.0);
   float per_reach = 1.0 / light_reach_m;
   float transport = 0.0;

@@ -124,9 +124,10 @@ void main() {
     }
 #endif
     radiance += transmittance * taken * light;
-    float passed = exp(-depth);
-    shown_m += transmittance * (1.0 - passed) * max(along_m + 0.5 * (max(from, -half_chord) + to) * middle_radius.w, 0.0);
-    transmittance *= passed;
+    float ball_transmittance = exp(-depth);
+    shown_m += transmittance * (1.0 - ball_transmittance) *
+               max(along_m + 0.5 * (max(from, -half_chord) + to) * middle_radius.w, 0.0);
+    transmittance *= ball_transmittance;
   }
   radiance_and_transmittance = vec4(radiance, transmittance);
   opacity_distance_m = shown_m;

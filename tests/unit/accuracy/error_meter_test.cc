@@ -72,7 +72,7 @@ Wrong WrongBy(const picture::LinearPicture& truth) {
     for (int color = 0; color < 3; ++color) {
       const double right = truth.radiance[i][color];
       const double noise = truth.standard_error[i][color];
-      // What is taken for right is off by its noise, and the picture with it.
+      // The truth itself is off by its noise, and so is the picture made from it.
       squares += std::pow((factor - 1.0) * right, 2) + (2.0 * factor - 1.0) * noise * noise;
       difference += (factor - 1.0) * right;
       sum += right;

@@ -1,4 +1,4 @@
-// What of the ground's light comes up to a place, against closed forms.
+// The light from the ground that arrives at a place, against closed forms.
 #include "renderers/lit_ground.h"
 
 #include <cmath>

@@ -60,7 +60,7 @@ export class Keeper {
       },
       options,
     );
-    // What is being made would be lost: the browser asks.
+    // Leaving the page would lose a file that is being made, so the browser asks first.
     window.addEventListener(
       "beforeunload",
       (event) => {

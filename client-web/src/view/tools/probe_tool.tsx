@@ -1,7 +1,7 @@
 // The probe: a click on the picture asks the server for the place, and the values of every field along the ray.
 
 import { nameOfHydrometeor } from "../../core/names";
-import { placeInWords, readable, wayBetween } from "../../core/probe";
+import { placeInWords, readable, displacementBetween } from "../../core/probe";
 import type { PageState } from "../../core/state";
 import { compassPoint } from "../../core/sun";
 import { formatLength, formatNumber } from "../../core/units";
@@ -55,18 +55,18 @@ export function ProbeTool({ page }: { page: Page }) {
 
 function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) {
   const [first, second] = state.probes.value;
-  const way = wayBetween(first?.found.seenPlace, second?.found.seenPlace);
+  const displacement = displacementBetween(first?.found.seenPlace, second?.found.seenPlace);
   return (
     <section aria-label="Found" data-testid="probe-found">
       <p class="found">
         <strong>{seenInWords(found)}</strong>
         {found.seenPlace !== undefined && <Where place={found.seenPlace} />}
       </p>
-      {way !== undefined && (
-        <p data-testid="probe-way">
-          From the first click: {formatLength(way.distanceM, "distance")} to{" "}
-          {compassPoint(way.azimuthDeg)} ({Math.round(way.azimuthDeg)}°),{" "}
-          {formatLength(Math.abs(way.heightM), "height")} {way.heightM < 0 ? "lower" : "higher"}
+      {displacement !== undefined && (
+        <p data-testid="probe-displacement">
+          From the first click: {formatLength(displacement.distanceM, "distance")} to{" "}
+          {compassPoint(displacement.azimuthDeg)} ({Math.round(displacement.azimuthDeg)}°),{" "}
+          {formatLength(Math.abs(displacement.heightM), "height")} {displacement.heightM < 0 ? "lower" : "higher"}
         </p>
       )}
       <table class="probe-fields" data-testid="probe-fields">
