@@ -89,8 +89,8 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session)
 std::optional<SessionDrawer::Wish> SessionDrawer::LookInLane(const Turn& turn,
                                                              const NewestScene& newest) {
   if (!in_lane_.has_value() || !lane_.IsFor(turn.session->id())) return std::nullopt;
-  // Only refinement is cancelled by a change: an interactive frame is soon ready, and if each change
-  // ended it, none would be shown.
+  // Only refinement is cancelled by a change: an interactive frame is soon ready, and if each
+  // change ended it, none would be shown.
   if (in_lane_->turn_class == TurnClass::kRefining &&
       in_lane_->newest_revision != newest.revision) {
     lane_.Cancel();

@@ -18,7 +18,10 @@ export interface Displacement {
   readonly azimuthDeg: number;
 }
 
-export function displacementBetween(from: RayPlace | undefined, to: RayPlace | undefined): Displacement | undefined {
+export function displacementBetween(
+  from: RayPlace | undefined,
+  to: RayPlace | undefined,
+): Displacement | undefined {
   if (from?.position === undefined || to?.position === undefined) return undefined;
   const [x, y, z] = (["xM", "yM", "zM"] as const).map(
     (axis) => (to.position?.[axis] ?? 0) - (from.position?.[axis] ?? 0),

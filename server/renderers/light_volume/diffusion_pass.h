@@ -36,8 +36,7 @@ class DiffusionPass {
   void Bind() const;
 
   std::size_t Bytes() const {
-    return sampled_cells_.Bytes() + sampled_light_.Bytes() + exits_.Bytes() +
-           net_inward_.Bytes();
+    return sampled_cells_.Bytes() + sampled_light_.Bytes() + exits_.Bytes() + net_inward_.Bytes();
   }
 
  private:

@@ -1,7 +1,7 @@
 // The probe: a click on the picture asks the server for the place, and the values of every field along the ray.
 
 import { nameOfHydrometeor } from "../../core/names";
-import { placeInWords, readable, displacementBetween } from "../../core/probe";
+import { displacementBetween, placeInWords, readable } from "../../core/probe";
 import type { PageState } from "../../core/state";
 import { compassPoint } from "../../core/sun";
 import { formatLength, formatNumber } from "../../core/units";
@@ -66,7 +66,8 @@ function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) 
         <p data-testid="probe-displacement">
           From the first click: {formatLength(displacement.distanceM, "distance")} to{" "}
           {compassPoint(displacement.azimuthDeg)} ({Math.round(displacement.azimuthDeg)}°),{" "}
-          {formatLength(Math.abs(displacement.heightM), "height")} {displacement.heightM < 0 ? "lower" : "higher"}
+          {formatLength(Math.abs(displacement.heightM), "height")}{" "}
+          {displacement.heightM < 0 ? "lower" : "higher"}
         </p>
       )}
       <table class="probe-fields" data-testid="probe-fields">
