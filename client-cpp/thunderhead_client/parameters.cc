@@ -64,7 +64,7 @@ std::optional<Parameter::Kind> KindOf(const FieldDescriptor& field) {
   }
 }
 
-// Walks the messages, and lists what it meets.
+// Walks the messages, and lists their parameters.
 class Walk {
  public:
   void Of(const Message& message, const std::string& prefix) {
@@ -78,7 +78,7 @@ class Walk {
   void Field(const Message& owner, const FieldDescriptor& field, const std::string& prefix) {
     const Reflection& reflection = *owner.GetReflection();
     if (field.is_map()) return;
-    // Of a oneof only the case that is set; an optional field is one of a kind of its own.
+    // Of a oneof only the case that is set; an optional field is a oneof of its own.
     if (field.real_containing_oneof() != nullptr && !reflection.HasField(owner, &field)) return;
     const bool outermost = steps_.empty();
     if (outermost) group_ = field.name();

@@ -58,9 +58,9 @@ struct Ui {
   int time_index() const;
   // True once the picture of the newest scene is on the screen.
   bool IsShown() const;
-  // Takes what is new; true if anything is.
+  // Copies what has changed; true if anything has.
   bool Refresh();
-  // Texts came or went, which the interface takes more than one drawing to make room for.
+  // Texts appeared or vanished; the interface needs more than one drawing to lay them out.
   bool texts_changed = false;
 };
 

@@ -1,4 +1,4 @@
-// What is drawn over the picture and on the map, what is compared, and the list of every parameter.
+// Annotations over the picture and on the map, the comparison, the probe, and the list of every parameter.
 import { create } from "@bufbuild/protobuf";
 import { afterEach, expect, test } from "vitest";
 import {
@@ -122,7 +122,7 @@ test("degrees stand along the horizon where they are", () => {
   );
   const at = Object.fromEntries(shapes.map(({ text, x }) => [text, x]));
   expect(at.N).toBeCloseTo(400, 3);
-  // tan(20 deg) of tan(30 deg) of the half width.
+  // 20 degrees from the centre are tan(20 deg) / tan(30 deg) of the half width.
   expect(at["020°"]).toBeCloseTo(400 + (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at["340°"]).toBeCloseTo(400 - (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at.S).toBeUndefined();

@@ -1,5 +1,5 @@
-// A folder that a model writes to: which of its files are complete, and the storms that those are
-// the times of.
+// A folder that a model writes to: finds which of its files are complete, and groups these as times
+// of storms.
 #pragma once
 
 #include <chrono>
@@ -80,7 +80,7 @@ class WatchedFolder {
   const std::string folder_;
   const std::string files_;
   const pipeline::ReadinessPolicy policy_;
-  Time looked_ = Time::min();          // last
+  Time looked_ = Time::min();          // of the last look
   std::map<std::string, File> known_;  // by path
 };
 

@@ -43,7 +43,7 @@ TEST_F(PeerLivenessTest, PeerThatStillTakesInWhatPrecedesThePingStays) {
   }
   seen_.delivered_bytes = 1002;
   EXPECT_EQ(At(1050), Verdict::kFine);
-  // From here on it has the ping, and taking in more is no answer.
+  // From here on the peer has the ping, and receiving more bytes does not count as an answer.
   seen_.sent_bytes = seen_.delivered_bytes = 2000;
   EXPECT_EQ(At(1149), Verdict::kFine);
   seen_.sent_bytes = seen_.delivered_bytes = 3000;

@@ -306,7 +306,7 @@ TEST_F(WebSocketTest, TooLargeMessageStillBeingSentIsRefused) {
   EXPECT_EQ(client.CloseCode(), 1009);
 }
 
-// It has five seconds to end what it sends.
+// The client has five seconds to finish sending.
 TEST_F(WebSocketTest, WhoNeverStopsSendingWhatIsTooLargeIsCutOff) {
   options_.max_message_bytes = 1000;
   RawClient client(Site().Port());

@@ -14,7 +14,7 @@ import numpy
 from PIL import Image
 
 SIZE = ("--size", "480x270")
-# An error that is measured for a time is another in each run.
+# No error is measured: within a time limit it would differ from run to run.
 FAST = ("--quality", "fast", "--error-seconds", "0")
 LAMBERT = ({"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
            "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0))
@@ -69,7 +69,7 @@ class AnnotationTest(ProductTest):
         self.render(SAMPLE, output, *SIZE, *FAST, "--annotate", "--logo", logo)
         with Image.open(output) as picture:
             self.assertEqual(picture.format, "JPEG")
-        # Across its edges JPEG's colours run.
+        # JPEG blurs colours across edges.
         purple = (numpy.abs(pixels(output) - (255, 0, 255)) < 40).all(axis=2)
         self.assertGreater(purple[:40, 420:].sum(), 300)
         self.assertEqual(purple[:, :400].sum() + purple[60:].sum(), 0)

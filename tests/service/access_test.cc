@@ -146,7 +146,7 @@ class HandCall {
     return Send(request, v1::InteractResponse::kJoined);
   }
   void Write(const v1::InteractRequest& request) { call_->Write(request); }
-  // The next message of that kind; empty if the call ends before.
+  // Sends the request and returns the next message of that kind; empty if the call ends before.
   v1::InteractResponse Send(const v1::InteractRequest& request,
                             v1::InteractResponse::MessageCase kind) {
     call_->Write(request);
@@ -237,7 +237,7 @@ TEST(AccessTest, RequestsAreLimited) {
   EXPECT_LT(taken, 20);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_TRUE(RetryOf(status).has_value());
-  // Another identity's are its own.
+  // Another identity has limits of its own.
   EXPECT_TRUE(guarded.Call("operator", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
 }
 

@@ -58,7 +58,7 @@ class AudienceTest : public ::testing::Test {
                             now_);
   }
 
-  // How the subjects are written here: who asks and who steers; whose pointers, where; marks.
+  // Writes the updates as texts: who asks and who steers; whose pointers are where; marks.
   AudienceFormat Format() {
     return {.presence =
                 [this](const Roster& roster) {

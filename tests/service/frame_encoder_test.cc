@@ -43,7 +43,7 @@ class FrameEncoderTest : public ::testing::Test {
     ASSERT_TRUE(encoded_.try_acquire_for(kPatience));
   }
 
-  // So many viewers, who take all that comes.
+  // Adds `count` viewers, who take every frame.
   std::vector<std::uint64_t> Join(int count, const ViewerWants& wants) {
     std::vector<std::uint64_t> viewers;
     for (int i = 0; i < count; ++i) {
@@ -84,7 +84,7 @@ class FrameEncoderTest : public ::testing::Test {
 
  private:
   std::mutex mutex_;
-  std::map<std::string, int> serialized_;  // times, by what was
+  std::map<std::string, int> serialized_;  // how often, by form
   int without_memory_ = 0;                 // serializations that fail
   std::vector<std::shared_ptr<const EncodedFrame>> kept_;
   std::counting_semaphore<> encoded_{0};

@@ -39,7 +39,7 @@ double StatusMib(pid_t process, const std::string& name) {
 
 std::string NameOf(int storm) { return absl::StrCat("storm", storm < 10 ? "0" : "", storm); }
 
-// A problem before it is that of memory.
+// True once the viewer has a picture. Checks that problems before it are about memory.
 bool HasPicture(Interacting& viewer) {
   bool has_picture = false;
   for (const Response& message : viewer.All()) {
@@ -85,7 +85,7 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
     scene.mutable_camera()->mutable_top_down();
     v1::CreateSessionResponse created;
     grpc::Status status;
-    // As clients do that are told when to try again.
+    // Clients that are told when to try again do so.
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       status = Call(*program.stub(), &Stub::CreateSession, request, &created);
       if (status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED) break;

@@ -37,7 +37,7 @@ export interface ParameterOption {
 
 type Fields = Record<string, unknown>;
 
-// Those that the scene has now: of a oneof only the case that is set, of lists the elements that are there.
+// The parameters that the scene has now: of a oneof only the case that is set, of a list its elements.
 export function parametersOf(scene: Scene): Parameter[] {
   return SceneSchema.fields.flatMap((field) => ofField(scene, field, [], "", field.name));
 }

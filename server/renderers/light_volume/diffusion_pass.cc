@@ -16,13 +16,13 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Larger media are solved on fewer cells than their own.
+// Larger media are solved on a coarser grid than their own.
 constexpr double kMaxDiffusionCells = 4e6;
 
 constexpr std::size_t kTexelsInShare = 32768;  // that a thread works on at a time
 
-// Memory that DiffuseLight, its inputs and this pass take for each cell, and for one with anything
-// in it besides.
+// Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
+// that is not empty.
 constexpr std::size_t kBytesPerCell = 64;
 constexpr std::size_t kBytesPerFullCell = 124;
 

@@ -36,7 +36,7 @@ float peripheral(vec3 place) {
   return 0.25 * sum;
 }
 
-// The light `here` after the medium; `place` is in the light buffer.
+// The light `here` after a slice of the medium; `place` is in the light buffer.
 vec2 carried(vec2 here, vec3 place, Medium medium, vec4 light_depths[PLANES], vec4 transport_depths[PLANES]) {
   float transmittance = exp(-weigh(medium, light_depths));
 #if TRANSLUCENT && !CONSISTENT

@@ -8,7 +8,8 @@
 
 // Root of the optical depth to the nearest surface; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
 layout(binding = kExitsUnit) uniform sampler3D exits;
-// Of sunlight; fluence from other walls; the y of the sky's net flux; share of open ground's light that comes from below.
+// Net inward flux of sunlight; fluence from other walls; the y of the sky's net flux; share of open ground's light that comes
+// from below.
 layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
 
 uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
@@ -61,7 +62,7 @@ DiffuseSample mixed(DiffuseSample a, DiffuseSample b, float at) {
                        mix(a.tint, b.tint, at));
 }
 
-// Sums over the ray's segments, each by the share of it that is seen.
+// Sums over the ray's segments, weighted by the share of each that is seen.
 struct DiffuseSeen {
   float transmittance;  // for this light and the background
   vec3 sun;       // fluence, over the sun's irradiance
@@ -107,7 +108,7 @@ float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, floa
   return shown;
 }
 
-// For a ray that ends before the medium does: deep in a cloud diffuse light changes little, so what has been seen stands for
+// For a ray that ends before the medium does: deep in a cloud diffuse light varies little, so the part seen is extrapolated to
 // the rest.
 void close_diffuse(inout DiffuseSeen seen) {
   float whole = 1.0 / (1.0 - seen.transmittance);

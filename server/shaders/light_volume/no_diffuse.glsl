@@ -1,4 +1,4 @@
-// In the place of light_volume/diffuse_seen.glsl where no diffusion is solved: the same names, and no light.
+// Replaces light_volume/diffuse_seen.glsl where no diffusion is solved: the same functions, which add no light.
 struct DiffuseSample {
   float transport;
 };

@@ -12,8 +12,8 @@ PHYSICS_FUNCTION float mean_transmittance(float x) {
   return (1.0f - exp(-x)) / x;
 }
 
-// The mean over t in 0..1 of exp(-view (1 - t)) exp(-light t): what a slice shows of its light when the light enters
-// on the side away from the eye.
+// The mean over t in 0..1 of exp(-view (1 - t)) exp(-light t): the share of its light that a slice shows when the
+// light enters on the side away from the eye.
 PHYSICS_FUNCTION float mean_counter_transmittance(float view, float light) {
   return exp(-min(view, light)) * mean_transmittance(abs(view - light));
 }
@@ -26,7 +26,7 @@ PHYSICS_FUNCTION float mean_seen_place(float x) {
 }
 
 // Mean intensity of diffuse light, over the sun's irradiance, at optical depth `tau` below the lit face of a layer of
-// optical depth `total` that the sun strikes squarely: the Eddington solution for isotropic conservative scattering
+// optical depth `total` with the sun at its zenith: the Eddington solution for isotropic conservative scattering
 // with Marshak's boundary conditions (no diffuse light comes in from either side). Optical depths are similarity
 // scaled, (1 - omega g) times the real ones. Zero for an empty layer, 2/3 * 3/(4 pi) at the face of an infinite one.
 PHYSICS_FUNCTION float diffuse_mean_intensity(float tau, float total) {
@@ -37,7 +37,8 @@ PHYSICS_FUNCTION float diffuse_mean_intensity(float tau, float total) {
 
 // Fluence of diffuse light, over the sun's irradiance, in a semi-infinite cloud with a plane surface and no absorption: at
 // optical depth `exit` below the surface, which sunlight has reached through the optical depth `sun_depth`, so that
-// exit / sun_depth is the cosine of the sun's angle to the surface's normal. Eddington's solution with Marshak's boundary condition.
+// exit / sun_depth is the cosine of the sun's angle to the surface's normal. Eddington's solution with Marshak's boundary
+// condition.
 PHYSICS_FUNCTION float lit_fluence(float exit, float sun_depth) {
   float cosine = exit < sun_depth ? exit / sun_depth : 1.0f;
   return cosine * (2.0f + 3.0f * cosine * (1.0f - exp(-sun_depth)));

@@ -107,7 +107,7 @@ TEST(ErrorMeter, IntervalsHoldTheErrorOfAPictureThatIsWrongByAKnownAmount) {
     held_bias += holds(error->relative_bias, wrong.bias) ? 1 : 0;
     EXPECT_LT(error->relative_rmse.high - error->relative_rmse.low, wrong.error);
   }
-  // 23 of 24, with a standard deviation of 1.1.
+  // 23 of 24 are expected, with a standard deviation of 1.1.
   EXPECT_GE(held, 20) << wrong.error;
   EXPECT_LE(too_low, 3);
   EXPECT_GE(held_bias, 20) << wrong.bias;

@@ -135,7 +135,7 @@ function FieldRow({ field }: { field: FieldAlongRay }) {
   );
 }
 
-// Traces that models leave where there is nothing are not worth their digits.
+// Models leave traces of condensate where there is none: smaller values are shown as "< 0.001".
 const LEAST = 0.001;
 
 function amount(value: number): string {
@@ -171,7 +171,7 @@ function Cores({ page }: { page: Page }) {
 interface CoreProps {
   readonly page: Page;
   readonly core: FieldMaximum;
-  // Of the time shown before, while that of this one is on its way.
+  // True while the core is that of the time shown before, until the answer for this time arrives.
   readonly old: boolean;
 }
 
