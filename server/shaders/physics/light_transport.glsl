@@ -26,7 +26,7 @@ PHYSICS_FUNCTION float mean_seen_place(float x) {
 }
 
 // Mean intensity of diffuse light, over the sun's irradiance, at optical depth `tau` below the lit face of a layer of
-// optical depth `total` with the sun at its zenith: the Eddington solution for isotropic conservative scattering
+// optical depth `total`, for sunlight at normal incidence: the Eddington solution for isotropic conservative scattering
 // with Marshak's boundary conditions (no diffuse light comes in from either side). Optical depths are similarity
 // scaled, (1 - omega g) times the real ones. Zero for an empty layer, 2/3 * 3/(4 pi) at the face of an infinite one.
 PHYSICS_FUNCTION float diffuse_mean_intensity(float tau, float total) {
