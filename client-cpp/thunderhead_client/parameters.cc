@@ -71,7 +71,7 @@ std::optional<Parameter::Kind> KindOf(const FieldDescriptor& field) {
   }
 }
 
-// Walks the messages, and lists what it meets.
+// Walks the messages, and lists their parameters.
 class Walk {
  public:
   void Of(const Message& message, const std::string& prefix) {
@@ -85,7 +85,7 @@ class Walk {
   void Field(const Message& owner, const FieldDescriptor& field, const std::string& prefix) {
     const Reflection& reflection = *owner.GetReflection();
     if (field.is_map()) return;
-    // Of a oneof only the case that is set; an optional field is one of a kind of its own.
+    // Of a oneof only the case that is set; an optional field is a oneof of its own.
     if (field.real_containing_oneof() != nullptr && !reflection.HasField(owner, &field)) return;
     const bool outermost = steps_.empty();
     if (outermost) group_ = field.name();
@@ -134,7 +134,7 @@ class Walk {
   std::string group_;
 };
 
-// The message that holds the parameter; null if it, or one on the way to it, is absent.
+// The message that holds the parameter; null if it, or one on the path to it, is absent.
 const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   const Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
@@ -151,7 +151,7 @@ const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   return at;
 }
 
-// Null if the element of a list on the way is not there any more.
+// Null if an element of a list on the path is not there any more.
 Message* MutableHolder(v1::Scene& scene, const Steps& steps) {
   Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {

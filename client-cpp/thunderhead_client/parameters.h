@@ -1,6 +1,6 @@
 // Every parameter of a scene, read from the messages' descriptors: a field that is added to
-// scene.proto is in this list without a line of code. Values are read and changed by their way
-// through the messages.
+// scene.proto is in this list without a line of code. Values are read and changed by their path
+// of fields.
 #pragma once
 
 #include <optional>
@@ -33,18 +33,18 @@ struct Parameter {
   std::vector<Step> steps;
 };
 
-// Those that the scene has now: of a oneof the case that is set, of lists the elements that are
-// there.
+// The parameters that the scene has now: of a oneof only the case that is set, of a list its
+// elements.
 std::vector<Parameter> ParametersOf(const v1::Scene& scene);
 
-// Of a number, a flag (0 or 1) or a choice; nothing if it is absent.
+// The value of a number, a flag (0 or 1) or a choice; nothing if it is absent.
 std::optional<double> NumberIn(const v1::Scene& scene, const Parameter& parameter);
-// Of a text; empty if it is absent.
+// The value of a text; empty if it is absent.
 std::string TextIn(const v1::Scene& scene, const Parameter& parameter);
-// A number goes to the nearest within its limits.
+// A number is clamped to its limits.
 void SetNumber(v1::Scene& scene, const Parameter& parameter, double value);
 void SetText(v1::Scene& scene, const Parameter& parameter, const std::string& value);
-// Leaves it to the server.
+// Clears the value, so that the server chooses it.
 void Clear(v1::Scene& scene, const Parameter& parameter);
 
 // The comment of a field of scene.proto by its full name; empty if there is none. Its first

@@ -27,7 +27,7 @@ struct KeyActions {
   std::function<void()> escape;  // closes what is open
 };
 
-// Whether controls of the interface have the keyboard.
+// The controls of the interface that have the keyboard focus.
 struct KeyFocus {
   bool text = false;      // a text is being typed: it uses all keys
   bool controls = false;  // the focus is on a control: it uses arrows, space and Enter

@@ -22,7 +22,7 @@ class Kiosk {
   void Advance(Ui& ui, TimePoint now);
   // The index of the view shown; -1 before the first.
   int shown() const { return shown_; }
-  // What a watcher must know of the picture; empty while it is alive.
+  // The warning that the picture is old; empty unless the connection has been lost for a while.
   static std::string Warning(const Ui& ui, TimePoint last_live, TimePoint now);
 
  private:

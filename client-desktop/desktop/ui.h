@@ -1,5 +1,5 @@
-// What the panels show and act upon: copies of what the session and the catalogue know, taken once
-// a frame, and what is chosen in this window.
+// The state that the panels show and act upon: copies of the session's state and the catalogue's,
+// taken once a frame, and the choices made in this window.
 #pragma once
 
 #include <functional>
@@ -58,9 +58,9 @@ struct Ui {
   int time_index() const;
   // True once the picture of the newest scene is on the screen.
   bool IsShown() const;
-  // Takes what is new; true if anything is.
+  // Copies what has changed; true if anything has.
   bool Refresh();
-  // Texts came or went, which the interface takes more than one drawing to make room for.
+  // Texts appeared or vanished; the interface needs more than one drawing to lay them out.
   bool texts_changed = false;
 };
 

@@ -79,7 +79,7 @@ const HOME = cameraOfPose({
   fieldOfViewDeg: 35,
 });
 
-// What is left open looks at the storm's middle, or shows all of it.
+// Fills in missing parts of the camera, so that it looks at the storm's middle or shows all of it.
 function completeCamera(camera: Scene["camera"]): Scene["camera"] {
   const { kind } = camera ?? {};
   if (kind?.case === "spotter") {

@@ -1,4 +1,4 @@
-// What is drawn over the picture and on the map, what is compared, and the list of every parameter.
+// Annotations over the picture and on the map, the comparison, the probe, and the list of every parameter.
 import { create } from "@bufbuild/protobuf";
 import { afterEach, expect, test } from "vitest";
 import {
@@ -30,7 +30,7 @@ import {
   zoneOfLongitude,
 } from "../src/core/moment";
 import { parametersOf, parameterValue, withParameter } from "../src/core/parameters";
-import { wayBetween } from "../src/core/probe";
+import { displacementBetween } from "../src/core/probe";
 import type { Projection } from "../src/core/projection";
 import { withTechnique } from "../src/core/rendering";
 import { withField, withRendering } from "../src/core/scene";
@@ -122,7 +122,7 @@ test("degrees stand along the horizon where they are", () => {
   );
   const at = Object.fromEntries(shapes.map(({ text, x }) => [text, x]));
   expect(at.N).toBeCloseTo(400, 3);
-  // tan(20 deg) of tan(30 deg) of the half width.
+  // 20 degrees from the centre are tan(20 deg) / tan(30 deg) of the half width.
   expect(at["020°"]).toBeCloseTo(400 + (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at["340°"]).toBeCloseTo(400 - (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at.S).toBeUndefined();
@@ -258,14 +258,14 @@ test("places of the map are those of the model's projection", () => {
   check(polar, [10, 70], [15, 72], [164_084, 2_095_925.08 - 1_875_485.56]);
 });
 
-test("a way has distance, height and direction", () => {
+test("a displacement has distance, height and direction", () => {
   const place = (xM: number, yM: number, zM: number) =>
     create(RayPlaceSchema, { position: { xM, yM, zM } });
-  const way = wayBetween(place(0, 0, 1000), place(3000, 4000, 3000));
-  expect(way?.distanceM).toBeCloseTo(5000, 6);
-  expect(way?.heightM).toBe(2000);
-  expect(way?.azimuthDeg).toBeCloseTo(36.87, 2);
-  expect(wayBetween(undefined, place(0, 0, 0))).toBeUndefined();
+  const displacement = displacementBetween(place(0, 0, 1000), place(3000, 4000, 3000));
+  expect(displacement?.distanceM).toBeCloseTo(5000, 6);
+  expect(displacement?.heightM).toBe(2000);
+  expect(displacement?.azimuthDeg).toBeCloseTo(36.87, 2);
+  expect(displacementBetween(undefined, place(0, 0, 0))).toBeUndefined();
 });
 
 test("letters and arrows are one line that is parted again", () => {

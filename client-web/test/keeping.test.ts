@@ -1,4 +1,4 @@
-// What is kept and brought back: texts in PNG files, scenes in files, undo, named views, the pictures of a movie.
+// Saving and restoring: texts in PNG files, scenes in files, undo, named views, the pictures of a movie.
 
 import { deflateSync } from "node:zlib";
 import { create, equals } from "@bufbuild/protobuf";

@@ -1,4 +1,4 @@
-// What follows from a session's messages for the person at the page; the keys that the page keeps.
+// The state that a session's messages give the person at the page; the keys that the page keeps.
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { OwnKeys, trimmedName } from "../src/core/own_keys";

@@ -83,7 +83,7 @@ def add_medium(material, grids):
     extinctions = [attribute(grid["name"]) for grid in grids]
     scatterings = [calculate("MULTIPLY", extinction, METRES_PER_UNIT * grid["albedo"])
                    for extinction, grid in zip(extinctions, grids)]
-    # What is scattered, all of it, and what is absorbed, a unit.
+    # Scattering and absorption, a node each: with these colours a node's density is its coefficient.
     scatter = nodes.new("ShaderNodeVolumeScatter")
     scatter.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     scattering = weighted_sum(scatterings, [1.0] * len(grids))

@@ -1,5 +1,5 @@
-// A folder that a model writes to: which of its files are complete, and the storms that those are
-// the times of.
+// A folder that a model writes to: finds which of its files are complete, and groups these as times
+// of storms.
 #pragma once
 
 #include <chrono>
@@ -71,7 +71,8 @@ class WatchedFolder {
   absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names,
                     Time now);
   void See(const std::string& path, pipeline::SeenFile& seen, std::int64_t changed_ns, Time now);
-  // What is not `there` any more; what has another name now counts by that alone.
+  // Marks files that are not `there` any more as gone. Forgets those of them that are not done yet,
+  // and those that are there under another name.
   void ForgetGone(const std::set<std::string>& there);
   void Open(const std::string& path, File& file, RunProgress& progress) const;
   int Count(State state) const;
@@ -79,7 +80,7 @@ class WatchedFolder {
   const std::string folder_;
   const std::string files_;
   const pipeline::ReadinessPolicy policy_;
-  Time looked_ = Time::min();          // last
+  Time looked_ = Time::min();          // of the last look
   std::map<std::string, File> known_;  // by path
 };
 

@@ -1,6 +1,6 @@
-// How much memory the process may use for what its clients ask for, and what it is used for. Each
+// The budget of memory that the process may use for its clients' requests, accounted by use. Each
 // use is a reservation that somebody owns, made before the memory is allocated; where there is no
-// room, what is only cached goes first, the least recently used before others. Safe from any
+// room, cached objects are dropped first, beginning with the least recently used. Safe from any
 // thread.
 #pragma once
 
@@ -36,7 +36,7 @@ std::string_view LabelOf(MemoryUse use);
 
 class MemoryBudget;
 
-// Memory that is accounted for while this lives. Empty: nothing.
+// Memory that is accounted for while this object lives; none if it is empty.
 class MemoryReservation {
  public:
   MemoryReservation() = default;
@@ -66,19 +66,22 @@ class MemoryReservation {
 
 class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
  public:
-  // Whether somebody waits for what the memory is for, and so whether a refusal counts; and whether
-  // the caller may wait until others have answered to the pressure.
-  enum class Urgency { kAwaited, kPatient, kAhead };
+  enum class Urgency {
+    kAwaited,  // somebody waits for the result: a refusal counts, and is returned at once
+    kPatient,  // the same, but the caller can wait until others have given memory back
+    kAhead,    // nobody waits for it yet: a refusal does not count
+  };
 
   struct Options {
     std::string name = "memory";  // for messages: "memory", "GPU memory"
     std::string flag = "--memory-budget";
     std::size_t bytes = std::numeric_limits<std::size_t>::max();
-    // The part of them that only drawing may take, so that fields leave room to show them.
+    // The part of `bytes` reserved for drawing, so that fields leave room to show them.
     std::size_t kept_for_drawing = 0;
   };
 
-  // Keeps what nobody uses at the moment. Called by whichever thread makes a reservation.
+  // A cache of objects that nobody uses at the moment. Called by whichever thread makes a
+  // reservation.
   class Cache {
    public:
     virtual std::optional<std::chrono::steady_clock::time_point> OldestUnused() = 0;
@@ -88,7 +91,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
     ~Cache() = default;
   };
 
-  // While it lives, the cache is asked for room; its end waits for a call under way.
+  // Registers a cache: while this object lives, the cache is asked for room. Its destructor waits
+  // for a call under way.
   class Member {
    public:
     Member() = default;
@@ -113,7 +117,7 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   // takes.
   absl::StatusOr<MemoryReservation> Reserve(MemoryUse use, std::size_t bytes, std::string_view what,
                                             Urgency urgency = Urgency::kAwaited);
-  // Makes `reservation` one of `bytes`, as Reserve does for what is added.
+  // Changes the size of `reservation` to `bytes`; for the difference as Reserve.
   absl::Status Resize(MemoryReservation& reservation, std::size_t bytes, std::string_view what);
 
   std::size_t Bytes() const { return options_.bytes; }
@@ -158,8 +162,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
 // use.
 bool IsTooLargeForMemory(const absl::Status& refused);
 
-// Of the whole process: blocks from 256 KiB on come from the system and go back to it. Kept by the
-// threads' arenas, what one thread has freed would be of no use to another.
+// Makes the allocator of the whole process take blocks of 256 KiB and more from the system, and
+// return them when freed: kept in the arena of one thread, they would be of no use to another.
 void ShareFreedBlocks();
 // Returns what the process has freed to the system; takes some milliseconds.
 void GiveBackFreedMemory();

@@ -88,7 +88,8 @@ std::string TrustedProxies::ClientOf(const std::string& peer,
     const std::size_t begin = comma == std::string_view::npos ? 0 : comma + 1;
     const std::string_view host = HostOf(Trimmed(forwarded_for.substr(begin)));
     Address address{};
-    // What is no address was made up before a trusted proxy appended its part.
+    // Trusted proxies append addresses: an entry that is none, and all before it, are the client's
+    // own claims.
     if (!ParseAddress(host, &address)) break;
     const bool is_v6 = host.find(':') != std::string_view::npos;
     client =

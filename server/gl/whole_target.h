@@ -1,4 +1,4 @@
-// Draws pixels of a target by a program whose source is ProgramSource::WholeTarget.
+// Draws the pixels of a target with a program whose source is ProgramSource::WholeTarget.
 #pragma once
 
 #include "absl/status/status.h"
@@ -8,21 +8,21 @@
 
 namespace thunderhead::gl {
 
-// Whether the thread's device draws whole targets faster by compute shaders; measured once a
+// True if the thread's device draws whole targets faster by compute shaders; measured once a
 // process. Software GL always rasterizes. THUNDERHEAD_WHOLE_TARGETS=raster or compute in the
 // environment decides instead.
 bool ComputesWholeTargets();
 
 class WholeTarget {
  public:
-  // All of the target, in tiles. Textures and uniforms are the caller's, and what limits the
-  // drawing besides: the target's depth, which is tested against 0.5 (GL_DEPTH_TEST with GL_LESS or
+  // Draws the whole target, in tiles. The caller sets textures, uniforms and, to draw only a part
+  // of the pixels, a test of the target's depth against 0.5 (GL_DEPTH_TEST with GL_LESS or
   // GL_GREATER).
   absl::Status Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
                     const Framebuffer& target) const {
     return Draw(pieces, pixel, program, target, {glm::ivec2(0), target.Size()});
   }
-  // A part of it.
+  // Draws the pixels in `rect`.
   absl::Status Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
                     const Framebuffer& target, const PixelRect& rect) const;
 

@@ -1,4 +1,4 @@
-// Whether a picture that could not be drawn is begun again, and when.
+// The policy by which a picture that could not be drawn is tried again.
 #pragma once
 
 #include <chrono>

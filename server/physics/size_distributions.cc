@@ -29,7 +29,7 @@ constexpr Exponential kWsm6Rain = {8e6, kWater_kg_per_m3, 8e4};
 constexpr Exponential kWsm6Graupel = {4e6, 500.0, 6e4};
 constexpr Exponential kWsm6Hail = {4e4, 700.0, 2e4};
 
-// The radius of particles of the default density that have the same extinction by mass.
+// The radius at which particles of the default density have the same mass extinction.
 double AtDefaultDensity(Hydrometeor hydrometeor, double radius_m, double density_kg_per_m3) {
   return radius_m * density_kg_per_m3 / DefaultOptics(hydrometeor).density_kg_per_m3;
 }
@@ -55,7 +55,7 @@ double Wsm6Crystals_m(double content_kg_per_m3) {
   return std::clamp(0.75 * 0.163 * diameter_m, 10e-6, 125e-6);
 }
 
-// The colder, the more and the smaller (Houze et al. 1979).
+// The colder the air, the more numerous and smaller the particles (Houze et al. 1979).
 Exponential Wsm6Snow(double temperature_K) {
   constexpr double kFreezing_K = 273.16;
   const double intercept_per_m4 = 2e6 * std::exp(0.12 * (kFreezing_K - temperature_K));
@@ -91,7 +91,7 @@ double ThompsonDroplets_m(double content_kg_per_m3) {
   return std::clamp(0.5 * (kShape + 3.0) / slope_per_m, kMinDroplet_m, kLargestDroplet_m);
 }
 
-// The more there is, the larger it is still: the intercept grows by its 2/7th power only.
+// Particles grow with the content, as the intercept rises only with its 2/7th power.
 double ThompsonGraupel_m(double content_kg_per_m3) {
   const double exponent = 3.0 + 2.0 / 7.0 * (std::log10(std::max(content_kg_per_m3, 1e-9)) + 8.0);
   // A median volume diameter of 50 um at least.
@@ -101,7 +101,7 @@ double ThompsonGraupel_m(double content_kg_per_m3) {
   return RadiusOf(graupel, Hydrometeor::kGraupel, content_kg_per_m3);
 }
 
-// The others of Thompson's fields have no distribution that depends on their content alone.
+// Nothing for Thompson's other fields: their distributions do not depend on the content alone.
 std::optional<double> ThompsonRadius_m(Hydrometeor hydrometeor, double content_kg_per_m3) {
   if (hydrometeor == Hydrometeor::kCloud) return ThompsonDroplets_m(content_kg_per_m3);
   if (hydrometeor == Hydrometeor::kGraupel) return ThompsonGraupel_m(content_kg_per_m3);
@@ -140,7 +140,7 @@ std::string_view NameOf(Microphysics microphysics) {
 }
 
 bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor) {
-  // Whether there is one depends on neither content nor temperature.
+  // The existence of a distribution depends on neither content nor temperature.
   return Radius_m(microphysics, hydrometeor, 1e-3, 260.0).has_value();
 }
 

@@ -32,7 +32,7 @@ class ProductName {
   // INVALID_ARGUMENT if the name needs a start of the run that is not known.
   absl::StatusOr<std::string> For(const ProductKey& key) const;
 
-  // Whether names depend on a field, such as "view".
+  // True if names depend on a field, such as "view".
   bool Has(std::string_view field) const;
 
   const std::string& Text() const { return text_; }

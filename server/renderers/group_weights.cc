@@ -39,11 +39,11 @@ GroupWeights::GroupWeights(const Medium& medium, const scene::MediumSettings& se
   const bool delta_scaled = !paper && translucent;
   for (const MediumGroup& group : medium.groups) {
     const physics::DeltaScaling cut = physics::CutForwardPeak(group.phase, theta_f / 2.0);
-    const double passed = delta_scaled ? group.albedo * cut.forward_share : 0.0;
+    const double forward_scattered = delta_scaled ? group.albedo * cut.forward_share : 0.0;
     const double ring = physics::CumulativePhase(group.phase, theta_f / 2.0) -
                         physics::CumulativePhase(group.phase, theta_f / 4.0);
-    eye.push_back(1.0 - passed);
-    light.push_back(1.0 - passed);
+    eye.push_back(1.0 - forward_scattered);
+    light.push_back(1.0 - forward_scattered);
     scattering.push_back(group.albedo);
     const double mean_cosine = physics::MeanCosine(group.phase);
     transport.push_back(1.0 - group.albedo * mean_cosine);

@@ -1,5 +1,5 @@
-// Whether what came from the reader of an untrusted file is what a sound reader could have sent: a
-// reader that a file has taken over may send anything, and other rooms rely on their values.
+// Checks on values from the reader of an untrusted file, which other rooms rely on: a reader that a
+// file has taken over may send anything.
 #pragma once
 
 #include "absl/status/status.h"

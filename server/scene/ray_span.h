@@ -6,17 +6,17 @@
 
 namespace thunderhead::scene {
 
-// Along a ray, in m; empty if `end_m` is not beyond `begin_m`.
+// A part of a ray, by distances from its origin; empty if `end_m` is not beyond `begin_m`.
 struct Span {
   double begin_m = 0.0;
   double end_m = 0.0;
 };
 
-// Of the ray within the box `low_m` to `high_m`, before `end_m`.
+// The part of the ray that lies in the box `low_m` to `high_m`, before `end_m`.
 Span SpanWithin(const glm::dvec3& low_m, const glm::dvec3& high_m, const glm::dvec3& origin_m,
                 const glm::dvec3& direction, double end_m);
 
-// Half of the shortest way through a cell from side to side.
+// Half of the shortest path through a cell from side to side.
 double HalfCell_m(const volume::RegularGrid& grid, const glm::dvec3& direction);
 
 }  // namespace thunderhead::scene

@@ -21,7 +21,7 @@ class CloudStore {
  public:
   // `path` is the folder; if empty, no clouds are generated. Generated clouds that the storm store
   // has already loaded from the folder are those of an earlier server, and can be deleted too.
-  // What it takes to generate one counts in `memory`; null: in nothing.
+  // The memory taken to generate a cloud counts in `memory`, which may be null.
   CloudStore(std::string path, volume::StormStore& store,
              std::shared_ptr<base::MemoryBudget> memory = nullptr);
 

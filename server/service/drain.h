@@ -1,4 +1,4 @@
-// Whether the server drains: it takes no new work, and ends when what it has begun is done.
+// The draining of a server: it takes no new work, and ends when the work begun before is done.
 #pragma once
 
 #include <atomic>

@@ -20,7 +20,7 @@ namespace thunderhead::session {
 struct EncodedFrame {
   std::uint64_t sequence = 0;  // counts the session's frames from 1; set by the hub
   std::uint64_t scene_revision = 0;
-  // The picture, in one of these.
+  // The picture, in one of these encodings.
   std::string jpeg;
   std::string vp9;
   std::string avif;
@@ -37,10 +37,10 @@ struct EncodedFrame {
   int tier = 0;
   std::optional<Refinement> refinement;  // of a picture by the reference
   std::optional<AccuracyReport> accuracy;
-  // When the scene became what it shows; none if that has changed since.
+  // The time of the change of the scene that it shows; none if the scene has changed again since.
   std::optional<std::chrono::steady_clock::time_point> changed_at;
-  // What its pixels and bytes count in, while a frame made of the picture is kept or waits to be
-  // sent.
+  // The reservation of its pixels' and bytes' memory, held while a frame made of the picture is
+  // kept or waits to be sent.
   std::shared_ptr<const base::MemoryReservation> memory;
   // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
   std::string serialized;

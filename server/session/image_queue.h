@@ -34,7 +34,7 @@ struct ImageInput {
 };
 
 // One picture at full quality, outside any session. Its fields are read when its turn comes, so
-// that those who wait take no memory.
+// that waiting jobs take no memory.
 struct ImageJob {
   scene::Scene scene;
   std::function<absl::StatusOr<ImageInput>()> read;  // on a thread that may block
@@ -46,24 +46,24 @@ struct ImageJob {
   // If set, called on the loop's thread as more light is traced, and not after `done`; must not
   // block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
-  // Nobody waits for it: those for whom somebody does go before.
+  // True if nobody waits for it: jobs that somebody waits for go first.
   bool gives_way = false;
-  bool linear = false;         // the picture is also to be had as light
+  bool linear = false;         // also wanted as linear radiance
   double error_seconds = 0.0;  // of tracing, for its error to be measured
-  // What reading, drawing and encoding it may take, without waiting for others; more ends it with
-  // `too_long`.
+  // Maximum time for reading, drawing and encoding it, not counting the time spent waiting for
+  // others; beyond it the job ends with `too_long`.
   double max_work_ms = 1e15;
   absl::Status too_long = absl::OkStatus();
-  // Who asked for it; all get the same time to draw. Empty: nobody's share counts.
+  // Who asked for it; all owners get equal shares of the drawing time. Empty: counts for nobody.
   std::string owner = "";
-  // Since it was admitted: the scene with its decided setting, and what drawing that should take.
+  // Set on admission: the scene with its decided setting, and the predicted time to draw it.
   std::optional<scene::Scene> decided = std::nullopt;
   double predicted_ms = 0.0;
 };
 
 class ImageQueue {
  public:
-  // Pictures that may wait, in all and of one owner.
+  // Limits of the pictures that may wait: in all, and of one owner.
   ImageQueue(std::size_t max_waiting, std::size_t max_waiting_each)
       : max_waiting_(max_waiting), max_waiting_each_(max_waiting_each) {}
 
@@ -72,10 +72,10 @@ class ImageQueue {
   bool Add(ImageJob job);
   // Asks `admit` of each job that came since the last call; those refused are done with the reason.
   void Admit(const std::function<absl::Status(ImageJob&)>& admit);
-  // Takes the first admitted job for which `suits` is true of the owner for whom least was drawn;
-  // one that gives way only if there is no other.
+  // Takes the first admitted job for which `suits` is true, of the owner who has had the least
+  // drawing time; one that gives way only if there is no other.
   std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
-  // Drawing a job that was taken has cost so much, instead of what was predicted.
+  // Charges the owner the time that drawing has taken, instead of the predicted one.
   void Drew(const ImageJob& job, double milliseconds);
   // Drops cancelled jobs and calls their `done`.
   void DropCancelled();

@@ -17,11 +17,11 @@
 namespace thunderhead::session {
 namespace {
 
-// A scene that is drawn when the device is lost is drawn again, but so often only: it may be what
-// the device does not bear.
+// How often a scene is drawn again when the device is lost while drawing it: the scene itself may
+// be the cause.
 constexpr int kMaxLosses = 2;
 
-// Of a frame that is also drawn with half the slices, over a frame.
+// Time of a frame that is also drawn with half the slices, over that of the frame alone.
 constexpr double kCheckedShare = 1.5;
 
 // The scene that the work draws; null if it draws none.
@@ -45,7 +45,7 @@ std::shared_ptr<Session> FindById(const std::vector<std::shared_ptr<Session>>& s
   return found != sessions.end() && (*found)->id() == id ? *found : nullptr;
 }
 
-// Where the reason of a failure passes.
+// The time at which to try again, if the failure is temporary.
 std::optional<Clock::time_point> TryAgainAt(const absl::Status& why) {
   const auto after = base::DetailsOf(why).retry_after;
   if (!after.has_value()) return std::nullopt;
@@ -80,7 +80,7 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session)
                       std::holds_alternative<ShowLight>(turn.kept.work);
   if (!traces) light_tracer_.Stop(session->id());
   Wish wish = std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
-  // Also of work that has only now been found to be due.
+  // Need may have replaced the work, as by showing light that has been traced meanwhile.
   turn.kept.in_lane = turn.kept.in_lane || IsLong(turn, turn.kept.work);
   if (turn.kept.in_lane && !lane_.IsFree()) wish.work.reset();
   return wish;
@@ -89,7 +89,8 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session)
 std::optional<SessionDrawer::Wish> SessionDrawer::LookInLane(const Turn& turn,
                                                              const NewestScene& newest) {
   if (!in_lane_.has_value() || !lane_.IsFor(turn.session->id())) return std::nullopt;
-  // What is shown at once is soon ready; if each change ended it, none would be shown.
+  // Only refinement is cancelled by a change: an interactive frame is soon ready, and if each
+  // change ended it, none would be shown.
   if (in_lane_->turn_class == TurnClass::kRefining &&
       in_lane_->newest_revision != newest.revision) {
     lane_.Cancel();
@@ -130,7 +131,7 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessi
   alone_ = std::ranges::count_if(
                sessions, [](const auto& session) { return session->hub().HasViewers(); }) <= 1;
   if (!in_lane_.has_value()) return;
-  lane_.WantsTurn();  // lets what was cancelled end
+  lane_.WantsTurn();  // lets a cancelled drawing end
   const std::string session_id = lane_.For();
   auto picture = lane_.Take();
   if (!picture.has_value()) return;
@@ -139,13 +140,13 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessi
   const auto kept = kept_.find(session_id);
   if (session == nullptr || kept == kept_.end() || absl::IsCancelled(picture->status())) return;
   const Turn turn{session, kept->second};
-  // It shows something else meanwhile, or gave its fields to others.
+  // The session may show a newer scene by now, or have given up its fields.
   const std::uint64_t revision = drawn.shown.revision;
   if (revision < turn.kept.view.shown_revision()) return;
   if (picture->ok()) {
     if (turn.kept.fields.Fields() == drawn.fields) Show(turn, drawn, **std::move(picture));
   } else if (absl::IsResourceExhausted(picture->status()) && turn.kept.whole_revision != revision) {
-    // The render loop's source has what it needs, if only one can have it.
+    // Memory does not suffice for a second copy: the render loop's source draws it instead.
     turn.kept.whole_revision = revision;
   } else {
     Fail(turn, revision, picture->status());
@@ -195,7 +196,7 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
       if (lane_.IsFor(kept->first)) lane_.Cancel();
     }
     if (session != nullptr) {
-      ++kept;  // keeps its view, as it may be watched again
+      ++kept;  // keeps the session's view, as it may be watched again
     } else {
       source_.Forget(kept->first);
       kept = kept_.erase(kept);
@@ -242,7 +243,8 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
   const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
   turn.kept.in_lane = false;
   if (draw != nullptr && moves) {
-    // Of a picture at rest whose tone changes the lane has the light.
+    // If only the tone changes of a picture that was drawn at rest, the lane's source still has its
+    // light.
     const scene::Scene& scene = *draw->shown.scene;
     const auto has_light = [&](const std::optional<LastDrawn>& last) {
       return FirstDirty(last, scene) >= scene::Stage::kTone;
@@ -263,7 +265,7 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   const NewestScene* shown = ShownBy(work);
   if (shown == nullptr || shown->revision == turn.kept.whole_revision) return false;
   if (turn.kept.view.state() == SessionView::State::kMoving) return false;
-  // Else others would leave their memory to a second copy.
+  // Without room, others would have to give up memory for a second copy.
   if (!lane_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
       std::min(FirstDirty(source_.Last(), *shown->scene), scene::Stage::kView);
@@ -288,7 +290,7 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const CheckSlices&
 
 SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work) {
   const std::string& id = turn.session->id();
-  // It shows the light that is traced for its session.
+  // An own view shows the light that is traced for its session.
   if (turn.session->IsOwnView()) {
     turn.kept.view.LightIsOthers();
     return {};
@@ -415,7 +417,7 @@ bool SessionDrawer::WantsFine(Session& session, int width_px) {
 std::optional<frame::FineImage> SessionDrawer::FineOf(const Turn& turn,
                                                       const DisplayFrame& picture) {
   if (!WantsFine(*turn.session, picture.width_px)) return std::nullopt;
-  // Those who would take it get JPEG where it cannot be had.
+  // On an error its viewers get JPEG.
   auto fine = source_.Fine();
   return fine.ok() ? std::optional(*std::move(fine)) : std::nullopt;
 }
@@ -440,7 +442,7 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
 }
 
 void SessionDrawer::Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why) {
-  // The same work comes again when there is a device.
+  // Not a failure yet: the same work is due again once the device has been reopened.
   const bool lost = gl::IsDeviceLost(why);
   if (lost && ++turn.kept.losses <= kMaxLosses) return;
   turn.kept.view.Failed(revision, lost ? std::nullopt : TryAgainAt(why));

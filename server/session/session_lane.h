@@ -33,7 +33,7 @@ class SessionLane {
     std::shared_ptr<const volume::HydrometeorFields> fields;
     FrameQuality quality;
     bool checked = false;  // also with half the slices
-    bool fine = false;     // with more bits, too
+    bool fine = false;     // also with more bits a channel
   };
   struct Picture {
     DisplayFrame frame;
@@ -41,11 +41,12 @@ class SessionLane {
     std::optional<frame::FineImage> fine;        // none if it cannot be had
   };
 
-  // True if the lane has what the scene shows, or room for what took `bytes` elsewhere.
+  // True if the lane holds the scene's extinction already, or has room for the `bytes` that it
+  // takes in another source.
   bool HasRoomFor(const scene::Scene& scene, std::uint64_t bytes) const {
     return FirstDirty(last_drawn_, scene) > scene::Stage::kExtinction || has_room_(bytes);
   }
-  // Nothing is drawn, and no outcome waits.
+  // True if nothing is being drawn, and no outcome waits to be taken.
   bool IsFree() const { return outcome_ == nullptr; }
   // True while the session's frame is drawn, or its outcome waits.
   bool IsFor(const std::string& session_id) const {
@@ -53,20 +54,20 @@ class SessionLane {
   }
   // The session of the last request.
   const std::string& For() const { return request_.session_id; }
-  // It must be free.
+  // The lane must be free.
   void Begin(Request request);
   // Ends the drawing at its next piece; its outcome is CANCELLED.
   void Cancel();
-  // The outcome of what was begun, once it is there.
+  // The outcome of the request, once it has ended.
   std::optional<absl::StatusOr<Picture>> Take();
 
   bool WantsTurn() { return lane_.WantsTurn(); }
   // Returns when the next piece is drawn.
   void GiveTurn() { lane_.GiveTurn(); }
 
-  // What the lane's source drew last, whose stages it can reuse; none after a failure.
+  // The frame that the lane's source drew last, whose stages it can reuse; none after a failure.
   const std::optional<LastDrawn>& Last() const { return last_drawn_; }
-  // The lane's source is another from now on.
+  // To be called when the lane gets another source.
   void Forget() { last_drawn_.reset(); }
 
  private:

@@ -18,7 +18,7 @@
 
 namespace thunderhead::session {
 
-// No work before that time, unless something changes.
+// There is no work before `time`, unless something changes.
 struct WaitUntil {
   std::optional<Clock::time_point> time;
 };
@@ -57,7 +57,7 @@ class SessionView {
     kTracingLight,  // correct the light, and measure the error, by more and more paths
     kReference,     // refined by the tracer
     kSettled,       // final
-    kYielded,       // its picture stays; what it takes to draw was left to others
+    kYielded,       // its picture stays; its fields and light were given up for others
     kFailed,        // cannot be drawn
   };
 
@@ -79,7 +79,7 @@ class SessionView {
   void Checked(double discretisation_error);
   // True if the next work is to show the light traced so far, until LightShown.
   bool LightTraced(const accuracy::LightProgress& progress, Clock::time_point now);
-  // The light stays as it was traced before; shown once more, to tell why.
+  // The light stays as traced before; the picture is shown once more, with the reason.
   void LightFailed() { light_.GiveUp(true); }
   // No light is traced and no error measured for this view.
   void LightIsOthers() {
@@ -90,30 +90,32 @@ class SessionView {
   bool ErrorMeasured(const accuracy::ErrorProgress& progress, Clock::time_point now) {
     return error_.Measured(progress, now);
   }
-  // Nobody would be told the error.
+  // No viewer wants to know the error: it is not measured.
   void ErrorIsUntold() { error_.GiveUp(); }
   void LightShown(Clock::time_point now) {
     light_.Shown(now);
     error_.Told(now);
   }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
-  // That revision is not tried again, or from `try_again_at` on.
+  // The revision is not tried again, or not before `try_again_at`.
   void Failed(std::uint64_t revision, std::optional<Clock::time_point> try_again_at = std::nullopt);
-  // True once when what has failed may be tried again; it then is the next work.
+  // True once when a failed revision may be tried again; it is the next work then.
   bool TriesAgain(Clock::time_point now);
   // Memory is short: true if the view can do without its fields and light for a while, since the
   // picture of its scene is shown.
   bool Yield(Clock::time_point now);
-  // None if `decided` is to be drawn; else when to ask again, if ever without a change.
+  // None if `decided` is to be drawn; else the time at which to ask again, if that can be before a
+  // change.
   std::optional<WaitUntil> Resting(const NewestScene& decided, Clock::time_point now);
-  // There is still no room for that revision: true if its picture is shown, and nothing is lost.
+  // Called while there is still no room for the revision: true if its picture is shown already, so
+  // that nothing is missing.
   bool StaysYielded(std::uint64_t revision, Clock::time_point now);
 
   State state() const { return state_; }
   // The newest revision that was shown, or has failed.
   std::uint64_t shown_revision() const { return planner_.revision(); }
   bool LightIsTraced() const { return light_.ended(); }
-  // What is known of the error of the picture at full quality.
+  // Estimates of the error of the picture at full quality.
   accuracy::Evidence evidence() const {
     return {.discretisation_error = setting_.discretisation_error(), .measured = error_.error()};
   }
@@ -142,8 +144,8 @@ class SessionView {
   LightTracing light_;
   ErrorMeasuring error_;
   std::optional<std::uint64_t> failed_revision_;
-  std::optional<Clock::time_point> try_again_at_;  // what has failed
-  std::optional<Clock::time_point> returns_at_;    // having yielded, to trace light
+  std::optional<Clock::time_point> try_again_at_;  // the failed revision
+  std::optional<Clock::time_point> returns_at_;    // to tracing light, after yielding
 };
 
 }  // namespace thunderhead::session

@@ -60,8 +60,7 @@ class TruthTracer {
   // Only the tracing thread uses the source.
   struct Owned {
     std::shared_ptr<TruthSource> source;
-    // What the source's buffers count in.
-    std::shared_ptr<base::MemoryReservation> reserved;
+    std::shared_ptr<base::MemoryReservation> reserved;  // for the source's buffers
     std::shared_ptr<Job> job;
     Found found;
   };

@@ -1,5 +1,5 @@
-// Whether the arrays that a file announces can be held at all. Looked at before they are allocated:
-// the kernel may promise more memory than there is, and end the process when it is touched.
+// Checks that the arrays which a file announces fit into memory, before they are allocated: the
+// kernel may promise more memory than there is, and end the process when it is touched.
 #pragma once
 
 #include <cstddef>

@@ -28,28 +28,29 @@ struct CataloguedStorm {
   std::vector<std::string> notes;   // for the log: times that several files have
 };
 
-// The files of a storm before it has an id, and its name.
+// A storm's name and files, before it has an id.
 struct NamedFiles {
   std::string name;
   std::vector<StormFile> files;
 };
 using FoundByPath = std::map<std::string, std::vector<NamedFiles>>;
 
-// How a search looks at files and takes what it meets.
+// Options and callbacks of a search.
 struct StormSearch {
-  // Describes the file at a path. CANCELLED for a file that is to be passed over without a word.
+  // Describes the file at a path. CANCELLED for a file that is to be skipped silently.
   std::function<absl::StatusOr<StormFile>(const std::string&)> describe;
-  // No error: a path that is gone, a folder without storms.
+  // True if a path that is gone and a folder without storms are no errors.
   bool may_find_nothing = false;
   // Called with a folder below a path that cannot be listed; empty: it is logged.
   std::function<void(const std::string&, const absl::Status&)> on_unlisted;
   // Called with every folder before it is listed; may be empty.
   std::function<void(const std::string&)> on_folder;
   std::string examples;  // of files, for messages
-  // Asked before each path is searched: false where its storage hangs, which then has the storms
-  // that it had in the search before. Empty: all answer.
+  // Called before each path is searched. Where it returns false the path's storage hangs, and the
+  // storms found there by the search before are used again. Empty: all storage answers.
   std::function<bool(const std::string&)> answers = nullptr;
-  // What was found by path, for that; kept by who searches again and again.
+  // The storms found by the search before, for that purpose; owned by callers who search again and
+  // again, and updated by each search.
   FoundByPath* found = nullptr;
 };
 
@@ -65,7 +66,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 
 void LogNotes(const std::vector<CataloguedStorm>& storms);
 
-// The files by the runs that they may be parts of: same domain, grid, fields and start.
+// Groups the files by run: those of one group have the same domain, grid, fields and start.
 std::vector<std::vector<StormFile>> FilesOfRuns(std::vector<StormFile> files);
 
 // Makes one storm of the files of one run: times in order; if several files have the same time, the

@@ -1,4 +1,4 @@
-// What a domain of 58 million cells costs.
+// The time and memory of drawing a domain of 58 million cells.
 #include <memory>
 
 #include "frame/tone_map.h"

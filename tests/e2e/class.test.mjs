@@ -23,7 +23,7 @@ import { freePort, startServer } from "./server_process.mjs";
 
 const VIEWPORT = { width: 900, height: 560 };
 const MIDDLE = { x: 620, y: 300 };
-// Half a pixel on either side, and the rounding of the overlay's numbers.
+// Tolerance: half a pixel on either side, and the rounding of the overlay's numbers.
 const SAME_PLACE_PX = 2;
 // The server takes one request for control in five seconds from a person.
 const ASK_AGAIN_AFTER_MS = 5100;
@@ -32,7 +32,7 @@ const ASK_AGAIN_AFTER_MS = 5100;
 const ANSWER_WITHIN_MS = 20_000;
 const AWAY_AFTER_MS = 60_000;
 const TOLD_WITHIN_MS = 300;
-// What a busy machine may add.
+// Delay that a busy machine may add.
 const LATE_MS = 10_000;
 
 let server;
@@ -156,7 +156,7 @@ after(async () => {
 test("a presenter leaves, whose control is to be free after a minute; a viewer asks meanwhile", async () => {
   const presenter = await visit(server.url);
   await until("a session", async () => presenter.url().includes("?session="));
-  // The light of its picture, which nobody looks at, would be traced all the while.
+  // Otherwise the light of its picture, which nobody looks at, would be traced all the time.
   await presenter.getByTestId("quality-choice").getByText("Fast", { exact: true }).click();
   await setRuleOf(presenter, "freeWhenAway", true);
   const viewer = await visit(presenter.url().replace(/#.*/, ""));
@@ -280,7 +280,7 @@ test("the teacher says not now, and locks control", async () => {
   await teacher.getByTestId("asks-give-not").click();
   await teacher.getByTestId("asks").waitFor({ state: "detached" });
   assert.equal(await student.getByTestId("give-back").count(), 0);
-  // Asked again at once, the teacher is not bothered.
+  // A second request right after the first does not reach the teacher.
   await until("a button", () => student.getByTestId("ask-control").isEnabled());
   await student.getByTestId("ask-control").click();
   await student.getByText("asked for control a moment ago").waitFor();
@@ -403,7 +403,7 @@ test("a student points and draws while the teacher allows it", async () => {
   assert.equal(await last(teacher), await last(student));
   const [, y] = middleOf((await last(teacher)).split(" ").map((corner) => corner.split(",").map(Number)));
   assert.ok(Math.abs(y - 255) < 10, `the line is at ${y}`);
-  // Those that come while the first is being placed are refused, and not lost.
+  // Marks that come while the first is being placed are refused, and sent again.
   await student.getByTestId("mark-middle").evaluate((button) => {
     for (let i = 0; i < 3; i += 1) button.click();
   });
@@ -423,7 +423,7 @@ test("a student points and draws while the teacher allows it", async () => {
   await teacher.waitForTimeout(300);
   assert.equal(await teacher.getByTestId("pointer").count(), 0);
 
-  // Who steers may, whatever the rule; a viewer erases the own ones alone.
+  // Whoever steers may draw, whatever the rule; a viewer erases only their own marks.
   await teacher.getByTestId("people").click();
   await teacher.getByTestId("give-unasked").first().click();
   await teacher.keyboard.press("Escape");
@@ -604,7 +604,7 @@ test("the server is killed and comes back: teacher and student have their sessio
   await teacher.keyboard.press("Escape");
   await openTool(teacher, "look");
   await setRule("viewersMayMark", true);
-  // The store is at most half a second behind.
+  // The state is stored at most half a second later.
   await student.waitForTimeout(1200);
   await inStep();
   const [address, drawn, mark] = [student.url(), await grabCanvas(student), await markOn(student)];

@@ -1,4 +1,4 @@
-// What deploy/ gives operators, with the programs that it is for: HAProxy before the real server, the systemd unit,
+// The files of deploy/, tested with the programs that they are for: HAProxy before the real server, the systemd unit,
 // Prometheus's rules, the Compose file's flags. Each needs its Debian package.
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";

@@ -6,7 +6,7 @@ import { freePort, startServer } from "./server_process.mjs";
 
 const [seconds, width, height] = [20, 960, 540].map((usual, i) => Number(process.argv[2 + i] ?? usual));
 const STEP_MS = 16;
-// What the first pictures of a drag show is not its pace.
+// Warm-up: the first pictures of a drag are not representative.
 const WARM_MS = 3000;
 
 const server = await startServer({ httpPort: await freePort(), grpcPort: await freePort() });

@@ -1,5 +1,5 @@
-// What holds for the page as a whole: nothing that axe-core finds, targets large enough for fingers, a small first load from one
-// origin, no motion for who wants none.
+// Requirements of the page as a whole: no violations that axe-core finds, targets large enough for fingers, a small first load
+// from one origin, no motion for people who prefer none.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { readFileSync } from "node:fs";
@@ -86,7 +86,7 @@ for (const [name, options] of [
     await page.context().close();
   });
 
-// What is pressed for a box to tick is its label.
+// A checkbox's or radio button's target is its label.
 const TARGETS = "button, select, summary, label:has(> input:is([type=checkbox], [type=radio])), input:not([type=checkbox], [type=radio], [type=file])";
 
 test("fingers find every button, slider and switch", async () => {

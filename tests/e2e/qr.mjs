@@ -1,4 +1,4 @@
-// What a phone reads from the code in "Share": the pixels on the screen, decoded by another library than drew them.
+// The text that a phone reads from the QR code in "Share": the pixels on the screen, decoded by another library than drew them.
 import jsQR from "jsqr";
 import { PNG } from "pngjs";
 

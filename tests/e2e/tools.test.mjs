@@ -60,7 +60,7 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// Of what is on the screen: texts of what is hidden can be read too.
+// The text of an element on the screen; hidden elements' texts could be read too, so it waits.
 async function text(id) {
   const shown = page.getByTestId(id);
   await shown.waitFor({ state: "visible" });
@@ -84,7 +84,7 @@ const degreesOnHorizon = () =>
     .locator("[data-testid=annotations] text")
     .evaluateAll((texts) => texts.map(({ textContent }) => textContent).filter((each) => /^(\d{3}°|[NESW]{1,2})$/.test(each)));
 
-// What the program says of the file, by another way than the page.
+// The program's own description of the file, to compare the page with.
 const inspected = JSON.parse(execFileSync(BINARY, ["inspect", "--json", SAMPLE], { encoding: "utf8" }));
 const maximumOf = (name) =>
   1000 * inspected.fields.find(({ hydrometeor }) => hydrometeor === `HYDROMETEOR_${name}`).maximum;
@@ -127,8 +127,8 @@ test("a second click measures from the first", async () => {
   await page.getByTestId("probe-found").waitFor();
   const first = await text("probe-found");
   await page.mouse.click(middle.x + 80, middle.y);
-  await page.getByTestId("probe-way").waitFor();
-  assert.match(await text("probe-way"), /From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
+  await page.getByTestId("probe-displacement").waitFor();
+  assert.match(await text("probe-displacement"), /From the first click: [\d.]+ k?m to [NESW]+ \(\d+°\), [\d.]+ k?m (lower|higher)/);
   assert.notEqual(await text("probe-found"), first);
   await focusPicture();
   await key("Escape");
@@ -208,7 +208,7 @@ test("how wrong is this picture: it says so over it", { timeout: 240_000 }, asyn
     /This picture is [\d.]+ % off/.test((await text("truth")).replaceAll("\n", " ")),
   );
   const source = page.getByTestId("error-source");
-  // By what the machine has left, which may be little.
+  // Measured with the computing time that the machine has left, which may be little.
   const measured = async () => /^measured: [\d.]+ to [\d.]+ %$/.test(await source.innerText());
   await until("the error to be measured while the picture rests", measured, 3 * PICTURE_TIMEOUT_MS);
   await focusPicture();
@@ -236,7 +236,7 @@ test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   assert.equal(await exposure(), "-1");
   await changing(() => key("Control+z"), page);
   assert.equal(await exposure(), "1.5");
-  // Back to what the other tests see.
+  // Back to the scene that the other tests expect.
   await changing(() => key("Control+z"), page);
   assert.equal(await exposure(), atFirst);
   await openTool(page, undefined);
@@ -278,7 +278,7 @@ function assertSameColours(picture, view, what) {
 
 const ffmpeg = (...args) => execFileSync("ffmpeg", ["-v", "error", "-y", ...args]);
 
-// The last picture of a movie, and the view made as small as it.
+// Compares the last picture of a movie with the view scaled down to its size.
 function assertLastPictureIs(view, file) {
   const [movie, canvas] = ["movie.png", "canvas.png"].map((name) => join(folder, name));
   ffmpeg("-i", file, "-vf", "select=eq(n\\,3)", "-frames:v", "1", movie);

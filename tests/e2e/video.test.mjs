@@ -1,4 +1,4 @@
-// Video and stills of higher quality in Chromium: drawn as JPEG draws them.
+// Video and stills of higher quality in Chromium show the same picture as JPEG.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { canvasData, dragBetween, launchBrowser, listenForErrors, rested, screenshot, until } from "./driver.mjs";
@@ -9,14 +9,15 @@ import { freePort, startServer } from "./server_process.mjs";
 import { throttledLink } from "./throttled_link.mjs";
 
 const WINDOW = { width: 1000, height: 700 };
-// A name that is not this machine's own, which Chromium is told to find here.
+// A host name other than localhost, which Chromium is told to resolve to this machine.
 const OTHER_HOST = "storms.test";
-// A frame of JPEG takes 0.4 s by it. The server tries a smaller one where one takes more than 0.1 s (session/link_estimate).
+// A JPEG frame takes 0.4 s over this link. The server tries smaller frames where one takes more than 0.1 s
+// (session/link_estimate).
 const SLOW_LINK = { kbitPerS: 1000, roundTripMs: 150 };
 const SLOW_FOR_MS = 30_000;
-// Levels of 255: mean over all pixels. JPEG at its own quality is 1.2 from the picture.
+// Maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the picture.
 const ALIKE = 2.5;
-// Of means of blocks; colours of another range or matrix are 4 and more apart.
+// Maximum difference of blocks' means; colours of another range or matrix differ by 4 and more.
 const SAME_COLOURS = 1.5;
 
 let server;
@@ -32,7 +33,7 @@ async function open(link, init) {
   return page;
 }
 
-// As a browser that is asked to save data, and as one that decodes neither VP9 nor AVIF.
+// Scripts that make the page behave as in a browser that is asked to save data, and in one that decodes neither VP9 nor AVIF.
 const savesData = () =>
   Object.defineProperty(navigator.connection, "saveData", { get: () => true });
 const jpegOnly = () => {
@@ -107,7 +108,7 @@ test("a browser that saves data sees video while the camera turns, and a still o
   assert.deepEqual(complaints, []);
 });
 
-// What the readout says of the picture shown.
+// The readout's text about the encoding of the picture shown.
 async function sentAs(page) {
   await page.getByTestId("readout-summary").click();
   const text = await page.getByTestId("encoding").innerText();
@@ -199,7 +200,7 @@ test("the colours of video are those of JPEG", async () => {
   // The still's picture came as video first.
   const dataUrl = await viewer.evaluate(() => window.lastVideo);
   const video = PNG.sync.read(Buffer.from(dataUrl.split(",")[1], "base64"));
-  // Of blocks, as a slow machine gets smaller pictures of video.
+  // Means of blocks are compared, as a slow machine gets smaller pictures of video.
   const apart = blockDifference(video, await grabCanvas(presenter));
   assert.ok(apart < SAME_COLOURS, `video is ${apart} levels from JPEG`);
 });

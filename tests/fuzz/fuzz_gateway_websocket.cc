@@ -1,5 +1,5 @@
-// What a client sends after the upgrade to a WebSocket, to a live gateway before a live service:
-// frames that are whole, cut, masked wrongly, fragmented, too long, and messages of any kind. The
+// Bytes that a client sends after the upgrade to a WebSocket, to a live gateway before a live
+// service: frames that are whole, cut, masked wrongly, fragmented, too long, and any messages. The
 // connection must end once the client has sent all, and the gateway must answer the next one.
 #include <arpa/inet.h>
 #include <poll.h>
@@ -58,7 +58,7 @@ class Socket {
   }
   void SendNoMore() { shutdown(socket_, SHUT_WR); }
 
-  // What comes until `end` has come or the server has closed.
+  // All bytes received until `end` has come or the server has closed.
   std::string Read(const std::string& end) {
     std::string read;
     while (end.empty() || read.find(end) == std::string::npos) {

@@ -1,5 +1,5 @@
-// What a reader that a hostile file has taken over could send: whatever of it the server takes must
-// not harm the rooms that use it.
+// Replies of a reader that a hostile file has taken over: those which the server accepts must not
+// harm the rooms that use them.
 #include <unistd.h>
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// What decides who may enter: lists of tokens, keys and JSON Web Tokens, and tokens in headers.
+// The parsers that decide who may enter: lists of tokens, keys and JSON Web Tokens, and tokens in
+// headers.
 #include <cstdint>
 #include <cstdlib>
 #include <string>

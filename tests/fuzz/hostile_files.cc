@@ -259,8 +259,8 @@ void EndBySignal(int signal) {
   _exit(hung ? kWeHung : kWeCrashed);
 }
 
-// What would end this process tells where it happened; on a stack of its own, as the stack may be
-// what has no room.
+// Installs handlers of fatal signals, which tell whose code was at fault. They run on a stack of
+// their own, as the signal may be a stack overflow.
 void NoteSignals() {
   static std::array<char, std::size_t{1} << 16> stack;
   const stack_t other{.ss_sp = stack.data(), .ss_flags = 0, .ss_size = stack.size()};

@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 
-// What the handlers of fatal signals need.
+// The input that runs, and the file to keep it in: for the handlers of fatal signals.
 std::string running;
 std::string finding;
 

@@ -43,7 +43,7 @@ TEST_F(PeerLivenessTest, PeerThatStillTakesInWhatPrecedesThePingStays) {
   }
   seen_.delivered_bytes = 1002;
   EXPECT_EQ(At(1050), Verdict::kFine);
-  // From here on it has the ping, and taking in more is no answer.
+  // From here on the peer has the ping, and receiving more bytes does not count as an answer.
   seen_.sent_bytes = seen_.delivered_bytes = 2000;
   EXPECT_EQ(At(1149), Verdict::kFine);
   seen_.sent_bytes = seen_.delivered_bytes = 3000;
@@ -96,7 +96,7 @@ TEST_F(PeerLivenessTest, ClosingEndsUnlessSomethingIsStillBeingDelivered) {
   EXPECT_EQ(At(50), Verdict::kFine);
   seen_.delivered_bytes = 1;
   EXPECT_EQ(At(200), Verdict::kFine);
-  // What a client still sends does not prolong it.
+  // Bytes that the client still sends do not prolong it.
   seen_.received_bytes = 1000;
   EXPECT_EQ(At(399), Verdict::kFine);
   EXPECT_EQ(At(400), Verdict::kDrop);

@@ -196,7 +196,7 @@ TEST_F(WebSocketTest, ATokenBesideTheSubprotocolIsAuthorization) {
   EXPECT_EQ(metadata["authorization"],
             "Bearer anna?"
             "?>");
-  // What the client says about its address is not passed on.
+  // The client's own claim about its address is not passed on.
   EXPECT_THAT(metadata["x-forwarded-for"], ::testing::StartsWith("127.0.0.1:"));
 }
 
@@ -306,7 +306,7 @@ TEST_F(WebSocketTest, TooLargeMessageStillBeingSentIsRefused) {
   EXPECT_EQ(client.CloseCode(), 1009);
 }
 
-// It has five seconds to end what it sends.
+// The client has five seconds to finish sending.
 TEST_F(WebSocketTest, WhoNeverStopsSendingWhatIsTooLargeIsCutOff) {
   options_.max_message_bytes = 1000;
   RawClient client(Site().Port());

@@ -14,7 +14,7 @@ import numpy
 from PIL import Image
 
 SIZE = ("--size", "480x270")
-# An error that is measured for a time is another in each run.
+# No error is measured: within a time limit it would differ from run to run.
 FAST = ("--quality", "fast", "--error-seconds", "0")
 LAMBERT = ({"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
            "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0))
@@ -40,7 +40,7 @@ class AnnotationTest(ProductTest):
         self.assertGreater(differs[240:, :160].sum(), 200)
         self.assertEqual(differs[45:235].sum(), 0)
         self.assertEqual(differs[:, 300:].sum(), 0)
-        # What it shows stays inside.
+        # The scene in the PNG's text is the same.
         with Image.open(annotated) as a, Image.open(plain) as b:
             self.assertEqual(a.text, b.text)
         titled = self.folder / "titled.png"
@@ -69,7 +69,7 @@ class AnnotationTest(ProductTest):
         self.render(SAMPLE, output, *SIZE, *FAST, "--annotate", "--logo", logo)
         with Image.open(output) as picture:
             self.assertEqual(picture.format, "JPEG")
-        # Across its edges JPEG's colours run.
+        # JPEG blurs colours across edges.
         purple = (numpy.abs(pixels(output) - (255, 0, 255)) < 40).all(axis=2)
         self.assertGreater(purple[:40, 420:].sum(), 300)
         self.assertEqual(purple[:, :400].sum() + purple[60:].sum(), 0)

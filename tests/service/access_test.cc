@@ -32,7 +32,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Stub = v1::ThunderheadService::Stub;
 
-// What a role may call, beside operators, who may call all. An rpc that is missing here fails.
+// The roles that may call each rpc, beside operators, who may call all. An rpc that is missing here
+// fails the test.
 const std::map<std::string, std::set<std::string>> kMayCall = {
     {"GetServerInfo", {"viewer", "presenter", "pipeline"}},
     {"ListStorms", {"viewer", "presenter", "pipeline"}},
@@ -145,7 +146,7 @@ class HandCall {
     return Send(request, v1::InteractResponse::kJoined);
   }
   void Write(const v1::InteractRequest& request) { call_->Write(request); }
-  // The next message of that kind; empty if the call ends before.
+  // Sends the request and returns the next message of that kind; empty if the call ends before.
   v1::InteractResponse Send(const v1::InteractRequest& request,
                             v1::InteractResponse::MessageCase kind) {
     call_->Write(request);
@@ -236,7 +237,7 @@ TEST(AccessTest, RequestsAreLimited) {
   EXPECT_LT(taken, 20);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_TRUE(RetryOf(status).has_value());
-  // Another identity's are its own.
+  // Another identity has limits of its own.
   EXPECT_TRUE(guarded.Call("operator", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
 }
 
@@ -345,7 +346,7 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
       context.AddMetadata("x-forwarded-for", forwarded_for);
       return stub->ListStorms(&context, request, &response).error_code();
     };
-    // What the client itself wrote stands before what the proxy adds.
+    // The client's own entry stands before the one that the proxy adds.
     bool refused = false;
     for (int i = 0; i < 100 && !refused; ++i) {
       refused = ask(absl::StrCat("203.0.113.", i, ", 192.0.2.7")) != grpc::StatusCode::OK;

@@ -1,5 +1,5 @@
-// What the people of a session are told, and when: at a pace, the newest only, once for all of
-// them; and what runs out without anybody doing anything.
+// The updates that the people of a session get: at a limited rate, the newest only, made once for
+// all of them; and the states that time out without anybody doing anything.
 #include "session/audience.h"
 
 #include <atomic>
@@ -58,7 +58,7 @@ class AudienceTest : public ::testing::Test {
                             now_);
   }
 
-  // How the subjects are written here: who asks and who steers; whose pointers, where; marks.
+  // Writes the updates as texts: who asks and who steers; whose pointers are where; marks.
   AudienceFormat Format() {
     return {.presence =
                 [this](const Roster& roster) {

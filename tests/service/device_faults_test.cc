@@ -1,4 +1,4 @@
-// What the device's memory and its loss do to pictures, on a real context.
+// Pictures when the device runs out of memory or is lost, on a real context.
 #include "gl/device_memory.h"
 
 #include <deque>
@@ -69,7 +69,7 @@ TEST(DeviceMemoryTest, WhatIsUnusedGoesFirstAndThenTheObjectIsRefused) {
   EXPECT_EQ(used.size(), 3U);
 }
 
-// Tells what it is told to, once each.
+// A watch that reports the given faults, each once.
 class ToldWatch final : public DeviceWatch {
  public:
   explicit ToldWatch(std::shared_ptr<std::deque<Fault>> faults) : faults_(std::move(faults)) {}
@@ -137,7 +137,7 @@ TEST_F(FaultySource, GivesBackWhatItKeepsAndWhatItCouldNotFinish) {
   source_->FreeUnused(0.0);
   const std::size_t kept = budget->Used();
   EXPECT_LT(kept, drawn / 2);
-  // So little is left that another picture has no room.
+  // Leaves so little memory that another picture has no room.
   const auto others =
       budget->Reserve(MemoryUse::kDrawing, budget->Bytes() - budget->Used() - drawn / 4, "it");
   ASSERT_TRUE(others.ok());
@@ -151,7 +151,7 @@ TEST(WatchDeviceTest, SeesNoFaultInAContextThatIsWell) {
   const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok()) << context.status();
   EXPECT_EQ(WatchDevice()->Look(), Fault::kNone);
-  // A mistake of ours is none of the device's faults.
+  // An invalid call of ours is not a fault of the device.
   glEnable(GL_RGBA8);
   EXPECT_EQ(WatchDevice()->Look(), Fault::kNone);
 }

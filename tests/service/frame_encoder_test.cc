@@ -43,7 +43,7 @@ class FrameEncoderTest : public ::testing::Test {
     ASSERT_TRUE(encoded_.try_acquire_for(kPatience));
   }
 
-  // So many viewers, who take all that comes.
+  // Adds `count` viewers, who take every frame.
   std::vector<std::uint64_t> Join(int count, const ViewerWants& wants) {
     std::vector<std::uint64_t> viewers;
     for (int i = 0; i < count; ++i) {
@@ -52,7 +52,7 @@ class FrameEncoderTest : public ::testing::Test {
     return viewers;
   }
 
-  // What the viewers take now, each in its own way; the same object counts once.
+  // The frames that the viewers take now; an object that several viewers share counts once.
   std::set<const EncodedFrame*> TakeAll(const std::vector<std::uint64_t>& viewers) {
     std::set<const EncodedFrame*> frames;
     for (const std::uint64_t viewer : viewers) {
@@ -84,7 +84,7 @@ class FrameEncoderTest : public ::testing::Test {
 
  private:
   std::mutex mutex_;
-  std::map<std::string, int> serialized_;  // times, by what was
+  std::map<std::string, int> serialized_;  // how often, by form
   int without_memory_ = 0;                 // serializations that fail
   std::vector<std::shared_ptr<const EncodedFrame>> kept_;
   std::counting_semaphore<> encoded_{0};

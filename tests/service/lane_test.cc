@@ -69,7 +69,7 @@ TEST_F(LaneTest, PiecesOfLargePicturesAreShort) {
   Begin(SceneOf(320, 180, 128));
   Finish();
   ASSERT_TRUE(drawn_.ok()) << drawn_;
-  // What depends on the programs and the storm is known.
+  // The first picture has compiled the programs and prepared the storm.
   Begin(SceneOf(1920, 1080, 512));
   std::vector<double> pieces_ms = Finish();
   ASSERT_TRUE(drawn_.ok()) << drawn_;

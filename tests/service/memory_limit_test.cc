@@ -39,7 +39,7 @@ double StatusMib(pid_t process, const std::string& name) {
 
 std::string NameOf(int storm) { return absl::StrCat("storm", storm < 10 ? "0" : "", storm); }
 
-// A problem before it is that of memory.
+// True once the viewer has a picture. Checks that problems before it are about memory.
 bool HasPicture(Interacting& viewer) {
   bool has_picture = false;
   for (const Response& message : viewer.All()) {
@@ -71,8 +71,8 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
   }
   ServedProgram program(PROGRAM, first, "none", more);
   ASSERT_NE(program.stub(), nullptr);
-  // What software GL, the shaders' programs and gRPC take is there once a picture has been drawn,
-  // and does not count.
+  // The memory of software GL, the shaders' programs and gRPC is taken once a picture has been
+  // drawn, and does not count.
   double shown_mib = 0.0;
   std::vector<std::unique_ptr<Interacting>> viewers;
   for (int i = 0; i < kStorms; ++i) {
@@ -85,7 +85,7 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
     scene.mutable_camera()->mutable_top_down();
     v1::CreateSessionResponse created;
     grpc::Status status;
-    // As clients do that are told when to try again.
+    // Clients that are told when to try again do so.
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       status = Call(*program.stub(), &Stub::CreateSession, request, &created);
       if (status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED) break;

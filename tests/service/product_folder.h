@@ -1,4 +1,4 @@
-// What a pipeline has left in its folder of products, checked as its owner would.
+// Checks of the folder of products that a pipeline has left.
 #pragma once
 
 #include <map>

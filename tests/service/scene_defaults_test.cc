@@ -425,7 +425,7 @@ TEST(SceneDefaults, ARadiusWinsOverTheFieldsSizesAndThoseOverTheScenes) {
   EXPECT_EQ(ToScene(Completed(scene)).fields[1].sizes, SizeSource::kPapers);
 }
 
-// What is filled in stays when it comes back, and gives no radius that nobody gave.
+// Completing a completed scene changes nothing, and adds no radius that nobody gave.
 TEST(SceneDefaults, OfSizesAreFilledInOnce) {
   const v1::Scene once = Completed();
   EXPECT_EQ(once.particle_sizes(), v1::PARTICLE_SIZES_MODEL);

@@ -133,7 +133,7 @@ TEST_F(SequenceCommand, DrawsEveryTimeAndViewOnceAndOnlyWhatChangedAgain) {
   ExpectFinished(folder_.File("out"), Products());
 }
 
-// What a run leaves besides its pictures.
+// The files that a run leaves besides its pictures.
 struct Extras {
   std::vector<std::string> flags;
   std::vector<std::string> products;  // with a line in the manifest
@@ -180,7 +180,7 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
       ended = ending.signal == 0;
       if (!ended) ++killed;
       ExpectWholePictures(folder_.File(out));
-      // What was recorded stays as it was: nothing is drawn again, nothing is lost.
+      // Recorded entries stay as they were: nothing is drawn again, nothing is lost.
       const std::string now = Contents(folder_.File(out + "/manifest.jsonl"));
       EXPECT_THAT(now, StartsWith(recorded));
       recorded = now.substr(0, now.rfind('\n') + 1);

@@ -20,7 +20,7 @@ class VideoViewer : public Viewer {
   int wakes = 0;
 };
 
-// A hub whose video is words: "key", "base" or "droppable".
+// A hub whose video pictures are texts: "key", "base" or "droppable".
 class VideoHubTest : public ::testing::Test {
  protected:
   std::uint64_t Join(const ViewerWants& wants) {
@@ -53,7 +53,7 @@ class VideoHubTest : public ::testing::Test {
     return hub_.Publish(frame, jpeg, std::move(video), still_follows, now_);
   }
 
-  // What the viewer takes now: the encoding, or "nothing".
+  // The picture that the viewer takes now, in whichever encoding, or "nothing".
   std::string Take(std::uint64_t viewer) {
     const auto event = hub_.Take(viewer, now_);
     if (!event.has_value()) return "nothing";
@@ -182,7 +182,7 @@ TEST_F(VideoHubTest, ManyWhoCanAllGetVideo) {
   for (const auto viewer : viewers) EXPECT_EQ(Take(viewer), "key");
 }
 
-// It cannot take every picture, but those that the next ones need; the other gets all.
+// The slow viewer misses pictures, but gets those that later ones depend on; the other gets all.
 TEST_F(VideoHubTest, ASlowViewerMissesDroppablePicturesOnlyAndForcesNoKeys) {
   const auto fast = Join(kVideo);
   const auto slow = Join(kVideo);

@@ -55,7 +55,7 @@ class WatchCommand : public ::testing::Test {
     return Contents(RunFile(model_, time));
   }
 
-  // The time in so many seconds.
+  // The time that is `seconds` from now.
   static std::string In(int seconds) {
     return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now() + absl::Seconds(seconds),
                             absl::UTCTimeZone());
@@ -71,7 +71,7 @@ class WatchCommand : public ::testing::Test {
     std::ofstream(RunFile(inbox_, time), std::ios::binary) << bytes;
   }
 
-  // As a slow copy.
+  // Writes the file in pieces, as a slow copy does.
   void PutSlowly(int time, const std::string& bytes) const {
     std::ofstream file(RunFile(inbox_, time), std::ios::binary);
     constexpr std::size_t kPieces = 5;
@@ -103,7 +103,8 @@ class WatchCommand : public ::testing::Test {
   const std::string err_ = folder_.File("stderr");
 };
 
-// What the issue asks for: slowly, in pieces, one cut short, one twice, and killed on the way.
+// Files are written slowly, in pieces, one cut short, one twice, while the program is killed again
+// and again.
 TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
   constexpr int kFiles = 5;
   const char* wanted = std::getenv("THUNDERHEAD_KILLS");
@@ -181,7 +182,7 @@ TEST_F(WatchCommand, AFileThatItsWriterHoldsOpenIsNotReady) {
   Put(0, Bytes(0));
   int writer = 0;
   ASSERT_EQ(nc_open(RunFile(inbox_, 0).c_str(), NC_WRITE, &writer), NC_NOERR);
-  // The lock would live on in the programs that are started here.
+  // Closed on exec: otherwise the programs started here would inherit the file and its lock.
   for (const auto& file : fs::directory_iterator("/proc/self/fd")) {
     std::error_code gone;
     if (fs::read_symlink(file, gone) == RunFile(inbox_, 0)) {
@@ -210,7 +211,7 @@ TEST_F(WatchCommand, AFileWaitsForTheNextOrForItsSize) {
             0)
       << Contents(err_);
   ExpectFinished(folder_.File("out"), Products(1));
-  // Bytes behind the end are none of HDF5's.
+  // HDF5 ignores bytes behind its end.
   Put(1, Bytes(1) + std::string(5000, '\0'));
   const std::size_t between = Bytes(1).size() + 2500;
   const std::string ready = "age:0,minsize:" + std::to_string(between);
@@ -276,7 +277,7 @@ TEST_F(WatchCommand, FilesThatAreMovedAwayOnceDrawnStillCount) {
       archive(time);
     }
   }
-  // Killed, and started again when both are gone.
+  // The program was killed, and is started again when both files are gone.
   RunningProgram program(PROGRAM, arguments, out_, err_);
   Put(2, Bytes(2));
   EXPECT_EQ(program.Wait().code, 0) << Contents(err_);

@@ -9,7 +9,7 @@ import { formatElapsed } from "./units";
 export interface ComparisonChoice {
   // Absent: the storm that is shown.
   readonly stormId: string | undefined;
-  // Absent: the time that is shown, and of another storm its time of the nearest date.
+  // Absent: the time that is shown, or in another storm the time with the nearest date.
   readonly timeIndex: number | undefined;
   // Settings kept for B while those of A change; absent: B has A's.
   readonly settings: Scene | undefined;
@@ -35,10 +35,10 @@ export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWit
   return withOutput(seen, { ...w.size, jpegQuality: a.output?.jpegQuality });
 }
 
-// B's time, as an index into those of its storm; and how far it is from A's, where it was to be the same.
+// B's time, as an index into those of its storm, and its difference from A's.
 export interface TimeOfB {
   readonly index: number;
-  // Positive where B is later; undefined where the dates cannot be compared, and B has A's number.
+  // Positive where B is later; undefined where the dates cannot be compared and B has A's index.
   readonly awayS: number | undefined;
 }
 
@@ -56,7 +56,7 @@ export function timeOfB(
 // Runs farther apart have no times in common, such as an idealised one and a real one.
 const FARTHEST_S = 2 * 86_400;
 
-// Of another storm the time with the nearest date; else the one as many steps after its first.
+// The other storm's time with the nearest date; the one with the same index where no date is near.
 function nearestTime(
   index: number,
   { storm, other }: Pick<ComparedWith, "storm" | "other">,
@@ -78,6 +78,6 @@ export function awayInWords({ awayS }: TimeOfB): string | undefined {
   if (awayS === 0) return undefined;
   if (awayS === undefined)
     return "The dates of A and B cannot be compared: B shows the time of the same number.";
-  const way = formatElapsed(Math.abs(awayS)).slice(1);
-  return `B has no such valid time: it shows the nearest, ${way} ${awayS < 0 ? "earlier" : "later"}.`;
+  const duration = formatElapsed(Math.abs(awayS)).slice(1);
+  return `B has no such valid time: it shows the nearest, ${duration} ${awayS < 0 ? "earlier" : "later"}.`;
 }

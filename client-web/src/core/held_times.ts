@@ -6,7 +6,7 @@ export interface Stretch {
   readonly to: number;
 }
 
-// One stretch for each row of neighbours. A time takes half the way to the times beside it.
+// One stretch for each row of neighbours. A time extends halfway to the times beside it.
 export function stretchesOf(indices: readonly number[], count: number): Stretch[] {
   const last = count - 1;
   const within = indices.filter((index) => index <= last);

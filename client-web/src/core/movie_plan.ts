@@ -83,7 +83,7 @@ function mix(from: unknown, to: unknown, share: number, isAngle: boolean): unkno
   if (Array.isArray(from))
     return from.map((each, at) => mix(each, (to as unknown[])[at], share, false));
   if (typeof from !== "number" || typeof to !== "number") return from;
-  // The shorter way around.
-  const way = isAngle ? ((((to - from) % 360) + 540) % 360) - 180 : to - from;
-  return from + share * way;
+  // Angles turn by the shorter arc.
+  const change = isAngle ? ((((to - from) % 360) + 540) % 360) - 180 : to - from;
+  return from + share * change;
 }

@@ -1,5 +1,5 @@
 // Every parameter of a scene, read from the messages' descriptors: a field that is added to scene.proto is in this list without
-// a line of code. Values are read and changed by their way through the messages.
+// a line of code. Values are read and changed by their path of fields.
 import {
   create,
   type DescField,
@@ -44,7 +44,7 @@ export interface ParameterOption {
 
 type Fields = Record<string, unknown>;
 
-// Those that the scene has now: of a oneof only the case that is set, of lists the elements that are there.
+// The parameters that the scene has now: of a oneof only the case that is set, of a list its elements.
 export function parametersOf(scene: Scene): Parameter[] {
   return SceneSchema.fields.flatMap((field) => ofField(scene, field, [], "", field.name));
 }

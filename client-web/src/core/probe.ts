@@ -1,4 +1,4 @@
-// The place that a click on the picture found, and the distance from it to the next one.
+// The place that a click on the picture found, and its displacement to the place of the next click.
 import type { ProbeRayResponse, RayPlace } from "../gen/thunderhead/v1/probe_pb";
 import type { WorldRay } from "./projection";
 
@@ -7,18 +7,21 @@ export interface Probed {
   readonly found: ProbeRayResponse;
 }
 
-// From one place to another.
-export interface Way {
+// The displacement from one place to another.
+export interface Displacement {
   // Along the ground.
   readonly distanceM: number;
   readonly heightM: number;
-  // Straight.
+  // Along the straight line.
   readonly straightM: number;
   // Clockwise from north.
   readonly azimuthDeg: number;
 }
 
-export function wayBetween(from: RayPlace | undefined, to: RayPlace | undefined): Way | undefined {
+export function displacementBetween(
+  from: RayPlace | undefined,
+  to: RayPlace | undefined,
+): Displacement | undefined {
   if (from?.position === undefined || to?.position === undefined) return undefined;
   const [x, y, z] = (["xM", "yM", "zM"] as const).map(
     (axis) => (to.position?.[axis] ?? 0) - (from.position?.[axis] ?? 0),

@@ -13,7 +13,7 @@ export interface ClockHere {
   readonly longitudeDeg: number;
 }
 
-// The clock of the picture: of the scene where it says so, else of the storm. Undefined while none is known.
+// The clock of the picture: the scene's if it has one, else the storm's. Undefined while neither is known.
 export function clockHere(
   set: SunClock | undefined,
   storm: SunClock | undefined,
@@ -48,7 +48,7 @@ export function sunriseAndSunset(
   { instant, latitudeDeg, longitudeDeg }: ClockHere,
   zone: string,
 ): { readonly sunrise: number | undefined; readonly sunset: number | undefined } {
-  // Noon of the local day belongs to the same day of the sun.
+  // Noon, as it belongs to the same solar day in every time zone.
   const noon = atMinute(instant, DAY_MINUTES / 2, zone);
   const { sunrise, sunset } = getTimes(noon, latitudeDeg, longitudeDeg);
   return {
@@ -57,7 +57,7 @@ export function sunriseAndSunset(
   };
 }
 
-// What the sun does on the local day: "Sunrise 06:12 · sunset 20:29".
+// Sunrise and sunset of the local day: "Sunrise 06:12 · sunset 20:29".
 export function dayInWords(here: ClockHere, zone: string): string {
   const { sunrise, sunset } = sunriseAndSunset(here, zone);
   if (sunrise !== undefined && sunset !== undefined)

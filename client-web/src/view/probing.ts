@@ -1,4 +1,5 @@
-// Asks the server what lies along the ray of a click, and keeps the last two answers: the second click measures from the first.
+// Asks the server for the fields along the ray of a click, and keeps the last two answers: the second click measures from the
+// first.
 import { ConnectError } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
 import { cameraOfPose } from "../core/camera";
@@ -19,7 +20,7 @@ export class Probing {
   constructor(calls: ServerCalls, state: PageState) {
     this.#calls = calls;
     this.#state = state;
-    // What was found is of the storm and time that were shown.
+    // Answers belong to the storm and time that were shown, and are dropped with them.
     this.#stop = effect(() => {
       void [state.stormId.value, state.timeIndex.value];
       untracked(() => this.forget());
@@ -30,14 +31,14 @@ export class Probing {
     this.#stop();
   }
 
-  // At a place of the window, in CSS pixels.
+  // Probes at a place of the window, in CSS pixels.
   async at({ left, top }: StrokePoint): Promise<void> {
     const box = this.#state.pictureBox.peek();
     const point = box === undefined ? undefined : picturePointAt(box, left, top);
     if (point !== undefined) await this.through(point);
   }
 
-  // Through a point of the picture.
+  // Probes along the ray through a point of the picture.
   async through(point: PicturePoint): Promise<void> {
     const projection = this.#state.frame.peek()?.projection;
     if (projection === undefined) return;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What every task begins with: tells ecFlow that it runs, and of every way in which it ends.
+# The beginning of every task: tells ecFlow that the task runs and, however it ends, that it has ended.
 set -euo pipefail
 export ECF_PORT=%ECF_PORT% ECF_HOST=%ECF_HOST% ECF_NAME=%ECF_NAME% ECF_PASS=%ECF_PASS% ECF_TRYNO=%ECF_TRYNO%
 export ECF_RID=$$ ECF_TIMEOUT=300

@@ -1,7 +1,7 @@
 // Neyret's phenomenological shading of cumulus clouds (2000, "A Phenomenological Shader for the
 // Rendering of Cumulus Clouds") in real time: ray-cast ellipsoids, nearest cores first, then each
-// fragment shaded by section 4. The result is what the medium's renderers give: rgb sent to the
-// eye, a the share of the background that passes. Owns GL objects: use it on the context's thread.
+// fragment shaded by section 4. The result is like that of the medium's renderers: radiance
+// (rgb) and transmittance (a). Owns GL objects: use it on the context's thread.
 #pragma once
 
 #include <memory>

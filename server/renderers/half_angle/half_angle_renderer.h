@@ -1,8 +1,7 @@
 // Half-angle slicing: an eye buffer and a light buffer advance together through slices of the
 // medium, a slab of slices at a time: sunlight is carried through the slab, each slice's in a layer
 // of its own, and one pass adds the slab to the picture (docs/decisions/0013-slabs.md). The result
-// is what the medium sends to the eye (rgb) and the share of the background that passes (a), before
-// sky and ground.
+// is the medium's radiance towards the eye (rgb) and its transmittance (a), before sky and ground.
 //
 // Riley et al. 2003 (Vis), section 4.4; transport `kPaper` is eq. 14-17 as printed, `kConsistent`
 // the same idea with the exact exponential of the effective extinction, delta scaling, and a

@@ -36,9 +36,10 @@ constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSide
 constexpr double kFarthestHop = 0.05;
 constexpr float kMinResistance = 1e-3F;
 
-// The mean of what passes between two optical depths; `passed` is what passes the lesser one.
-float MeanDecay(float passed, float from, float to) {
-  return passed * physics::glsl::mean_transmittance(std::abs(to - from));
+// The mean of exp(-depth) between the optical depths `from` and `to`; `transmittance` is that of
+// the lesser depth.
+float MeanTransmittance(float transmittance, float from, float to) {
+  return transmittance * physics::glsl::mean_transmittance(std::abs(to - from));
 }
 
 // Cells that a thread works on at a time. Sums are of shares, in order, so that they do not depend
@@ -341,14 +342,14 @@ void DiffuseLight::SolveSkyPart(int part) {
   }
 }
 
-// Transmittance of sunlight to each cell, and its mean on the way to the neighbour up each axis.
-void DiffuseLight::FindDecays(const std::vector<float>& arrived_root) {
+// Transmittance of sunlight to each cell, and its mean on the path to the neighbour up each axis.
+void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
   sun_.resize(cell_of_.size());
   ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const float root = arrived_root[static_cast<std::size_t>(cell_of_[n])];
       sun_[n].depth = root * root;
-      sun_[n].passed = std::exp(-sun_[n].depth);
+      sun_[n].transmittance = std::exp(-sun_[n].depth);
     }
   });
   ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
@@ -358,8 +359,8 @@ void DiffuseLight::FindDecays(const std::vector<float>& arrived_root) {
         const std::int32_t to = links_[n].to[2 * axis + 1];
         if (to == kNone) continue;
         const SunAt& there = sun_[static_cast<std::size_t>(to)];
-        here.decay_up[axis] =
-            MeanDecay(std::max(here.passed, there.passed), here.depth, there.depth);
+        here.mean_transmittance_up[axis] = MeanTransmittance(
+            std::max(here.transmittance, there.transmittance), here.depth, there.depth);
       }
     }
   });
@@ -371,7 +372,7 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
   const Links& links = links_[n];
   const float depth = sun_[n].depth;
   float scattered = 0.0F;
-  float mean_decay = 0.0F;
+  float mean_transmittance = 0.0F;
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
     const bool up = side % 2 == 1;
@@ -379,26 +380,28 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
     const auto along = (up ? -1.0F : 1.0F) * static_cast<float>(towards_sun[axis]);
     const auto half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
     float flux = 0.0F;
-    float decay = 0.0F;
+    float transmittance = 0.0F;
     if (links.to[side] != kNone) {
       const auto other = static_cast<std::size_t>(links.to[side]);
       const auto j = static_cast<std::size_t>(cell_of_[other]);
       const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
-      decay = sun_[up ? n : other].decay_up[axis];
-      flux = along * (3.0F * between + links.slack[side]) * decay;
+      transmittance = sun_[up ? n : other].mean_transmittance_up[axis];
+      flux = along * (3.0F * between + links.slack[side]) * transmittance;
     } else {
       const float out = half_m * cells_.light_per_m[i];
       // The optical depth of sunlight at the surface, where it enters or leaves.
       const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
                                          : depth + out / std::max(along, 1e-3F);
-      const float passed = std::exp(-surface);
-      decay = MeanDecay(std::max(sun_[n].passed, passed), depth, surface);
-      flux = along * (3.0F * out * decay + links.slack[side] * passed);
+      const float surface_transmittance = std::exp(-surface);
+      transmittance =
+          MeanTransmittance(std::max(sun_[n].transmittance, surface_transmittance), depth, surface);
+      flux = along * (3.0F * out * transmittance + links.slack[side] * surface_transmittance);
     }
     scattered -= links.conductance[side] * flux;
-    mean_decay += decay / 6.0F;
+    mean_transmittance += transmittance / 6.0F;
   }
-  return scattered - static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_decay;
+  return scattered -
+         static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_transmittance;
 }
 
 const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
@@ -406,7 +409,7 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
                                                  double tolerance) {
   THUNDERHEAD_CHECK(arrived_root.size() == number_.size(), std::to_string(arrived_root.size()));
   const std::size_t count = cell_of_.size();
-  FindDecays(arrived_root);
+  FindTransmittances(arrived_root);
   std::vector<float> right(count, 0.0F);
   ForShares(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) right[n] = SunlightScattered(n, towards_sun);
@@ -418,10 +421,10 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
     for (std::size_t n = begin; n < end; ++n) {
       const auto i = static_cast<std::size_t>(cell_of_[n]);
       const float exit = exit_root_[i] * exit_root_[i];
-      const float passed = sun_[n].depth;
-      const float lit = physics::glsl::lit_fluence(exit, passed);
+      const float depth = sun_[n].depth;
+      const float lit = physics::glsl::lit_fluence(exit, depth);
       net_inward_[i] = (lit - fluence_[n]) / (3.0F * TransportExit(i) + 2.0F);
-      own[i] = 4.0F * ((exit < passed ? exit / passed : 1.0F) - net_inward_[i]);
+      own[i] = 4.0F * ((exit < depth ? exit / depth : 1.0F) - net_inward_[i]);
     }
   });
   from_walls_ = walls_.Arriving(own);

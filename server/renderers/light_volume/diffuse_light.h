@@ -25,17 +25,17 @@ class DiffuseLight {
   // Results that follow from the cells alone, for each of them.
   // The square root of the optical depth of `light` to the nearest exit.
   const std::vector<float>& ExitRoot() const { return exit_root_; }
-  // How much of what comes in by the nearest ways out is skylight above a black ground, straight or
-  // from other walls, and its net flux into the cloud. A sky is taken for one whose radiance is
-  // linear in the sine of the elevation: x counts its irradiance from above over pi, y its mean
-  // radiance; x + y is that of an even sky.
+  // The share of the light entering by the nearest exits that is skylight above a black ground,
+  // direct or from other walls, and its net flux into the cloud. The sky's radiance is approximated
+  // as linear in the sine of the elevation: x weighs its irradiance from above over pi, y its mean
+  // radiance; x + y is the weight of a uniform sky.
   const std::vector<glm::vec2>& SkySeen() const { return sky_seen_; }
   const std::vector<glm::vec2>& SkyInward() const { return sky_inward_; }
 
   // For sunlight of irradiance 1 that arrives in each cell with the root of its optical depth
-  // `arrived_root`: the net flux into the cloud that fluence (shaders/physics/light_transport.glsl,
-  // diffuse_fluence) is made of. Starts from the last solution, and ends where the residual, in the
-  // preconditioner's norm, is less than `tolerance` times the right side.
+  // `arrived_root`: the net flux into the cloud, from which diffuse_fluence computes the fluence
+  // (shaders/physics/light_transport.glsl). Starts from the last solution, and ends where the
+  // residual, in the preconditioner's norm, is less than `tolerance` times the right side.
   const std::vector<float>& SolveSun(const glm::dvec3& towards_sun,
                                      const std::vector<float>& arrived_root,
                                      double tolerance = 2e-4);
@@ -43,9 +43,9 @@ class DiffuseLight {
   const std::vector<float>& FromWalls() const { return from_walls_; }
 
   // A value of each cell that holds anything, and for empty ones beside them the mean of those; 0
-  // elsewhere. `value` is called on all threads with the place of the cell's middle from the cells'
-  // low corner, and the way out: by each axis the mean of 1 up and -1 down, weighted by how near
-  // either exit is.
+  // elsewhere. `value` is called on all threads with the place of the cell's centre from the cells'
+  // low corner, and the direction out: along each axis the mean of 1 up and -1 down, weighted by
+  // how near either exit is.
   using CellValue = std::function<float(const glm::dvec3& place_m, const glm::vec3& outward)>;
   std::vector<float> AtCells(const CellValue& value) const;
 
@@ -64,17 +64,18 @@ class DiffuseLight {
 
   // Sunlight in a cell, by number, of the sun that is being solved for.
   struct SunAt {
-    float depth = 0.0F;      // optical, of sunlight that arrives
-    float passed = 1.0F;     // its transmittance
-    float decay_up[3] = {};  // mean transmittance on the way to the next cell up each axis
+    float depth = 0.0F;          // optical, of sunlight that arrives
+    float transmittance = 1.0F;  // exp(-depth)
+    // Mean transmittance on the path to the next cell up each axis.
+    float mean_transmittance_up[3] = {};
   };
 
   void Number();
   void FindFringe();
-  // Calls `use` with the cells that are not empty beside `cell`, corner by corner too.
+  // Calls `use` with those of the 26 neighbours of `cell` that are not empty.
   template <typename Use>
   void ForNeighbours(std::size_t cell, const Use& use) const;
-  void FindDecays(const std::vector<float>& arrived_root);
+  void FindTransmittances(const std::vector<float>& arrived_root);
   float SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const;
   void FindExits();
   void ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all);
@@ -89,7 +90,7 @@ class DiffuseLight {
   void Precondition(const std::vector<float>& from, std::vector<float>* to) const;
   void Apply(const std::vector<float>& from, std::vector<float>* to) const;
   void Solve(const std::vector<float>& right, double tolerance, std::vector<float>* solution);
-  // Gives empty cells beside others the mean of those.
+  // Sets empty cells beside others to the mean of those.
   template <typename Value>
   void Spread(std::vector<Value>* values) const;
 

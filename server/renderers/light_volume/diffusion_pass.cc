@@ -16,13 +16,13 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Larger media are solved on fewer cells than their own.
+// Larger media are solved on a coarser grid than their own.
 constexpr double kMaxDiffusionCells = 4e6;
 
 constexpr std::size_t kTexelsInShare = 32768;  // that a thread works on at a time
 
-// Memory that DiffuseLight, its inputs and this pass take for each cell, and for one with anything
-// in it besides.
+// Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
+// that is not empty.
 constexpr std::size_t kBytesPerCell = 64;
 constexpr std::size_t kBytesPerFullCell = 124;
 
@@ -88,7 +88,7 @@ absl::StatusOr<DiffusionCells> DiffusionPass::SampleCells(const ResidentMedium& 
     size_ = size;
     sampled_cells_ = gl::Texture3D(GL_RGBA32F, size);
     sampled_light_ = gl::Texture3D(GL_R32F, size);
-    ways_out_ = gl::Texture3D(GL_RGBA16F, size);
+    exits_ = gl::Texture3D(GL_RGBA16F, size);
     net_inward_ = gl::Texture3D(GL_RGBA16F, size);
   }
   medium.Bind(*program);
@@ -120,14 +120,14 @@ void DiffusionPass::SolveCells(DiffusionCells cells) {
   const std::size_t count = light_->ExitRoot().size();
   arrived_root_.resize(count);
   net_inward_texels_.resize(count);
-  std::vector<float> ways_out(4 * count);
+  std::vector<float> exits(4 * count);
   for (std::size_t i = 0; i < count; ++i) {
-    ways_out[4 * i] = light_->ExitRoot()[i];
-    ways_out[4 * i + 1] = light_->SkySeen()[i].x;
-    ways_out[4 * i + 2] = light_->SkySeen()[i].y;
-    ways_out[4 * i + 3] = light_->SkyInward()[i].x;
+    exits[4 * i] = light_->ExitRoot()[i];
+    exits[4 * i + 1] = light_->SkySeen()[i].x;
+    exits[4 * i + 2] = light_->SkySeen()[i].y;
+    exits[4 * i + 3] = light_->SkyInward()[i].x;
   }
-  ways_out_.Upload(GL_RGBA, GL_FLOAT, ways_out.data());
+  exits_.Upload(GL_RGBA, GL_FLOAT, exits.data());
 }
 
 absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
@@ -145,7 +145,7 @@ absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
 }
 
 void DiffusionPass::Bind() const {
-  ways_out_.Bind(shaders::kWaysOutUnit);
+  exits_.Bind(shaders::kExitsUnit);
   net_inward_.Bind(shaders::kNetInwardUnit);
 }
 

@@ -36,12 +36,11 @@ class DiffusionPass {
   void Bind() const;
 
   std::size_t Bytes() const {
-    return sampled_cells_.Bytes() + sampled_light_.Bytes() + ways_out_.Bytes() +
-           net_inward_.Bytes();
+    return sampled_cells_.Bytes() + sampled_light_.Bytes() + exits_.Bytes() + net_inward_.Bytes();
   }
 
  private:
-  // Inputs of the cells.
+  // The inputs that the cells depend on.
   struct Key {
     std::uint64_t medium = 0;
     std::vector<double> light;
@@ -53,21 +52,22 @@ class DiffusionPass {
 
   absl::StatusOr<DiffusionCells> SampleCells(const ResidentMedium& medium,
                                              const GroupWeights& weights);
-  // Solves for all that follows from the cells alone.
+  // Solves for the results that depend on the cells alone.
   void SolveCells(DiffusionCells cells);
   absl::Status SampleLight(const gl::Texture3D& arrived);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   Key key_;
-  base::MemoryReservation memory_;  // of what follows, on the processors' side
+  base::MemoryReservation memory_;  // in main memory, of the members below
   std::optional<DiffuseLight> light_;
   glm::ivec3 size_{0};
   gl::Texture3D sampled_cells_;
   gl::Texture3D sampled_light_;
   // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
   // x of its net flux.
-  gl::Texture3D ways_out_;
-  // Of sunlight; the fluence from other walls; the y of the sky's; LitGround::ShareAt.
+  gl::Texture3D exits_;
+  // Net inward flux of sunlight; the fluence from other walls; the y of the sky's net flux;
+  // LitGround::ShareAt.
   gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;
   std::vector<glm::vec4> net_inward_texels_;

@@ -1,7 +1,7 @@
 // Light once, view many: sunlight is carried along the sun's rays and given to the medium's cells,
 // once for a sun, fields and their parameters; a camera move only marches view rays through the
 // medium and that light, leaping over empty bricks and ending where nothing more shows. The result
-// is what the medium sends to the eye (rgb) and the share of the background that passes (a).
+// is the medium's radiance towards the eye (rgb) and its transmittance (a).
 //
 // The light model is that of half-angle slicing (Riley et al. 2003, Vis, 4.4), without the exchange
 // of light between neighbouring rays.

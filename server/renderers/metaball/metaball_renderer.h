@@ -1,8 +1,8 @@
 // Man's two-pass renderer of metaballs (P. Man, Generating and Real-Time Rendering of Clouds,
 // section 4), on the device: the first pass gives every ball its light from each of several
 // coloured lights (the sun, the sky and the ground, the scene's own), the second splats the balls
-// in their order from the eye. The result is what they send to the eye (rgb) and the share of the
-// background that passes (a).
+// in their order from the eye. The result is their radiance towards the eye (rgb) and their
+// transmittance (a).
 //
 // Transport "paper" is as printed; "consistent" has the fields' own optics and loses no energy.
 #pragma once

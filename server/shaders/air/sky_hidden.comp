@@ -1,8 +1,9 @@
 // The storm in the sky of each point of a coarse lattice around it, as common/sky_hidden.glsl has it: means over directions
 // spread evenly over the upper half of its opacity, and of that times the transmittance for diffuse light of a level layer of
 // as much vertical depth: two-stream, (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r) for the depths r of transport (similarity
-// scaled) and a of absorption. What such a layer does not let through where nothing absorbs, it reflects, times the
-// reflectance (1 - s) / (1 + s) of an endless one, s = sqrt(a / r); the mean of that is kept as a vector.
+// scaled) and a of absorption. The layer's reflectance is 1 less its
+// transmittance without absorption, multiplied by the reflectance (1 - s) / (1 + s) of a semi-infinite layer,
+// s = sqrt(a / r); its mean over directions is kept as a vector.
 // Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"

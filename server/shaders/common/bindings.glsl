@@ -1,5 +1,5 @@
 // Numbers that shaders share with the C++ that runs them: texture units, image units, bindings of storage buffers, sizes
-// of work groups. Compiles as GLSL and as C++ (shaders/bindings.h). Within a program each number of a kind is taken once, which
+// of work groups. Compiles as GLSL and as C++ (shaders/bindings.h). Within a program each number of a kind is used once, which
 // tests check (gl/strict_programs.h); programs of different techniques share numbers.
 
 // Textures of a medium.
@@ -50,7 +50,7 @@ const int kSliceThicknessImage = 2;
 const int kArrivedUnit = 4;
 const int kCarriedUnit = 5;
 const int kThicknessUnit = 6;
-const int kWaysOutUnit = 5;
+const int kExitsUnit = 5;
 const int kNetInwardUnit = 6;
 const int kCorrectionRedUnit = 13;
 const int kCorrectionGreenUnit = 14;
@@ -81,11 +81,11 @@ const int kRoughnessNoiseUnit = 8;
 const int kBubblesBinding = 0;
 const int kBubbleOrderBinding = 1;
 
-// Sunlight by height: up to 24 km, above which air takes little.
+// Table of sunlight by height: up to 24 km, above which air attenuates little.
 const int kSunlightLevels = 33;
 const float kSunlightStep_m = 750.0f;
 
-// Invocations of a work group: along each of two sides, or in all.
+// Invocations in a work group: along each of two sides, or in total.
 const int kLightGroupSide = 8;
 const int kArriveGroupSize = 32;
 const int kBallGroupSize = 64;

@@ -1,4 +1,4 @@
-// The cores that lie together and the layer in front of them: radiance, and the share of the background that passes.
+// The cores that lie together and the layer in front of them: radiance (rgb) and transmittance (a).
 #include "common/bindings.glsl"
 
 layout(binding = kCoresUnit) uniform sampler2D cores;

@@ -30,7 +30,7 @@ uniform vec4 shadow_z;
 uniform float shadow_texel_m;
 
 layout(location = 0) out vec4 cores;  // radiance times weight, weight
-layout(location = 1) out vec4 layer;  // radiance, share of what lies behind that passes
+layout(location = 1) out vec4 layer;  // radiance, transmittance
 
 const float kPi = 3.14159265;
 const float kTrapSharpness = 4.0;       // the paper's k
@@ -38,8 +38,8 @@ const int kTrapScales = 6;
 const float kCoronaVariance = 0.16;     // of the scattering angle at the deepest corona: sigma_max 0.4 rad
 const float kNarrowest = 400.0;         // power of the cosine of droplets' own forward lobe
 const int kReliefScales = 3;
-// Wavelengths of the roughness over the noise's, and its heights over them. Light that is scattered inside the cloud evens out
-// what is smaller than the way it goes, so the finest is the lowest.
+// Wavelengths of the roughness over the noise's, and its heights over them. Light scattered inside the cloud smooths
+// out whatever is smaller than the distance it travels, so the finest scale is the lowest.
 const vec3 kReliefWave = vec3(4.0, 1.0, 0.25);
 const vec3 kReliefHeight = vec3(0.35, 0.2, 0.06);
 
@@ -66,14 +66,14 @@ vec3 shadow_place(vec3 point_m) {
   return vec3(vec2(dot(shadow_x, p), dot(shadow_y, p)) * vec2(textureSize(shadow_depth, 0)) - 0.5, dot(shadow_z, p));
 }
 
-// To a point.
+// The share of sunlight that reaches a point.
 float lit(vec3 point_m) {
   vec3 place = shadow_place(point_m);
   return lit_texels(place.xy, place.z);
 }
 
-// To a surface, as the mean over places of it that are two coronas apart: inside the cloud light goes sideways, so that no
-// shadow on it is sharper. `cosine` is that of the sun's angle to it.
+// The share of sunlight that reaches a surface: the mean over places on it that are two coronas apart, as light spreads
+// sideways inside the cloud and blurs shadows to that width. `cosine` is that of the sun's angle to the normal.
 float lit_softly(vec3 point_m, vec3 normal, float cosine) {
   const float kMinCosine = 0.05;  // a steeper surface's places lie too far apart in depth
   vec3 place = shadow_place(point_m);
@@ -94,7 +94,7 @@ vec3 from_surroundings(vec3 n) {
   return max(sum, vec3(0.0));
 }
 
-// How far noise of a wavelength shows in pixels of a size.
+// The share (0 to 1) of noise of a wavelength that pixels of a size resolve.
 float resolved(float wave_m, float pixel_m) { return clamp(1.5 - 3.0 * pixel_m / wave_m, 0.0, 1.0); }
 
 // The normal of a surface that is rough at all scales. Roughness finer than pixels is left out.
@@ -171,8 +171,8 @@ vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #endif
 }
 
-// Radiance of the corona with the sun behind it (section 4.2, appendix A): the variance of the angle grows
-// with the droplets passed, and the lobe is a power of the cosine, scaled so that it sends as much as it takes.
+// Radiance of the corona with the sun behind it (section 4.2, appendix A): the variance of the
+// scattering angle grows with the droplets on the path, and the lobe is a power of the cosine, scaled to conserve energy.
 vec3 corona(Meeting meeting, float rho) {
   float mu = dot(meeting.ray, towards_sun);
   if (mu <= 0.0) return vec3(0.0);
@@ -198,7 +198,7 @@ void main() {
   vec3 point_m = meeting.origin_m + meeting.entry_m * meeting.ray;
   float pixel_m = parallel ? pixel_share : pixel_share * meeting.entry_m;
   float rho = min(meeting.depth_m / corona_m, 1.0);
-  // Thinner where the noise is low; 0 stays 0 and 1 stays 1.
+  // The corona is thinner where the noise is low; densities of 0 and 1 stay.
   if (rho < 1.0 && roughness > 0.0) {
     float fine = mix(0.7, noise_root(4.0 * point_m), resolved(0.25 * noise_wave_m, pixel_m));
     rho = pow(rho, exp(3.0 * roughness * (1.4 - noise_root(point_m) - fine)));

@@ -1,6 +1,6 @@
-// Carries sunlight through consecutive slices of the light buffer: each layer is what enters a slice. r is the share of
-// sunlight, g the similarity-scaled optical depth passed. Neighbouring texels exchange light once a call, by the light
-// scattered since the last call (CONSISTENT) or in its only slice (the paper's transport).
+// Carries sunlight through consecutive slices of the light buffer: each layer holds the light that enters a slice. r is the
+// share of sunlight, g the similarity-scaled optical depth from the sun. Neighbouring texels exchange light once a call,
+// by the light scattered since the last call (CONSISTENT) or in its only slice (the paper's transport).
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT (there is an exchange).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
@@ -36,19 +36,19 @@ float peripheral(vec3 place) {
   return 0.25 * sum;
 }
 
-// The light `here` after it has passed the medium; `place` is in the light buffer.
+// The light `here` after a slice of the medium; `place` is in the light buffer.
 vec2 carried(vec2 here, vec3 place, Medium medium, vec4 light_depths[PLANES], vec4 transport_depths[PLANES]) {
-  float passed = exp(-weigh(medium, light_depths));
+  float transmittance = exp(-weigh(medium, light_depths));
 #if TRANSLUCENT && !CONSISTENT
   // Riley et al. 2003 (Vis), eq. 14 to 17 as printed.
-  float blocked = 1.0 - passed;
-  return vec2(here.r * (passed + blocked * cumulative_phase.x) +
+  float blocked = 1.0 - transmittance;
+  return vec2(here.r * (transmittance + blocked * cumulative_phase.x) +
                   peripheral(place) * blocked * (cumulative_phase.y - cumulative_phase.x),
               here.g);
 #elif TRANSLUCENT
-  return vec2(here.r * passed, here.g + weigh(medium, transport_depths));
+  return vec2(here.r * transmittance, here.g + weigh(medium, transport_depths));
 #else
-  return vec2(here.r * passed, here.g);
+  return vec2(here.r * transmittance, here.g);
 #endif
 }
 

@@ -1,5 +1,5 @@
-// The eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and transmittance of what
-// lies behind (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and
+// The eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and the transmittance for
+// light from behind (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and
 // leaps over those in empty bricks. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from
 // carry.comp.
 // Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), EVEN_ALBEDO (one albedo and
@@ -27,8 +27,8 @@ uniform vec3 slice_normal;    // to the sun's side
 uniform float first_plane_m;  // distance of the first slice's plane from the middle of the box, along the normal
 uniform float spacing_m;
 uniform float light_path_m;   // length of a sun ray between two slices
-uniform float slab_begin;     // slices of the slab: from this
-uniform float slab_end;       // to before this
+uniform float slab_begin;     // first slice of the slab
+uniform float slab_end;       // one after its last slice
 uniform float begin_layer;    // of the light
 uniform vec4 eye_weights[PLANES];        // texel to the extinction that the eye sees, 1/m
 uniform vec4 light_weights[PLANES];      // texel to the extinction that the light buffer sees, 1/m
@@ -106,15 +106,15 @@ void main() {
     layer -= layer < layers ? 0.0 : layers;
     vec2 light_place = light_start + distance_m * light_step;
     vec2 arrived = texture(light, vec3(light_place, layer)).rg;
-    float passed = exp(-depth);
+    float slice_transmittance = exp(-depth);
     float seen = mean_transmittance(depth);
 
     float shows = front_to_back ? transmittance * counts : counts;
     if (!front_to_back) {
-      fade(scattered, passed);
-      shown_m *= passed;
+      fade(scattered, slice_transmittance);
+      shown_m *= slice_transmittance;
     }
-    shown_m += shows * (1.0 - passed) * (towards * distance_m);
+    shown_m += shows * (1.0 - slice_transmittance) * (towards * distance_m);
 #if CONSISTENT
     // The buffer holds the light that enters the slice; inside, light fades as the view does.
     float light_depth = weigh(medium, light_depths);
@@ -134,11 +134,11 @@ void main() {
 #else
     add_direct(scattered, medium, shows * arrived.r * seen);
 #endif
-    transmittance *= passed;
+    transmittance *= slice_transmittance;
     slice += 1.0;
     if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
   }
-  // One height stands for all that the ray shows of the slab.
+  // Sunlight is taken at one height, the mean of all that the ray shows of the slab.
   float opacity = max((front_to_back ? before.a : 1.0) - transmittance, 1e-30);
   vec3 sunlight = sunlight_at(origin_m.z + shown_m / opacity * direction.z);
   vec3 radiance = radiance_of(scattered, sunlight, path_m, haversine_between(direction, towards_sun));

@@ -1,7 +1,7 @@
 // Carries sunlight once through the medium into a volume whose depth runs along the sun's rays: one invocation a ray.
 // r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
-// optical depth passed, whose end is the ray's thickness. `shadow` is that of the whole medium (common/storm_shadow.glsl).
-// Layers that arrive.comp does not use are left as they are.
+// optical depth from the sun, which at the ray's end is its thickness. `shadow` is that of the whole medium
+// (common/storm_shadow.glsl). Layers that arrive.comp does not use are left as they are.
 // Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
 // usual angles.
@@ -63,7 +63,7 @@ void main() {
 
   float depth = 0.0;
   float medium_depth = 0.0;
-  float lit = 1.0;  // share of sunlight that has passed the medium
+  float lit = 1.0;  // transmittance of the medium so far
   vec2 moments = vec2(0.0);
   float per_reach = 1.0 / light_reach_m;
   float transport = 0.0;
@@ -78,7 +78,7 @@ void main() {
     bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
     uint content = brick_content(ray, place);
     if (!outside && !is_filled(content) && content > uint(read_bricks)) {
-      // So far from anything that scatters, nobody reads the light.
+      // The light is not read so far from anything that scatters.
       float leap_m = empty_path(ray, place, content - uint(read_bricks));
       int leap = 2 * int(leap_m * per_layer);  // whole layers: stores keep their turn
       if (leap > 0) {

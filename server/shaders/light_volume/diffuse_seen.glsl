@@ -7,8 +7,9 @@
 #include "physics/light_transport.glsl"
 
 // Root of the optical depth to the nearest surface; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).
-layout(binding = kWaysOutUnit) uniform sampler3D ways_out;
-// Of sunlight; fluence from other walls; the y of the sky's net flux; share of open ground's light that comes from below.
+layout(binding = kExitsUnit) uniform sampler3D exits;
+// Net inward flux of sunlight; fluence from other walls; the y of the sky's net flux; share of open ground's light that comes
+// from below.
 layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
 
 uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
@@ -41,7 +42,7 @@ void begin_diffuse(float step_m) {
 
 struct DiffuseSample {
   float transport;  // extinction
-  vec4 ways_out;
+  vec4 exits;
   vec4 inward;
   vec3 tint;  // scattering of red, green and blue
 };
@@ -51,17 +52,17 @@ DiffuseSample diffuse_at(vec3 place, Medium medium) {
 #if TINTED
   tint = vec3(weigh(medium, red_depths), weigh(medium, green_depths), weigh(medium, blue_depths));
 #endif
-  return DiffuseSample(weigh(medium, transport_depths), texture(ways_out, place), texture(net_inward, place), tint);
+  return DiffuseSample(weigh(medium, transport_depths), texture(exits, place), texture(net_inward, place), tint);
 }
 
 DiffuseSample no_diffuse_sample() { return DiffuseSample(0.0, vec4(0.0), vec4(0.0), vec3(0.0)); }
 
 DiffuseSample mixed(DiffuseSample a, DiffuseSample b, float at) {
-  return DiffuseSample(mix(a.transport, b.transport, at), mix(a.ways_out, b.ways_out, at), mix(a.inward, b.inward, at),
+  return DiffuseSample(mix(a.transport, b.transport, at), mix(a.exits, b.exits, at), mix(a.inward, b.inward, at),
                        mix(a.tint, b.tint, at));
 }
 
-// Sums over the ray's segments, each by the share of it that is seen.
+// Sums over the ray's segments, weighted by the share of each that is seen.
 struct DiffuseSeen {
   float transmittance;  // for this light and the background
   vec3 sun;       // fluence, over the sun's irradiance
@@ -72,25 +73,26 @@ struct DiffuseSeen {
 
 DiffuseSeen no_diffuse_seen() { return DiffuseSeen(1.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)); }
 
-// Fluence of sunlight at optical depth `passed` from the sun; `scale` is transport's extinction over the eye's.
-float sun_fluence(DiffuseSample there, float passed, float scale) {
-  float exit_depth = there.ways_out.x * there.ways_out.x;
-  return diffuse_fluence(exit_depth, passed, scale * exit_depth, there.inward.x, there.inward.y) +
-         forward_fluence(exit_depth, passed, scale * passed);
+// Fluence of sunlight at the optical depth `sun_depth` from the sun; `scale` is transport's extinction over the eye's.
+float sun_fluence(DiffuseSample there, float sun_depth, float scale) {
+  float exit_depth = there.exits.x * there.exits.x;
+  return diffuse_fluence(exit_depth, sun_depth, scale * exit_depth, there.inward.x, there.inward.y) +
+         forward_fluence(exit_depth, sun_depth, scale * sun_depth);
 }
 
 // Shares of the sky's level and of its mean that are seen there.
 vec2 sky_shares_of(DiffuseSample there, float scale) {
-  float exit_depth = there.ways_out.x * there.ways_out.x;
-  vec2 shares = there.ways_out.yz - vec2(there.ways_out.w, there.inward.z) * (3.0 * scale * exit_depth + 2.0);
+  float exit_depth = there.exits.x * there.exits.x;
+  vec2 shares = there.exits.yz - vec2(there.exits.w, there.inward.z) * (3.0 * scale * exit_depth + 2.0);
   return shares * (clamp(shares.x + shares.y, 0.0, 1.0) / max(shares.x + shares.y, 1e-6));
 }
 
-// Adds a segment, of which `taken` is what it takes of this light. `passed_root` is the root of the sun's optical depth and
-// `extinction` the eye's extinction where half of that is taken. Returns the share that the segment is seen by.
-float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, float passed_root, float extinction) {
+// Adds a segment; `taken` is the share of this light that it absorbs or scatters. `sun_depth_root` is the root of the optical
+// depth from the sun and `extinction` the eye's extinction, both where half of that share is taken. Returns the segment's
+// weight in the pixel.
+float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, float sun_depth_root, float extinction) {
   float scale = there.transport / max(extinction, 1e-30);
-  float fluence = sun_fluence(there, passed_root * passed_root, scale);
+  float fluence = sun_fluence(there, sun_depth_root * sun_depth_root, scale);
   vec2 sky_shares = sky_shares_of(there, scale);
   float shown = seen.transmittance * taken.share;
 #if TINTED
@@ -106,7 +108,7 @@ float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, floa
   return shown;
 }
 
-// For a ray that ends before the medium does: deep in a cloud diffuse light changes little, so what has been seen stands for
+// For a ray that ends before the medium does: deep in a cloud diffuse light varies little, so the part seen is extrapolated to
 // the rest.
 void close_diffuse(inout DiffuseSeen seen) {
   float whole = 1.0 / (1.0 - seen.transmittance);

@@ -1,4 +1,4 @@
-// In the place of light_volume/diffuse_seen.glsl where no diffusion is solved: the same names, and no light.
+// Replaces light_volume/diffuse_seen.glsl where no diffusion is solved: the same functions, which add no light.
 struct DiffuseSample {
   float transport;
 };
@@ -12,6 +12,6 @@ DiffuseSample diffuse_at(vec3 place, Medium medium) { return DiffuseSample(0.0);
 DiffuseSample no_diffuse_sample() { return DiffuseSample(0.0); }
 DiffuseSample mixed(DiffuseSample a, DiffuseSample b, float at) { return a; }
 DiffuseSeen no_diffuse_seen() { return DiffuseSeen(1.0); }
-float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, float passed_root, float extinction) { return 0.0; }
+float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, float sun_depth_root, float extinction) { return 0.0; }
 void close_diffuse(inout DiffuseSeen seen) {}
 vec3 diffuse_radiance(DiffuseSeen seen, vec3 sunlight) { return vec3(0.0); }

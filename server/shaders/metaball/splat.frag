@@ -2,8 +2,8 @@
 // Each tile of the picture has a list of the balls that may lie over it, in that order: the same sum as blending their
 // splats from back to front, without reading and writing the picture for each. A ball's optical depth is the integral of
 // its field along the ray, from the eye and up to the ground.
-// With DETAIL noise at all scales that pixels show moves the balls' surfaces inwards, and a place shows the light of all balls
-// there by their fields, so that no ball is to be told from its neighbours.
+// With DETAIL noise at all scales that pixels show moves the balls' surfaces inwards, and a place shows the mean light of all
+// balls there, weighted by their fields, so that balls cannot be told apart.
 // Variants: GROUND (what lies behind it is left out), PAPER (the field's own value is the depth: eq. 12 splatted as it
 // is), DETAIL.
 #include "common/bindings.glsl"
@@ -35,7 +35,7 @@ const float kOpaqueTransmittance = 5e-3;  // below which a ray ends, as in light
 #if DETAIL
 const float kRelief = 0.5;      // the deepest valley's share of a ball's squared radius
 const float kDisplaced = 0.5;   // radii
-// The logarithm of what a ball's optical depth, in the mean over its disc and over noise, is divided by where the roughness is 1.
+// The logarithm of the factor by which noise reduces a ball's optical depth, in the mean over its disc, at roughness 1.
 const float kEroded = 0.7;
 const float kMinSeen = 0.01;  // share of a pixel below which a ball keeps its own light
 
@@ -83,7 +83,7 @@ void main() {
     vec4 middle_radius = balls[index].middle_radius;
     vec3 off_m = middle_radius.xyz - origin_m;
     float along_m = dot(off_m, ray);
-    // The part across the ray first: the square of the whole would drown a small ball that is far away.
+    // The component across the ray first: in the square of the whole, rounding would lose a small ball that is far away.
     vec3 across_m = off_m - along_m * ray;
     float per_radius = 1.0 / middle_radius.w;
     float s = 1.0 - dot(across_m, across_m) * (per_radius * per_radius);
@@ -124,9 +124,10 @@ void main() {
     }
 #endif
     radiance += transmittance * taken * light;
-    float passed = exp(-depth);
-    shown_m += transmittance * (1.0 - passed) * max(along_m + 0.5 * (max(from, -half_chord) + to) * middle_radius.w, 0.0);
-    transmittance *= passed;
+    float ball_transmittance = exp(-depth);
+    shown_m += transmittance * (1.0 - ball_transmittance) *
+               max(along_m + 0.5 * (max(from, -half_chord) + to) * middle_radius.w, 0.0);
+    transmittance *= ball_transmittance;
   }
   radiance_and_transmittance = vec4(radiance, transmittance);
   opacity_distance_m = shown_m;

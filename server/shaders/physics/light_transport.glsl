@@ -12,8 +12,8 @@ PHYSICS_FUNCTION float mean_transmittance(float x) {
   return (1.0f - exp(-x)) / x;
 }
 
-// The mean over t in 0..1 of exp(-view (1 - t)) exp(-light t): what a slice shows of its light when the light enters
-// on the side away from the eye.
+// The mean over t in 0..1 of exp(-view (1 - t)) exp(-light t): the share of its light that a slice shows when the
+// light enters on the side away from the eye.
 PHYSICS_FUNCTION float mean_counter_transmittance(float view, float light) {
   return exp(-min(view, light)) * mean_transmittance(abs(view - light));
 }
@@ -26,7 +26,7 @@ PHYSICS_FUNCTION float mean_seen_place(float x) {
 }
 
 // Mean intensity of diffuse light, over the sun's irradiance, at optical depth `tau` below the lit face of a layer of
-// optical depth `total` that the sun strikes squarely: the Eddington solution for isotropic conservative scattering
+// optical depth `total`, for sunlight at normal incidence: the Eddington solution for isotropic conservative scattering
 // with Marshak's boundary conditions (no diffuse light comes in from either side). Optical depths are similarity
 // scaled, (1 - omega g) times the real ones. Zero for an empty layer, 2/3 * 3/(4 pi) at the face of an infinite one.
 PHYSICS_FUNCTION float diffuse_mean_intensity(float tau, float total) {
@@ -35,25 +35,27 @@ PHYSICS_FUNCTION float diffuse_mean_intensity(float tau, float total) {
   return kThreeOverFourPi * max(5.0f / 3.0f - exp(-tau) - falling, 0.0f);
 }
 
-// Fluence of diffuse light, over the sun's irradiance, in an endless cloud with a plane surface that reflects all: at
-// optical depth `exit` below the surface, which sunlight has reached through the optical depth `passed`, so that
-// exit / passed is the cosine of the sun's angle to the surface. Eddington's solution with Marshak's boundary condition.
-PHYSICS_FUNCTION float lit_fluence(float exit, float passed) {
-  float cosine = exit < passed ? exit / passed : 1.0f;
-  return cosine * (2.0f + 3.0f * cosine * (1.0f - exp(-passed)));
+// Fluence of diffuse light, over the sun's irradiance, in a semi-infinite cloud with a plane surface and no absorption: at
+// optical depth `exit` below the surface, which sunlight has reached through the optical depth `sun_depth`, so that
+// exit / sun_depth is the cosine of the sun's angle to the surface's normal. Eddington's solution with Marshak's boundary
+// condition.
+PHYSICS_FUNCTION float lit_fluence(float exit, float sun_depth) {
+  float cosine = exit < sun_depth ? exit / sun_depth : 1.0f;
+  return cosine * (2.0f + 3.0f * cosine * (1.0f - exp(-sun_depth)));
 }
 
-// Fluence that the diffusion equation misses near the surface: light that has been scattered, at optical depth `passed`,
-// but not yet turned, at the similarity-scaled depth `transport_passed`. It shows where the sun is low above the surface;
-// the factor is fitted to endless clouds' reflection (docs/decisions/0009-diffusion-transport.md).
-PHYSICS_FUNCTION float forward_fluence(float exit, float passed, float transport_passed) {
-  float cosine = exit < passed ? exit / passed : 1.0f;
-  return 1.3f * (1.0f - cosine * cosine) * (exp(-transport_passed) - exp(-passed));
+// Fluence that the diffusion equation misses near the surface: light that has been scattered, at the optical depth
+// `sun_depth` from the sun, but has kept its direction, at the similarity-scaled depth `transport_sun_depth`. It shows where
+// the sun is low above the surface; the factor is fitted to the reflection of semi-infinite clouds
+// (docs/decisions/0009-diffusion-transport.md).
+PHYSICS_FUNCTION float forward_fluence(float exit, float sun_depth, float transport_sun_depth) {
+  float cosine = exit < sun_depth ? exit / sun_depth : 1.0f;
+  return 1.3f * (1.0f - cosine * cosine) * (exp(-transport_sun_depth) - exp(-sun_depth));
 }
 
 // The same in a cloud onto which other clouds send the fluence `from_walls`, and into which `net_inward` of the sun's
-// irradiance flows: light on its way to another face, or, below zero, from one. `transport_exit` is the similarity-scaled
+// irradiance flows: light on its path to another face, or, below zero, from one. `transport_exit` is the similarity-scaled
 // optical depth below the surface.
-PHYSICS_FUNCTION float diffuse_fluence(float exit, float passed, float transport_exit, float net_inward, float from_walls) {
-  return max(lit_fluence(exit, passed) + from_walls - net_inward * (3.0f * transport_exit + 2.0f), 0.0f);
+PHYSICS_FUNCTION float diffuse_fluence(float exit, float sun_depth, float transport_exit, float net_inward, float from_walls) {
+  return max(lit_fluence(exit, sun_depth) + from_walls - net_inward * (3.0f * transport_exit + 2.0f), 0.0f);
 }

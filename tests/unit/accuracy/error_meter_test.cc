@@ -72,7 +72,7 @@ Wrong WrongBy(const picture::LinearPicture& truth) {
     for (int color = 0; color < 3; ++color) {
       const double right = truth.radiance[i][color];
       const double noise = truth.standard_error[i][color];
-      // What is taken for right is off by its noise, and the picture with it.
+      // The truth itself is off by its noise, and so is the picture made from it.
       squares += std::pow((factor - 1.0) * right, 2) + (2.0 * factor - 1.0) * noise * noise;
       difference += (factor - 1.0) * right;
       sum += right;
@@ -107,7 +107,7 @@ TEST(ErrorMeter, IntervalsHoldTheErrorOfAPictureThatIsWrongByAKnownAmount) {
     held_bias += holds(error->relative_bias, wrong.bias) ? 1 : 0;
     EXPECT_LT(error->relative_rmse.high - error->relative_rmse.low, wrong.error);
   }
-  // 23 of 24, with a standard deviation of 1.1.
+  // 23 of 24 are expected, with a standard deviation of 1.1.
   EXPECT_GE(held, 20) << wrong.error;
   EXPECT_LE(too_low, 3);
   EXPECT_GE(held_bias, 20) << wrong.bias;

@@ -1,4 +1,4 @@
-// What of the ground's light comes up to a place, against closed forms.
+// The light from the ground that arrives at a place, against closed forms.
 #include "renderers/lit_ground.h"
 
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(LitGround, AboveADarkDiscComesWhatALevelFaceGets) {
     const LitGround ground = DarkDisc(radius_m);
     for (const double height_m : {700.0, 1500.0, 3000.0, 6000.0, 12000.0}) {
       const double dark = 1.0 / (1.0 + std::pow(height_m / radius_m, 2.0));
-      // Three discs for all of them, and squares for discs.
+      // The tolerance covers LitGround's approximation of the ground by three squares for discs.
       EXPECT_NEAR(ground.ShareAt({0.0, 0.0, 300.0 + height_m}), 1.0 - dark, 0.07)
           << radius_m << ' ' << height_m;
     }

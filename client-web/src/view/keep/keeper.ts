@@ -1,4 +1,4 @@
-// Makes files of what is shown: pictures with the scene inside, scenes, movies. One at a time; how far it is, is a signal.
+// Saves files: pictures with the scene inside, scenes, movies. One at a time; its progress is a signal.
 import type { Transport } from "@connectrpc/connect";
 import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
@@ -49,7 +49,7 @@ export class Keeper {
   }
 
   listen(window: Window, options: { readonly signal: AbortSignal }): void {
-    // A picture that was saved brings its view back.
+    // Dropping a saved picture on the page restores its scene.
     window.addEventListener("dragover", (event) => event.preventDefault(), options);
     window.addEventListener(
       "drop",
@@ -60,7 +60,7 @@ export class Keeper {
       },
       options,
     );
-    // What is being made would be lost: the browser asks.
+    // Leaving the page would lose a file that is being made, so the browser asks first.
     window.addEventListener(
       "beforeunload",
       (event) => {
@@ -94,7 +94,7 @@ export class Keeper {
     this.#download(new TextEncoder().encode(text), "json", "application/json");
   }
 
-  // A picture or a scene that was saved before.
+  // Opens a picture or a scene that was saved before.
   async open(file: File): Promise<void> {
     try {
       const scene = sceneOfFile(new Uint8Array(await file.arrayBuffer()));
@@ -152,7 +152,7 @@ export class Keeper {
     }
   }
 
-  // With the own view's camera, while this page looks around.
+  // The scene, with the own view's camera while this page looks around.
   sceneShown(): Scene {
     const scene = this.#state.scene.peek();
     const frame = this.#state.frame.peek();
@@ -191,7 +191,7 @@ export class Keeper {
     link.href = url;
     link.download = `${name}.${ending}`;
     link.click();
-    // The browser has it once the click is handled.
+    // The browser has taken the data by then.
     setTimeout(() => URL.revokeObjectURL(url), 10_000);
   }
 }

@@ -1,7 +1,7 @@
 // The probe: a click on the picture asks the server for the place, and the values of every field along the ray.
 
 import { nameOfHydrometeor } from "../../core/names";
-import { placeInWords, readable, wayBetween } from "../../core/probe";
+import { displacementBetween, placeInWords, readable } from "../../core/probe";
 import type { PageState } from "../../core/state";
 import { compassPoint } from "../../core/sun";
 import { formatLength, formatNumber } from "../../core/units";
@@ -55,18 +55,19 @@ export function ProbeTool({ page }: { page: Page }) {
 
 function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) {
   const [first, second] = state.probes.value;
-  const way = wayBetween(first?.found.seenPlace, second?.found.seenPlace);
+  const displacement = displacementBetween(first?.found.seenPlace, second?.found.seenPlace);
   return (
     <section aria-label="Found" data-testid="probe-found">
       <p class="found">
         <strong>{seenInWords(found)}</strong>
         {found.seenPlace !== undefined && <Where place={found.seenPlace} />}
       </p>
-      {way !== undefined && (
-        <p data-testid="probe-way">
-          From the first click: {formatLength(way.distanceM, "distance")} to{" "}
-          {compassPoint(way.azimuthDeg)} ({Math.round(way.azimuthDeg)}°),{" "}
-          {formatLength(Math.abs(way.heightM), "height")} {way.heightM < 0 ? "lower" : "higher"}
+      {displacement !== undefined && (
+        <p data-testid="probe-displacement">
+          From the first click: {formatLength(displacement.distanceM, "distance")} to{" "}
+          {compassPoint(displacement.azimuthDeg)} ({Math.round(displacement.azimuthDeg)}°),{" "}
+          {formatLength(Math.abs(displacement.heightM), "height")}{" "}
+          {displacement.heightM < 0 ? "lower" : "higher"}
         </p>
       )}
       <table class="probe-fields" data-testid="probe-fields">
@@ -134,7 +135,7 @@ function FieldRow({ field }: { field: FieldAlongRay }) {
   );
 }
 
-// Traces that models leave where there is nothing are not worth their digits.
+// Models leave traces of condensate where there is none: smaller values are shown as "< 0.001".
 const LEAST = 0.001;
 
 function amount(value: number): string {
@@ -170,7 +171,7 @@ function Cores({ page }: { page: Page }) {
 interface CoreProps {
   readonly page: Page;
   readonly core: FieldMaximum;
-  // Of the time shown before, while that of this one is on its way.
+  // True while the core is that of the time shown before, until the answer for this time arrives.
   readonly old: boolean;
 }
 
