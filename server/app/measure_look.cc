@@ -68,8 +68,8 @@ absl::Status Print(const LookFlags& flags, const std::string& name, const scene:
                                tone_mapper.Map(frame::TextureOf(picture), scene));
   const std::vector<measure::Region> regions = measure::RegionsOf(scene, fields, picture.opacity);
   const measure::LookFigures light = measure::FiguresOf(regions, picture);
-  const measure::LookFigures shown =
-      measure::FiguresOf(regions, measure::DisplayImage{picture.size_px, mapped.rgb});
+  const measure::LookFigures shown = measure::FiguresOf(
+      regions, frame::RgbImage{picture.size_px.x, picture.size_px.y, mapped.rgb});
   std::cout << absl::StrFormat("%-18s %7d %7d %7s %7s %7.2f %7.2f %7s %7s\n", name,
                                light.tower_pixels, light.base_pixels, Stops(light.tower_stops),
                                Stops(shown.tower_stops), light.frame_stops, shown.frame_stops,

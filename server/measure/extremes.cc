@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "measure/extremes_internal.h"
+#include "shaders/bindings.h"
 
 namespace thunderhead::measure {
 namespace internal {
@@ -36,7 +37,8 @@ Verdict TransmittanceNear(const accuracy::PlainTechnique& plain, const Seen& see
   const double depth_error = light_volume ? errors.light_volume : errors.half_angle;
   const double rounding =
       slices * kSingleStep + (light_volume && !single_precision ? kHalfStep : 0);
-  const double opaque = expected < 2.0 * kOpaqueTransmittance ? kOpaqueTransmittance : 0.0;
+  const double opaque =
+      expected < 2.0 * shaders::kOpaqueTransmittance ? shaders::kOpaqueTransmittance : 0.0;
   return Sound(seen, Near(seen.transmittance, expected,
                           depth_error * depth * expected + rounding + opaque, 1.0));
 }

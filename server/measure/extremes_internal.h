@@ -9,10 +9,6 @@
 
 namespace thunderhead::measure::internal {
 
-// The transmittance below which a ray may end, as in light_volume/march.frag and
-// metaball/splat.frag.
-inline constexpr double kOpaqueTransmittance = 0.005;
-
 // Passes if `got` is within `tolerance` of `expected`. `without` is the value of a picture without
 // the medium: if that would pass too, the case fails, as it would test nothing.
 Verdict Near(double got, double expected, double tolerance, double without);

@@ -12,6 +12,7 @@
 #include "renderers/metaball/ball_fit.h"
 #include "renderers/metaball/wyvill.h"
 #include "scene/view.h"
+#include "shaders/bindings.h"
 
 namespace thunderhead::measure::internal {
 namespace {
@@ -46,8 +47,8 @@ Extreme Between(const std::string& what, const Box& box, const Look& look, doubl
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen,
                 probe.Draw(BallScene(scene::Transport::kConsistent), *FieldsOf(box), look));
-            return Sound(
-                seen, Within(seen.transmittance, low, std::max(high, kOpaqueTransmittance), 1.0));
+            return Sound(seen, Within(seen.transmittance, low,
+                                      std::max<double>(high, shaders::kOpaqueTransmittance), 1.0));
           }};
 }
 

@@ -209,8 +209,8 @@ std::vector<double> Features(const Planes& opponent, bool edges) {
   return strength;
 }
 
-Planes OpponentOf(const DisplayImage& image) {
-  Planes planes{image.size_px, {}};
+Planes OpponentOf(const frame::RgbImage& image) {
+  Planes planes{{image.width_px, image.height_px}, {}};
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
     planes.values.push_back(OpponentOf(glm::dvec3(
         LinearOf(image.rgb[i]), LinearOf(image.rgb[i + 1]), LinearOf(image.rgb[i + 2]))));
@@ -220,8 +220,9 @@ Planes OpponentOf(const DisplayImage& image) {
 
 }  // namespace
 
-double Flip(const DisplayImage& image, const DisplayImage& truth) {
-  THUNDERHEAD_CHECK(image.size_px == truth.size_px, std::to_string(image.size_px.x));
+double Flip(const frame::RgbImage& image, const frame::RgbImage& truth) {
+  THUNDERHEAD_CHECK(image.width_px == truth.width_px && image.height_px == truth.height_px,
+                    std::to_string(image.width_px));
   const Planes a = OpponentOf(image);
   const Planes b = OpponentOf(truth);
   const std::vector<double> color = ColorDifference(a, b);

@@ -85,8 +85,9 @@ class Frames {
     exposed.display.exposure_ev = moving.exposure_ev;
     THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped plain,
                                  tone_mapper_.Map(*linear.radiance, exposed));
-    const glm::ivec2 size_px(scene_.output.width_px, scene_.output.height_px);
-    return Flip({size_px, moving.rgb}, {size_px, plain.rgb});
+    const scene::Output& output = scene_.output;
+    return Flip({output.width_px, output.height_px, moving.rgb},
+                {output.width_px, output.height_px, plain.rgb});
   }
 
  private:

@@ -2,19 +2,10 @@
 // functions of pixels; images are rows from top to bottom.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
-#include "glm/vec2.hpp"
+#include "frame/image_codec.h"
 #include "picture/linear_picture.h"
 
 namespace thunderhead::measure {
-
-// 8-bit sRGB, three bytes a pixel.
-struct DisplayImage {
-  glm::ivec2 size_px{0};
-  std::vector<std::uint8_t> rgb;
-};
 
 // Root mean square of the difference over pixels and colours, relative to the truth's mean
 // radiance. The images must have the same size and the truth must not be black.
@@ -35,6 +26,6 @@ double RelativeBias(const picture::LinearPicture& image, const picture::LinearPi
 // The mean of the perceived difference, 0 to 1, by FLIP (Andersson et al. 2020, A Difference
 // Evaluator for Alternating Images) at 67 pixels a degree: colours after the eye's contrast
 // sensitivity, and edges and points.
-double Flip(const DisplayImage& image, const DisplayImage& truth);
+double Flip(const frame::RgbImage& image, const frame::RgbImage& truth);
 
 }  // namespace thunderhead::measure

@@ -157,7 +157,7 @@ LookFigures FiguresOf(const std::vector<Region>& regions, const picture::LinearP
   return FiguresOf(regions, luminance);
 }
 
-LookFigures FiguresOf(const std::vector<Region>& regions, const DisplayImage& display) {
+LookFigures FiguresOf(const std::vector<Region>& regions, const frame::RgbImage& display) {
   std::vector<double> luminance;
   luminance.reserve(display.rgb.size() / 3);
   for (std::size_t i = 0; i + 2 < display.rgb.size(); i += 3) {

@@ -42,6 +42,6 @@ struct LookFigures {
 
 LookFigures FiguresOf(const std::vector<Region>& regions, const picture::LinearPicture& picture);
 // Figures of the light that a screen shows. Black counts as half of the darkest grey.
-LookFigures FiguresOf(const std::vector<Region>& regions, const DisplayImage& display);
+LookFigures FiguresOf(const std::vector<Region>& regions, const frame::RgbImage& display);
 
 }  // namespace thunderhead::measure

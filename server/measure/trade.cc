@@ -132,9 +132,9 @@ Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields
   scene_.output.height_px = truth_.size_px.y;
 }
 
-absl::StatusOr<DisplayImage> Trade::Display(const gl::Texture2D& linear) {
+absl::StatusOr<frame::RgbImage> Trade::Display(const gl::Texture2D& linear) {
   THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped, tone_mapper_.Map(linear, scene_));
-  return DisplayImage{linear.Size(), std::move(mapped.rgb)};
+  return frame::RgbImage{linear.Size().x, linear.Size().y, std::move(mapped.rgb)};
 }
 
 absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::CorrectionOf(
@@ -190,8 +190,8 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
     const base::Stopwatch stopwatch;
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                  renderer_.Draw(scene, fields_, quality));
-    THUNDERHEAD_ASSIGN_OR_RETURN(const DisplayImage display, Display(*linear.radiance));
-    THUNDERHEAD_ASSIGN_OR_RETURN(jpeg, frame::EncodeJpeg(display.size_px.x, display.size_px.y,
+    THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage display, Display(*linear.radiance));
+    THUNDERHEAD_ASSIGN_OR_RETURN(jpeg, frame::EncodeJpeg(display.width_px, display.height_px,
                                                          display.rgb, setting.jpeg_quality));
     if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
     if (i + 1 < kTimedFrames) continue;
@@ -201,7 +201,7 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
     THUNDERHEAD_RETURN_IF_ERROR(Estimate(scene, image, stop, &row.estimated_error));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage seen, frame::DecodeJpeg(jpeg));
-  row.flip = Flip({{seen.width_px, seen.height_px}, seen.rgb}, truth_display_);
+  row.flip = Flip(seen, truth_display_);
   row.bytes = jpeg.size();
   row.milliseconds = Quantile(milliseconds, 0.5);
   row.milliseconds_spread = Quantile(milliseconds, 0.75) - Quantile(milliseconds, 0.25);

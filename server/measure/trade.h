@@ -71,7 +71,7 @@ class Trade {
  private:
   absl::Status Estimate(const scene::Scene& scene, const picture::LinearPicture& image,
                         const std::stop_token& stop, accuracy::Estimated* estimate);
-  absl::StatusOr<DisplayImage> Display(const gl::Texture2D& linear);
+  absl::StatusOr<frame::RgbImage> Display(const gl::Texture2D& linear);
   // The correction by that many paths; null for none.
   absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> CorrectionOf(
       const scene::Scene& scene, double million_paths, const std::stop_token& stop);
@@ -80,7 +80,7 @@ class Trade {
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   picture::LinearPicture truth_;
   double error_seconds_;
-  DisplayImage truth_display_;
+  frame::RgbImage truth_display_;
   double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;
   std::unique_ptr<accuracy::LightCorrector> corrector_;

@@ -70,7 +70,7 @@ class MovingPictureTest : public testing::Test {
   }
   scene::OrbitCamera& Orbit() { return std::get<scene::OrbitCamera>(scene_.camera); }
 
-  measure::DisplayImage Moving(int* rays = nullptr) {
+  frame::RgbImage Moving(int* rays = nullptr) {
     const auto coarse = renderer_->Draw(scene_, fields_, MovingQuality(scene_, kMoving));
     EXPECT_TRUE(coarse.ok()) << coarse.status();
     EXPECT_TRUE(coarse->coarse);
@@ -84,16 +84,16 @@ class MovingPictureTest : public testing::Test {
         &times);
     EXPECT_TRUE(mapped.ok()) << mapped.status();
     exposure_ev_ = mapped->exposure_ev;
-    return {kSize_px, std::move(mapped->rgb)};
+    return {kSize_px.x, kSize_px.y, std::move(mapped->rgb)};
   }
 
-  measure::DisplayImage AtRest() {
+  frame::RgbImage AtRest() {
     const auto linear = renderer_->Draw(scene_, fields_, {});
     EXPECT_TRUE(linear.ok()) << linear.status();
     auto mapped = tone_mapper_->Map(*linear->radiance, scene_);
     EXPECT_TRUE(mapped.ok()) << mapped.status();
     exposure_ev_ = mapped->exposure_ev;
-    return {kSize_px, std::move(mapped->rgb)};
+    return {kSize_px.x, kSize_px.y, std::move(mapped->rgb)};
   }
 
   // With fewer than half of the rays, even of clouds that are rough all over (a third), and at the
@@ -101,7 +101,7 @@ class MovingPictureTest : public testing::Test {
   // meter's histogram and a half.
   void ExpectAlike(const std::string& what) {
     scene_.display.exposure_ev.reset();
-    const measure::DisplayImage at_rest = AtRest();
+    const frame::RgbImage at_rest = AtRest();
     const double metered_ev = exposure_ev_;
     (void)Moving();
     EXPECT_NEAR(exposure_ev_, metered_ev, 0.1875) << what;
@@ -163,14 +163,14 @@ TEST_F(MovingPictureTest, LightOfADraggedSunIsAsGood) {
     (void)Moving();
   }
   scene_.display.exposure_ev = exposure_ev_;
-  const measure::DisplayImage moving = Moving();
+  const frame::RgbImage moving = Moving();
   EXPECT_LE(measure::Flip(moving, AtRest()), 0.02);
 }
 
 // Rays of chosen places are those of the picture's pixels, to a step of rounding.
 TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   Show(OfSample("supercell.nc", 1));
-  const measure::DisplayImage at_rest = AtRest();
+  const frame::RgbImage at_rest = AtRest();
   scene_.display.exposure_ev = exposure_ev_;
   renderers::DrawQuality quality = MovingQuality(scene_, kMoving);
   const auto coarse = renderer_->Draw(scene_, fields_, quality);
@@ -192,7 +192,7 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
 
 TEST_F(MovingPictureTest, AtRestThePictureIsAsIfNothingHadMoved) {
   Show(OfSample("supercell.nc", 1));
-  const measure::DisplayImage before = AtRest();
+  const frame::RgbImage before = AtRest();
   Orbit().azimuth_deg += 10.0;
   (void)Moving();
   Orbit().azimuth_deg -= 10.0;

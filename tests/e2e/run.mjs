@@ -1,4 +1,4 @@
-// Checks the browser test's prerequisites, reports what is missing, and runs it.
+// Checks the prerequisites of the browser tests, reports missing ones, and runs the tests.
 import { spawnSync } from "node:child_process";
 import { existsSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -17,5 +17,18 @@ const missing = needed.filter(([path]) => !existsSync(path));
 for (const [path, remedy] of missing) console.error(`The browser test needs ${path}: ${remedy}.`);
 if (missing.length > 0) process.exit(1);
 
-const run = spawnSync(process.execPath, ["--test", "page.test.mjs", "class.test.mjs", "catalogue.test.mjs", "deploy.test.mjs", "operation.test.mjs", "sign_in.test.mjs", "video.test.mjs", "tools.test.mjs", "questions.test.mjs", "manners.test.mjs"], { cwd: here, stdio: "inherit" });
+// Two files at a time, as tests mostly wait for pictures; the longest first.
+const files = [
+  "page.test.mjs",
+  "tools.test.mjs",
+  "class.test.mjs",
+  "manners.test.mjs",
+  "questions.test.mjs",
+  "video.test.mjs",
+  "operation.test.mjs",
+  "deploy.test.mjs",
+  "catalogue.test.mjs",
+  "sign_in.test.mjs",
+];
+const run = spawnSync(process.execPath, ["--test", "--test-concurrency=2", ...files], { cwd: here, stdio: "inherit" });
 process.exit(run.status ?? 1);

@@ -12,8 +12,6 @@ export interface Displacement {
   // Along the ground.
   readonly distanceM: number;
   readonly heightM: number;
-  // Along the straight line.
-  readonly straightM: number;
   // Clockwise from north.
   readonly azimuthDeg: number;
 }
@@ -29,7 +27,6 @@ export function displacementBetween(
   return {
     distanceM: Math.hypot(x, y),
     heightM: z,
-    straightM: Math.hypot(x, y, z),
     azimuthDeg: ((Math.atan2(x, y) * 180) / Math.PI + 360) % 360,
   };
 }

@@ -2,6 +2,9 @@
 // of work groups. Compiles as GLSL and as C++ (shaders/bindings.h). Within a program each number of a kind is used once, which
 // tests check (gl/strict_programs.h); programs of different techniques share numbers.
 
+// The transmittance below which a ray of paper or consistent transport ends.
+const float kOpaqueTransmittance = 5e-3F;
+
 // Textures of a medium.
 const int kMediumPlaneUnit = 0;  // and the one after
 const int kBricksUnit = 2;

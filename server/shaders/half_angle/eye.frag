@@ -40,7 +40,7 @@ in vec2 position;
 layout(location = 0) out vec4 radiance_and_transmittance;
 layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
 
-const float kOpaqueTransmittance = 2e-3;  // below which a ray ends
+const float kEndTransmittance = 2e-3;  // below which a ray ends
 
 void main() {
   begin_medium();
@@ -89,7 +89,7 @@ void main() {
   float shown_m = 0.0;
   float towards = front_to_back ? 1.0 : -1.0;
   float transmittance = front_to_back ? before.a : 1.0;
-  if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
+  if (front_to_back && transmittance < kEndTransmittance) end = 0.0;
   while (slice < end) {
     float distance_m = first_m + slice * apart_m;
     while (slice < end) {
@@ -136,7 +136,7 @@ void main() {
 #endif
     transmittance *= slice_transmittance;
     slice += 1.0;
-    if (front_to_back && transmittance < kOpaqueTransmittance) end = 0.0;
+    if (front_to_back && transmittance < kEndTransmittance) end = 0.0;
   }
   // Sunlight is taken at one height, the mean of all that the ray shows of the slab.
   float opacity = max((front_to_back ? before.a : 1.0) - transmittance, 1e-30);

@@ -37,7 +37,7 @@ const int kMaxSamples = 16384;
 const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a distance has coarser steps than a leap's margin
 const bool kDiffusion = DIFFUSION == 1;
 const bool kGlows = CONSISTENT == 1 && !kDiffusion;  // samples send light scattered many times
-const float kOpaqueTransmittance = kDiffusion ? 0.02 : 5e-3;  // below which a ray ends
+const float kEndTransmittance = kDiffusion ? 0.02 : kOpaqueTransmittance;  // below which a ray ends
 
 // Of a segment, and of what is seen before it, from which on the segment is parted.
 const float kFaceDepth = 1.0;
@@ -168,7 +168,7 @@ Seen march(MediumRay ray, float distance_m, float end_m) {
   float limit_m = longest_m;
   Seen seen = nothing_seen();
   Sample before = no_sample();
-  for (int i = 0; i < kMaxSamples && distance_m < end_m && background_transmittance(seen) > kOpaqueTransmittance; ++i) {
+  for (int i = 0; i < kMaxSamples && distance_m < end_m && background_transmittance(seen) > kEndTransmittance; ++i) {
     float begin_m = distance_m;
     float segment_m = advance(distance_m, end_m, ray, cell_m, limit_m, before.extinction < 0.0);
     Sample here = sample_at(medium_place(ray, distance_m), distance_m);
@@ -197,7 +197,7 @@ void main() {
   vec3 sunlight = sunlight_at(origin_m.z + mean_distance_m(seen) * direction.z);
   vec3 radiance = radiance_of(seen.scattered, sunlight, step_m, haversine_between(direction, towards_sun));
   if (kDiffusion) {
-    if (seen.diffuse.transmittance <= kOpaqueTransmittance) close_diffuse(seen.diffuse);
+    if (seen.diffuse.transmittance <= kEndTransmittance) close_diffuse(seen.diffuse);
     radiance += diffuse_radiance(seen.diffuse, sunlight);
   }
   radiance = outcome_of(radiance, seen_place(seen, origin_m, direction), direction);

@@ -30,8 +30,6 @@ in vec2 position;
 layout(location = 0) out vec4 radiance_and_transmittance;
 layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
 
-const float kOpaqueTransmittance = 5e-3;  // below which a ray ends, as in light_volume/march.frag
-
 #if DETAIL
 const float kRelief = 0.5;      // the deepest valley's share of a ball's squared radius
 const float kDisplaced = 0.5;   // radii

@@ -14,8 +14,8 @@ picture::LinearPicture Linear(const std::vector<float>& gray) {
   return image;
 }
 
-DisplayImage Drawn(const std::function<int(int x, int y)>& gray) {
-  DisplayImage image{{48, 40}, {}};
+frame::RgbImage Drawn(const std::function<int(int x, int y)>& gray) {
+  frame::RgbImage image{48, 40, {}};
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 48; ++x)
       image.rgb.insert(image.rgb.end(), 3, static_cast<std::uint8_t>(gray(x, y)));
@@ -45,7 +45,7 @@ TEST(ImageError, TheTruthsNoiseIsTakenOutInSquares) {
 }
 
 TEST(Flip, OfAPictureWithItselfIsZero) {
-  const DisplayImage picture = Drawn([](int x, int y) { return (x * 7 + y * 13) % 256; });
+  const frame::RgbImage picture = Drawn([](int x, int y) { return (x * 7 + y * 13) % 256; });
   EXPECT_EQ(Flip(picture, picture), 0.0);
 }
 
@@ -61,7 +61,7 @@ TEST(Flip, OfEvenGraysFollowsTheColourFormula) {
 }
 
 TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
-  const DisplayImage truth = Drawn([](int x, int) { return 100 + x; });
+  const frame::RgbImage truth = Drawn([](int x, int) { return 100 + x; });
   const auto shifted = [&](int by) { return Drawn([=](int x, int) { return 100 + x + by; }); };
   const double small = Flip(shifted(2), truth);
   const double large = Flip(shifted(40), truth);
@@ -72,10 +72,11 @@ TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
 }
 
 TEST(Flip, FineNoiseIsForgivenAndANewEdgeIsNot) {
-  const DisplayImage truth = Drawn([](int, int) { return 128; });
+  const frame::RgbImage truth = Drawn([](int, int) { return 128; });
   // Both change every pixel by 10 levels.
-  const DisplayImage chequered = Drawn([](int x, int y) { return (x + y) % 2 == 0 ? 118 : 138; });
-  const DisplayImage stepped = Drawn([](int x, int) { return x < 24 ? 118 : 138; });
+  const frame::RgbImage chequered =
+      Drawn([](int x, int y) { return (x + y) % 2 == 0 ? 118 : 138; });
+  const frame::RgbImage stepped = Drawn([](int x, int) { return x < 24 ? 118 : 138; });
   EXPECT_LT(2.0 * Flip(chequered, truth), Flip(stepped, truth));
 }
 

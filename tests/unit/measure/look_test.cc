@@ -70,8 +70,7 @@ TEST(LookFigures, CountStops) {
 }
 
 TEST(LookFigures, ReadWhatAScreenShows) {
-  DisplayImage display;
-  display.size_px = {20, 10};
+  frame::RgbImage display{20, 10, {}};
   std::vector<Region> regions(200, Region::kTower);
   for (int i = 0; i < 200; ++i) {
     // sRGB 188 is half of the light of 255.

@@ -44,14 +44,13 @@ std::map<std::string, std::set<std::string>> FilesBySection() {
 // Counted are existing files that a person edits, besides new files and tests.
 TEST(ExtendingPage, NamesFilesThatExistAndNoMoreThanAllowed) {
   auto files = FilesBySection();
-  const std::map<std::string, std::size_t> allowed = {
-      {"A technique (a renderer)", 4},
-      {"A storm format", 2},
-      {"A hydrometeor field", 4},
-      {"A parameter of a scene", 4},
-      {"A call (rpc)", 4},
-      {"A phase function by a formula", 3},
-      {"A phase function by a table", 3}};
+  const std::map<std::string, std::size_t> allowed = {{"A technique (a renderer)", 4},
+                                                      {"A storm format", 2},
+                                                      {"A hydrometeor field", 4},
+                                                      {"A parameter of a scene", 4},
+                                                      {"A call (rpc)", 4},
+                                                      {"A phase function by a formula", 3},
+                                                      {"A phase function by a table", 3}};
   EXPECT_EQ(files.size(), allowed.size());
   for (const auto& [section, most] : allowed) {
     EXPECT_GT(files[section].size(), 0U) << section;
