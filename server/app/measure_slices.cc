@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -52,6 +54,16 @@ absl::Status CheckFlags(const SlicesFlags& flags) {
   return absl::OkStatus();
 }
 
+// Half-angle slices without a name.
+absl::StatusOr<accuracy::PlainTechnique> TechniqueNamed(const std::string& name) {
+  if (name.empty()) return accuracy::Plain<scene::HalfAngle>();
+  const auto* const found =
+      std::ranges::find(accuracy::kCellTechniques, name, &accuracy::PlainTechnique::name);
+  if (found != accuracy::kCellTechniques.end()) return *found;
+  return absl::InvalidArgumentError(
+      absl::StrCat("--renderer is '", name, "'; it must be half_angle or light_volume"));
+}
+
 // The cloud fills the picture.
 Subject SlabOf(double optical_depth) {
   Subject subject{absl::StrFormat("smooth cloud of optical depth %g", optical_depth),
@@ -73,11 +85,10 @@ absl::Status MeasureSlices(const SlicesFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::PlainTechnique technique,
+                               TechniqueNamed(flags.scene.technique));
   // Procedural detail does not converge with the number of slices.
-  const std::optional<accuracy::PlainTechnique> technique =
-      accuracy::PlainTechniqueNamed(flags.scene.technique);
-  THUNDERHEAD_CHECK(technique.has_value(), flags.scene.technique);
-  subject.scene.rendering.technique = technique->settings();
+  subject.scene.rendering.technique = technique.settings();
   subject.scene.output = {160, 160, 88};
   // Black sky and ground, so that only the light of the cloud is measured.
   subject.scene.sky = {0.0, 0.0};

@@ -342,6 +342,7 @@ TEST_F(CommandLineTest, MeasureSlicesWritesThePlot) {
   EXPECT_THAT(Contents(plot), HasSubstr("consistent, order"));
   ExpectError("measure slices", 64, "either a STORM or --slab TAU");
   ExpectError("measure slices --slab -1", 64, "above 0");
+  ExpectError("measure slices --slab 1 --renderer metaball", 64, "half_angle or light_volume");
   ExpectError("measure slices --slab 1 -o x.png", 64, ".svg or .csv");
 }
 

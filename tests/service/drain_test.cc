@@ -87,6 +87,7 @@ TEST_F(DrainTest, SessionsGoOnForThoseWhoStay) {
   Interacting person(service_.stub(), key);
   Watcher program(service_.stub(), key);
   person.AwaitNewest(Response::kFrame);
+  ASSERT_TRUE(program.AwaitFrame(1, false));
   service_.server().BeginDrain();
   person.AwaitNewest(Response::kEnd);
   v1::Scene scene = SmallScene();
