@@ -121,6 +121,10 @@ void AddBounds(CLI::App& load, load::Bounds& bounds) {
   add("--max-p95", bounds.max_p95_ms,
       "Fail if the 95th percentile of the latency is larger, in milliseconds");
   add("--max-p99", bounds.max_p99_ms, "The same of the 99th percentile");
+  add("--max-spread", bounds.max_spread_ms,
+      "Fail if the 99th percentile of the time from the first viewer who shows a picture to the "
+      "last "
+      "is larger, in milliseconds");
   add("--max-growth", bounds.max_growth_mb, "Fail if the server's memory grows by more MB");
 }
 

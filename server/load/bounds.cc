@@ -40,6 +40,9 @@ std::vector<std::string> NotKept(const Bounds& bounds, const Report& report) {
   }
   CheckMost(bounds.max_p95_ms, p95_ms, "latency p95", "ms", &not_kept);
   CheckMost(bounds.max_p99_ms, p99_ms, "latency p99", "ms", &not_kept);
+  std::optional<double> spread_ms;
+  if (viewers.spread_ms.has_value()) spread_ms = viewers.spread_ms->p99;
+  CheckMost(bounds.max_spread_ms, spread_ms, "first to last viewer p99", "ms", &not_kept);
   std::optional<double> growth_mb;
   if (report.server.has_value()) {
     growth_mb = report.server->rss_last_mb - report.server->rss_first_mb;

@@ -14,6 +14,7 @@ struct Bounds {
   std::optional<double> min_fps;  // of the least served
   std::optional<double> max_p95_ms;
   std::optional<double> max_p99_ms;
+  std::optional<double> max_spread_ms;  // the 99th percentile
   std::optional<double> max_growth_mb;  // of the server's memory, from its first figure to its last
 };
 

@@ -15,11 +15,13 @@ ViewerFigures FiguresOf(const Recording& recording, ViewerKind kind) {
   std::uint64_t bytes = 0;
   std::uint64_t frames = 0;
   std::uint64_t frame_bytes = 0;
+  std::vector<const std::vector<Arrival>*> arrivals;
   for (const ViewerRecord* viewer : recording.viewers) {
     if (viewer->kind != kind) continue;
     fps.push_back(FramesPerSecond(viewer->frames, recording.period));
     const auto of_one = LatenciesOf(recording.updates, viewer->frames, recording.period);
     latencies.insert(latencies.end(), of_one.begin(), of_one.end());
+    arrivals.push_back(&viewer->frames);
     bytes += viewer->bytes;
     frames += viewer->frame_count;
     frame_bytes += viewer->frame_bytes;
@@ -29,6 +31,7 @@ ViewerFigures FiguresOf(const Recording& recording, ViewerKind kind) {
   figures.fps_min = std::ranges::min(fps);
   figures.fps_median = *Percentile(fps, 0.5);
   figures.latency_ms = PercentilesOf(latencies);
+  figures.spread_ms = PercentilesOf(SpreadsOf(recording.updates, arrivals, recording.period));
   figures.latency_growth = GrowthOf(latencies, recording.period);
   if (recording.period.Seconds() > 0.0) {
     figures.kbit_per_viewer = 8e-3 * static_cast<double>(bytes) / recording.period.Seconds() /

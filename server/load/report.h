@@ -18,6 +18,7 @@ struct ViewerFigures {
   double fps_min = 0.0;
   double fps_median = 0.0;
   std::optional<Percentiles> latency_ms;  // none if nothing was steered
+  std::optional<Percentiles> spread_ms;   // from the first viewer who shows an update to the last
   Growth latency_growth;
   double kbit_per_viewer = 0.0;  // a second
   double bytes_per_frame = 0.0;

@@ -31,15 +31,17 @@ std::string Json(const std::optional<Percentiles>& latency) {
 // The keys of `figures` in lines, without braces.
 std::string Keys(const ViewerFigures& figures) {
   if (figures.viewers == 0) {
-    return absl::StrCat("\"fps_min\": null, \"fps_median\": null, \"latency_ms\": ",
-                        Json(std::optional<Percentiles>()),
+    const std::string none = Json(std::optional<Percentiles>());
+    return absl::StrCat("\"fps_min\": null, \"fps_median\": null, \"latency_ms\": ", none,
+                        ", \"spread_ms\": ", none,
                         ", \"kbit_per_viewer\": null, \"bytes_per_frame\": null");
   }
   return absl::StrFormat(
-      "\"fps_min\": %.4g, \"fps_median\": %.4g, \"latency_ms\": %s, \"kbit_per_viewer\": %.5g, "
+      "\"fps_min\": %.4g, \"fps_median\": %.4g, \"latency_ms\": %s, \"spread_ms\": %s, "
+      "\"kbit_per_viewer\": %.5g, "
       "\"bytes_per_frame\": %.6g",
-      figures.fps_min, figures.fps_median, Json(figures.latency_ms), figures.kbit_per_viewer,
-      figures.bytes_per_frame);
+      figures.fps_min, figures.fps_median, Json(figures.latency_ms), Json(figures.spread_ms),
+      figures.kbit_per_viewer, figures.bytes_per_frame);
 }
 
 std::string Json(const FirstFrames& first) {
@@ -88,6 +90,11 @@ std::string Text(const ViewerFigures& figures) {
     absl::StrAppendFormat(&text, "  latency          p50 %.0f ms, p95 %.0f ms, p99 %.0f ms\n",
                           figures.latency_ms->p50, figures.latency_ms->p95,
                           figures.latency_ms->p99);
+  }
+  if (figures.spread_ms.has_value() && figures.viewers > 1) {
+    absl::StrAppendFormat(
+        &text, "  first to last    p50 %.0f ms, p95 %.0f ms, p99 %.0f ms between viewers\n",
+        figures.spread_ms->p50, figures.spread_ms->p95, figures.spread_ms->p99);
   }
   absl::StrAppendFormat(&text, "  bytes            %.0f kbit/s a viewer, %.1f kB a frame\n",
                         figures.kbit_per_viewer, 1e-3 * figures.bytes_per_frame);

@@ -16,12 +16,17 @@ std::optional<double> Percentile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
+std::optional<Percentiles> PercentilesOf(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return Percentiles{*Percentile(values, 0.5), *Percentile(values, 0.95),
+                     *Percentile(values, 0.99)};
+}
+
 std::optional<Percentiles> PercentilesOf(const std::vector<Latency>& latencies) {
-  if (latencies.empty()) return std::nullopt;
   std::vector<double> ms;
   ms.reserve(latencies.size());
   for (const Latency& latency : latencies) ms.push_back(latency.ms);
-  return Percentiles{*Percentile(ms, 0.5), *Percentile(ms, 0.95), *Percentile(ms, 0.99)};
+  return PercentilesOf(ms);
 }
 
 std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
@@ -42,6 +47,31 @@ std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
   std::ranges::copy_if(unseen, std::back_inserter(latencies),
                        [&](const Latency& latency) { return latency.ms > longest_ms; });
   return latencies;
+}
+
+std::vector<double> SpreadsOf(const std::vector<Update>& updates,
+                              const std::vector<const std::vector<Arrival>*>& viewers,
+                              const Period& period) {
+  std::vector<double> spreads_ms;
+  std::vector<std::size_t> at(viewers.size(), 0);
+  for (const Update& update : updates) {
+    double first_s = period.end_s;
+    double last_s = 0.0;
+    for (std::size_t i = 0; i < viewers.size(); ++i) {
+      const std::vector<Arrival>& arrivals = *viewers[i];
+      while (at[i] < arrivals.size() && arrivals[at[i]].scene_revision < update.scene_revision) {
+        ++at[i];
+      }
+      const double shown_s =
+          at[i] < arrivals.size() ? std::min(arrivals[at[i]].at_s, period.end_s) : period.end_s;
+      first_s = std::min(first_s, shown_s);
+      last_s = std::max(last_s, shown_s);
+    }
+    if (period.Contains(update.sent_s) && first_s < period.end_s) {
+      spreads_ms.push_back(1e3 * (last_s - first_s));
+    }
+  }
+  return spreads_ms;
 }
 
 Growth GrowthOf(const std::vector<Latency>& latencies, const Period& period) {

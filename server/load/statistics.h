@@ -43,6 +43,7 @@ struct Percentiles {
 // The least value that at least `share` of the values, 0 to 1, do not exceed; none if there are no
 // values.
 std::optional<double> Percentile(std::vector<double> values, double share);
+std::optional<Percentiles> PercentilesOf(const std::vector<double>& values);
 std::optional<Percentiles> PercentilesOf(const std::vector<Latency>& latencies);
 
 // The latency at one viewer of each update sent in the period: until the first frame of its
@@ -51,6 +52,13 @@ std::optional<Percentiles> PercentilesOf(const std::vector<Latency>& latencies);
 // other latency: a viewer that gets nothing any more is late, not absent.
 std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
                                  const std::vector<Arrival>& arrivals, const Period& period);
+
+// For each update sent in the period that a viewer showed: the milliseconds from the first viewer
+// that showed it, or a newer one, to the last. One that had not by the end counts until then.
+// `updates` are in the order of their revisions, each viewer's arrivals in that of time.
+std::vector<double> SpreadsOf(const std::vector<Update>& updates,
+                              const std::vector<const std::vector<Arrival>*>& viewers,
+                              const Period& period);
 
 // The median latency of the updates sent in the first and in the last third of the period: how
 // latency grows.

@@ -147,6 +147,15 @@ before(async () => {
   );
 });
 
+// Keeps the clock's time at which the page first showed each revision.
+const noteWhenShown = (page) =>
+  page.getByTestId("storm-canvas").evaluate((canvas) => {
+    window.shownAt = {};
+    new MutationObserver(() => {
+      window.shownAt[canvas.dataset.revision] ??= Date.now();
+    }).observe(canvas, { attributeFilter: ["data-revision"] });
+  });
+
 after(async () => {
   await browser?.close();
   await server?.stop();
@@ -198,8 +207,13 @@ test("a student joins by the link and sees the same picture, but cannot change i
   await inStep();
   const apart = difference(await grabCanvas(teacher), await grabCanvas(student));
   assert.ok(apart < 1, `the pictures differ by ${apart}`);
+  for (const page of [teacher, student]) await noteWhenShown(page);
   await changing(() => setNumber(teacher, "exposure", 0.7), teacher);
   await inStep();
+  const { revision: shown } = await canvasData(teacher);
+  const shownAt = (page) => page.evaluate((revision) => window.shownAt[revision], shown);
+  const apartMs = Math.abs((await shownAt(teacher)) - (await shownAt(student)));
+  assert.ok(apartMs < 1000, `the student sees the picture ${apartMs} ms apart from the teacher`);
   assert.equal(await exposure(student).inputValue(), "0.7");
   assert.equal(await exposure(student).isDisabled(), true);
   assert.equal(await student.getByTestId("exposure").isDisabled(), true);

@@ -99,11 +99,23 @@ TEST_P(LoadTest, HasAllFigures) {
   EXPECT_THAT(report->server->rss_first_mb, Gt(1.0));
   EXPECT_THAT(report->server->rss_last_mb, Gt(1.0));
   EXPECT_THAT(report->server->rss_most_mb, Ge(report->server->rss_last_mb));
-  for (const char* key : {"viewers", "fps_min", "fps_median", "latency_ms", "p50", "p95", "p99",
-                          "kbit_per_viewer", "errors", "server_rss_mb", "first", "last", "most"}) {
+  for (const char* key :
+       {"viewers", "fps_min", "fps_median", "latency_ms", "spread_ms", "p50", "p95", "p99",
+        "kbit_per_viewer", "errors", "server_rss_mb", "first", "last", "most"}) {
     EXPECT_THAT(ToJson(*report), HasSubstr("\"" + std::string(key) + "\": "));
   }
   EXPECT_THAT(ToJson(*report), Not(HasSubstr("null, \"p95\"")));
+}
+
+TEST_P(LoadTest, AClassSeesTheSamePictureWithinASecond) {
+  options_.viewers = 30;
+  options_.seconds = 2.0;
+  const auto report = Run();
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->healthy.viewers, 30);
+  ASSERT_TRUE(report->healthy.spread_ms.has_value());
+  EXPECT_THAT(report->healthy.spread_ms->p99, Le(1000.0)) << ToText(*report);
 }
 
 TEST_P(LoadTest, LeavesNoSessionBehind) {

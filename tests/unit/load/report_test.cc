@@ -59,6 +59,8 @@ TEST_F(ReportTest, CountsHealthyViewersApartFromOthers) {
   ASSERT_TRUE(report.healthy.latency_ms.has_value());
   EXPECT_NEAR(report.healthy.latency_ms->p50, 100.0, 1e-6);
   EXPECT_NEAR(report.healthy.latency_ms->p99, 200.0, 1e-6);
+  ASSERT_TRUE(report.healthy.spread_ms.has_value());
+  EXPECT_NEAR(report.healthy.spread_ms->p50, 100.0, 1e-6);
   EXPECT_DOUBLE_EQ(report.healthy.bytes_per_frame, 1000.0);
   EXPECT_NEAR(report.healthy.kbit_per_viewer, 8.0 * 120.0 / 10.0 / 2.0, 1e-9);
   EXPECT_EQ(report.throttled.viewers, 1);
@@ -109,6 +111,8 @@ TEST_F(ReportTest, IsWrittenAsJson) {
   EXPECT_EQ(memory.at("most").number_value(), 420);
   EXPECT_EQ(memory.at("over_time").list_value().values_size(), 3);
   EXPECT_EQ(json.at("throttled").struct_value().fields().at("viewers").number_value(), 1);
+  EXPECT_EQ(json.at("spread_ms").struct_value().fields().at("p99").number_value(), 100);
+  EXPECT_THAT(ToText(ReportOf(recording_)), HasSubstr("first to last    p50 100 ms"));
 }
 
 TEST_F(ReportTest, OfThrottledViewersAloneTellsOfThem) {
@@ -170,17 +174,24 @@ TEST(Pace, DelaysEachMessageByItsTimeOnTheWire) {
 TEST_F(ReportTest, BoundsAreKeptOrSaidNotToBe) {
   const Report report = ReportOf(recording_);
   EXPECT_THAT(NotKept({}, report), testing::IsEmpty());
-  EXPECT_THAT(
-      NotKept({.min_fps = 2.0, .max_p95_ms = 200.5, .max_p99_ms = 201.0, .max_growth_mb = 10.0},
-              report),
-      testing::IsEmpty());
-  EXPECT_THAT(
-      NotKept({.min_fps = 2.1, .max_p95_ms = 150.0, .max_p99_ms = 150.0, .max_growth_mb = 9.0},
-              report),
-      testing::ElementsAre("least frames/s 2.0, at least 2.1 wanted",
-                           "latency p95 200 ms, at most 150 ms wanted",
-                           "latency p99 200 ms, at most 150 ms wanted",
-                           "growth of the server's memory 10 MB, at most 9 MB wanted"));
+  EXPECT_THAT(NotKept({.min_fps = 2.0,
+                       .max_p95_ms = 200.5,
+                       .max_p99_ms = 201.0,
+                       .max_spread_ms = 101.0,
+                       .max_growth_mb = 10.0},
+                      report),
+              testing::IsEmpty());
+  EXPECT_THAT(NotKept({.min_fps = 2.1,
+                       .max_p95_ms = 150.0,
+                       .max_p99_ms = 150.0,
+                       .max_spread_ms = 50.0,
+                       .max_growth_mb = 9.0},
+                      report),
+              testing::ElementsAre("least frames/s 2.0, at least 2.1 wanted",
+                                   "latency p95 200 ms, at most 150 ms wanted",
+                                   "latency p99 200 ms, at most 150 ms wanted",
+                                   "first to last viewer p99 100 ms, at most 50 ms wanted",
+                                   "growth of the server's memory 10 MB, at most 9 MB wanted"));
 }
 
 TEST_F(ReportTest, ABoundOfWhatWasNotMeasuredIsNotKept) {

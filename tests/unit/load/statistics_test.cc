@@ -54,6 +54,20 @@ TEST(Latencies, CountAnUnseenUpdateByItsAgeIfThatIsWorse) {
   EXPECT_THAT(Ms(LatenciesOf({{15.0, 3}}, {{20.5, 3}}, kPeriod)), ElementsAre(Near(5000)));
 }
 
+TEST(Spreads, AreFromTheFirstViewerWhoShowsAnUpdateToTheLast) {
+  const std::vector<Update> updates = {{9.0, 1}, {11.0, 2}, {12.0, 3}, {13.0, 4}, {19.0, 5}};
+  // The second viewer skips revision 3, the third gets nothing after revision 2.
+  const std::vector<Arrival> first = {{9.1, 1}, {11.1, 2}, {12.1, 3}, {13.1, 4}};
+  const std::vector<Arrival> second = {{9.5, 1}, {11.2, 2}, {13.4, 4}};
+  const std::vector<Arrival> third = {{9.9, 1}, {11.15, 2}};
+  EXPECT_THAT(SpreadsOf(updates, {&first, &second}, kPeriod),
+              ElementsAre(Near(100), Near(1300), Near(300)));
+  EXPECT_THAT(SpreadsOf(updates, {&first, &second, &third}, kPeriod),
+              ElementsAre(Near(100), Near(7900), Near(6900)));
+  EXPECT_THAT(SpreadsOf(updates, {&first}, kPeriod), ElementsAre(0.0, 0.0, 0.0));
+  EXPECT_THAT(SpreadsOf(updates, {}, kPeriod), ElementsAre());
+}
+
 TEST(Latencies, GrowFromTheFirstThirdToTheLast) {
   const std::vector<Latency> latencies = {{10.5, 10}, {12.0, 20}, {13.0, 30}, {15.0, 999},
                                           {17.0, 70}, {18.0, 80}, {19.0, 90}};
