@@ -64,6 +64,15 @@ absl::Status CorrectorPool::MakeRoom() {
       absl::StrCat("the server traces the light of ", kept_.size(), " other scenes already"));
 }
 
+absl::StatusOr<base::MemoryReservation> CorrectorPool::Reserve(std::size_t bytes) {
+  while (true) {
+    auto reserved = memory_->Reserve(base::MemoryUse::kTracing, bytes, "tracing a storm's light",
+                                     base::MemoryBudget::Urgency::kAhead);
+    if (reserved.ok() || base::IsTooLargeForMemory(reserved.status())) return reserved;
+    if (!DropOldest()) return reserved;
+  }
+}
+
 void CorrectorPool::Publish(Kept& kept, std::int64_t wanted_paths) {
   const LightProgress& progress = kept.corrector->Progress();
   if (!progress.Corrects() || progress.paths == kept.published_paths) return;
@@ -83,10 +92,8 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
   Kept* kept = Serving(scene, fields);
   if (kept == nullptr) {
     THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        base::MemoryReservation reserved,
-        memory_->Reserve(base::MemoryUse::kTracing, reference::MediumBytes(*fields),
-                         "tracing a storm's light", base::MemoryBudget::Urgency::kAhead));
+    THUNDERHEAD_ASSIGN_OR_RETURN(base::MemoryReservation reserved,
+                                 Reserve(reference::MediumBytes(*fields)));
     THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<LightCorrector> corrector,
                                  LightCorrector::Create(scene, fields, programs_, 0));
     kept = &kept_.emplace_back();

@@ -43,7 +43,7 @@ class CorrectorPool {
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
   // Traces one step for the scene. RESOURCE_EXHAUSTED if there are `max_correctors` already and all
-  // are busy or claimed, or there is no memory for another storm. `claim`, which may be null, is
+  // are busy or claimed, or their storms leave no memory for another. `claim`, which may be null, is
   // given a claim on the scene's light. The correction is published now and then, and once
   // `wanted_paths` are traced.
   absl::StatusOr<LightProgress> Trace(
@@ -71,6 +71,8 @@ class CorrectorPool {
                 const std::shared_ptr<const volume::HydrometeorFields>& fields);
   std::list<Kept>::iterator OldestIdle();
   absl::Status MakeRoom();
+  // Drops idle correctors, the oldest first, where their storms leave no room for another.
+  absl::StatusOr<base::MemoryReservation> Reserve(std::size_t bytes);
   static void Publish(Kept& kept, std::int64_t wanted_paths);
   void DropUnused();
 

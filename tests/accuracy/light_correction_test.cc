@@ -246,15 +246,29 @@ TEST_F(LightCorrection, APoolReservesItsCopiesOfTheStorm) {
   const std::size_t bytes = reference::MediumBytes(*fields_);
   const auto memory = base::MemoryBudget::Make({.bytes = bytes + bytes / 2});
   CorrectorPool pool(programs_, lights_, memory, 8, 0.0);
-  ASSERT_TRUE(pool.Trace(scene_, fields_).ok());
+  LightClaim claim;
+  ASSERT_TRUE(pool.Trace(scene_, fields_, &claim).ok());
   EXPECT_EQ(memory->Used(base::MemoryUse::kTracing), bytes);
   scene::Scene other = scene_;
   other.sun.elevation_deg = 70.0;
   EXPECT_TRUE(absl::IsResourceExhausted(pool.Trace(other, fields_).status()));
   EXPECT_NE(pool.Find(scene_, fields_), nullptr);
-  ASSERT_TRUE(pool.DropOldest());
-  EXPECT_EQ(memory->Used(), 0U);
+  // One that nobody claims makes room for another.
+  claim.reset();
   EXPECT_TRUE(pool.Trace(other, fields_).ok());
+  EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
+  EXPECT_EQ(memory->Used(), bytes);
+}
+
+TEST_F(LightCorrection, AStormThatNeverFitsDropsNoOther) {
+  const std::size_t bytes = reference::MediumBytes(*fields_);
+  const auto memory = base::MemoryBudget::Make({.bytes = bytes});
+  CorrectorPool pool(programs_, lights_, memory, 8, 0.0);
+  ASSERT_TRUE(pool.Trace(scene_, fields_).ok());
+  auto large = std::make_shared<volume::HydrometeorFields>(*fields_);
+  large->grid.cells.z *= 2;
+  EXPECT_TRUE(absl::IsResourceExhausted(pool.Trace(scene_, large).status()));
+  EXPECT_NE(pool.Find(scene_, fields_), nullptr);
 }
 
 TEST_F(LightCorrection, APoolKeepsWhatIsClaimed) {

@@ -340,14 +340,18 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
 void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSettings& settings,
                                  float share) const {
   double mean_radius_m = 0.0;
+  double largest_radius_m = 0.0;
   for (const Ball& ball : balls_) {
     mean_radius_m += ball.radius_m / static_cast<double>(balls_.size());
+    largest_radius_m = std::max(largest_radius_m, ball.radius_m);
   }
   const double tile_m = kWaveInRadii * mean_radius_m * physics::DetailTile::kWaves;
   const glm::dvec3 corner = box_.Middle_m() / tile_m;
   program.Set(uniform::noise_per_m, static_cast<float>(1.0 / tile_m));
   program.Set(uniform::noise_offset, glm::vec3(corner - glm::floor(corner)));
   program.Set(uniform::roughness, share);
+  // What rounds away is added.
+  program.Set(uniform::largest_radius_m, static_cast<float>(1.001 * largest_radius_m));
   const scene::View& view = settings.view;
   const double away_m =
       glm::length(glm::max(glm::abs(view.eye_m - box_.Middle_m()) - box_.HalfExtent_m(), 0.0));

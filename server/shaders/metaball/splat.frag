@@ -24,6 +24,7 @@ layout(binding = kDetailNoiseUnit) uniform sampler3D noise;  // physics/detail_t
 uniform float noise_per_m;   // tiles
 uniform vec3 noise_offset;
 uniform float roughness;     // 0 to 1
+uniform float largest_radius_m;  // of a ball
 #endif
 
 in vec2 position;
@@ -44,18 +45,31 @@ float eroded(float s, vec3 origin_m, vec3 ray, vec3 across_m, float surface_m, f
   return min(s, 1.0 - dot(moved, moved)) - roughness * kRelief * (1.0 - here.r) * (1.0 - 0.7 * s);
 }
 
-// The mean light of the tile's balls at a place, by their extinctions there.
-vec3 light_at(vec3 place_m, uint first, uint end) {
+// The distance that balls are ordered by (renderers/metaball/tiles.cc).
+float ordered_by_m(vec3 off_m, vec3 ray) { return ray_right == vec3(0.0) ? dot(off_m, ray) : length(off_m); }
+
+// Adds the light of a ball to that of others at a place, each by its extinction there. False if the ball, and all that come
+// after it in the order, away from the place, cannot contain it: it is farther off than the largest is wide.
+bool add_light(uint index, vec3 origin_m, vec3 ray, float place_distance_m, inout vec4 sum) {
+  vec4 middle_radius = balls[index].middle_radius;
+  vec3 from_eye_m = middle_radius.xyz - origin_m;
+  if (abs(ordered_by_m(from_eye_m, ray) - place_distance_m) > largest_radius_m) return false;
+  vec3 off_m = (from_eye_m - place_distance_m * ray) / middle_radius.w;
+  float w = 1.0 - dot(off_m, off_m);
+  if (w <= 0.0) return true;
+  vec4 source = sources[index];
+  sum += source.a * wyvill_field(w) * vec4(source.rgb, 1.0);
+  return true;
+}
+
+// The mean light at a place of the ray, by their extinctions there, of the tile's balls, which run from `first` to `end`; the
+// place is in ball `i` of the order.
+vec3 light_at(vec3 origin_m, vec3 ray, float distance_m, uint i, uint first, uint end) {
   vec4 sum = vec4(0.0);
-  for (uint i = first; i < end; ++i) {
-    uint index = order[i];
-    vec4 middle_radius = balls[index].middle_radius;
-    vec3 off_m = (middle_radius.xyz - place_m) / middle_radius.w;
-    float w = 1.0 - dot(off_m, off_m);
-    if (w <= 0.0) continue;
-    vec4 source = sources[index];
-    sum += source.a * wyvill_field(w) * vec4(source.rgb, 1.0);
-  }
+  uint at = i;
+  while (at < end && add_light(order[at], origin_m, ray, distance_m, sum)) ++at;
+  at = i;
+  while (at > first && add_light(order[at - 1u], origin_m, ray, distance_m, sum)) --at;
   return sum.rgb / max(sum.a, 1e-30);
 }
 #endif
@@ -118,7 +132,7 @@ void main() {
       // Where about half of what shows of the ball is in front: fields rise as the square of the depth below the surface.
       float before = half_chord * min(pow(1.4 / max(depth, 1e-6), 1.0 / 3.0), 1.0);
       // Half of it: balls that lie deeper, which weigh more there, are darker than the surface.
-      light = 0.5 * (light + light_at(origin_m + (along_m + (before - half_chord) * middle_radius.w) * ray, first, end));
+      light = 0.5 * (light + light_at(origin_m, ray, along_m + (before - half_chord) * middle_radius.w, i, first, end));
     }
 #endif
     radiance += transmittance * taken * light;
