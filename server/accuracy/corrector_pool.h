@@ -43,8 +43,8 @@ class CorrectorPool {
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
   // Traces one step for the scene. RESOURCE_EXHAUSTED if there are `max_correctors` already and all
-  // are busy or claimed, or their storms leave no memory for another. `claim`, which may be null, is
-  // given a claim on the scene's light. The correction is published now and then, and once
+  // are busy or claimed, or their storms leave no memory for another. `claim`, which may be null,
+  // is given a claim on the scene's light. The correction is published now and then, and once
   // `wanted_paths` are traced.
   absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
