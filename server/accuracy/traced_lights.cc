@@ -7,15 +7,13 @@
 namespace thunderhead::accuracy {
 
 bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
+  if (!scene::CapabilitiesOf(scene.rendering.technique).traced_light) return false;
+  scene::Scene known = traced;
   scene::Scene alike = scene;
   // When it is traced does not matter.
-  scene::Technique technique = traced.rendering.technique;
-  for (scene::Technique* const each : {&technique, &alike.rendering.technique}) {
-    if (!scene::CapabilitiesOf(*each).traced_light) return false;
-    scene::SetTracedLight(each, scene::TracedLight::kOff);
+  for (scene::Scene* const each : {&known, &alike}) {
+    scene::SetTracedLight(&each->rendering.technique, scene::TracedLight::kOff);
   }
-  if (alike.rendering.technique != technique) return false;
-  alike.rendering.technique = traced.rendering.technique;
   alike.camera = traced.camera;
   alike.lights = traced.lights;  // which the correction does not include
   alike.display = traced.display;
@@ -23,7 +21,7 @@ bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
   alike.accuracy = traced.accuracy;
   alike.ground.rings = traced.ground.rings;
   alike.rendering.image_scale = traced.rendering.image_scale;
-  return alike == traced;
+  return alike == known;
 }
 
 std::optional<TracedLights::Found> TracedLights::Find(const scene::Scene& scene,

@@ -7,6 +7,23 @@
 #include <utility>
 
 namespace thunderhead::load {
+namespace {
+
+// When a viewer first showed each update or a newer one; the period's end if it had not by then.
+std::vector<double> ShownAt_s(const std::vector<Update>& updates,
+                              const std::vector<Arrival>& arrivals, const Period& period) {
+  std::vector<double> shown_s;
+  shown_s.reserve(updates.size());
+  auto arrival = arrivals.begin();
+  for (const Update& update : updates) {
+    while (arrival != arrivals.end() && arrival->scene_revision < update.scene_revision) ++arrival;
+    shown_s.push_back(arrival == arrivals.end() ? period.end_s
+                                                : std::min(arrival->at_s, period.end_s));
+  }
+  return shown_s;
+}
+
+}  // namespace
 
 std::optional<double> Percentile(std::vector<double> values, double share) {
   if (values.empty()) return std::nullopt;
@@ -34,13 +51,11 @@ std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
   std::vector<Latency> latencies;
   std::vector<Latency> unseen;
   double longest_ms = 0.0;
-  auto arrival = arrivals.begin();
-  for (const Update& update : updates) {
-    while (arrival != arrivals.end() && arrival->scene_revision < update.scene_revision) ++arrival;
-    if (!period.Contains(update.sent_s)) continue;
-    const bool seen = arrival != arrivals.end() && arrival->at_s < period.end_s;
-    const double until_s = seen ? arrival->at_s : period.end_s;
-    const Latency latency{update.sent_s, 1e3 * (until_s - update.sent_s)};
+  const std::vector<double> shown_s = ShownAt_s(updates, arrivals, period);
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    if (!period.Contains(updates[i].sent_s)) continue;
+    const bool seen = shown_s[i] < period.end_s;
+    const Latency latency{updates[i].sent_s, 1e3 * (shown_s[i] - updates[i].sent_s)};
     (seen ? latencies : unseen).push_back(latency);
     if (seen) longest_ms = std::max(longest_ms, latency.ms);
   }
@@ -52,24 +67,19 @@ std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
 std::vector<double> SpreadsOf(const std::vector<Update>& updates,
                               const std::vector<const std::vector<Arrival>*>& viewers,
                               const Period& period) {
+  std::vector<double> first_s(updates.size(), period.end_s);
+  std::vector<double> last_s(updates.size(), 0.0);
+  for (const std::vector<Arrival>* const arrivals : viewers) {
+    const std::vector<double> shown_s = ShownAt_s(updates, *arrivals, period);
+    for (std::size_t i = 0; i < updates.size(); ++i) {
+      first_s[i] = std::min(first_s[i], shown_s[i]);
+      last_s[i] = std::max(last_s[i], shown_s[i]);
+    }
+  }
   std::vector<double> spreads_ms;
-  std::vector<std::size_t> at(viewers.size(), 0);
-  for (const Update& update : updates) {
-    double first_s = period.end_s;
-    double last_s = 0.0;
-    for (std::size_t i = 0; i < viewers.size(); ++i) {
-      const std::vector<Arrival>& arrivals = *viewers[i];
-      while (at[i] < arrivals.size() && arrivals[at[i]].scene_revision < update.scene_revision) {
-        ++at[i];
-      }
-      const double shown_s =
-          at[i] < arrivals.size() ? std::min(arrivals[at[i]].at_s, period.end_s) : period.end_s;
-      first_s = std::min(first_s, shown_s);
-      last_s = std::max(last_s, shown_s);
-    }
-    if (period.Contains(update.sent_s) && first_s < period.end_s) {
-      spreads_ms.push_back(1e3 * (last_s - first_s));
-    }
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    if (!period.Contains(updates[i].sent_s) || first_s[i] >= period.end_s) continue;
+    spreads_ms.push_back(1e3 * (last_s[i] - first_s[i]));
   }
   return spreads_ms;
 }

@@ -155,9 +155,7 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
     const scene::Scene& scene, double million_paths, const std::stop_token& stop) {
   if (million_paths <= 0.0) return nullptr;
   scene::Scene traced = scene;
-  if (auto* light_volume = std::get_if<scene::LightVolume>(&traced.rendering.technique)) {
-    light_volume->traced_light = scene::TracedLight::kAtRest;
-  }
+  scene::SetTracedLight(&traced.rendering.technique, scene::TracedLight::kAtRest);
   if (!accuracy::TracesLight(traced, *fields_)) return nullptr;
   if (corrector_ == nullptr || !corrector_->Serves(traced, fields_) ||
       corrected_by_ > million_paths) {

@@ -60,9 +60,10 @@ const PhaseTable& TableOf(const PhaseFunction& phase) {
   return tables[TableIndexOf(phase)];
 }
 
-bool IsFormula(const PhaseFunction& phase) {
-  return std::ranges::find(kPhaseTables, phase.kind, &PhaseTableName::kind) == kPhaseTables.end();
-}
+// Formulas come before tables.
+static_assert(std::ranges::min(kPhaseTables, {}, &PhaseTableName::kind).kind ==
+              kPhaseTables.front().kind);
+bool IsFormula(const PhaseFunction& phase) { return phase.kind < kPhaseTables.front().kind; }
 
 template <typename F>
 double Luminance(const F& value_of_channel) {

@@ -18,9 +18,13 @@ import {
   Transport,
 } from "../gen/thunderhead/v1/scene_pb";
 
-// "ICE_COLUMNS" is "Ice columns".
+// "ICE_COLUMNS" is "ice columns"; undefined for one that is not known.
+export function enumeratorInWords(description: DescEnum, value: number): string | undefined {
+  return description.value[value]?.localName.toLowerCase().replaceAll("_", " ");
+}
+
 function nameOfEnumerator(description: DescEnum, value: number): string {
-  const words = description.value[value]?.localName.toLowerCase().replaceAll("_", " ");
+  const words = enumeratorInWords(description, value);
   return words ? (words[0]?.toUpperCase() ?? "") + words.slice(1) : `${description.name} ${value}`;
 }
 

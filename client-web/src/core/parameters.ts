@@ -9,6 +9,7 @@ import {
 } from "@bufbuild/protobuf";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { defaultChoiceOf, defaultOnOf, type Limits, limitsOf } from "./limits";
+import { enumeratorInWords } from "./names";
 
 interface Step {
   readonly field: DescField;
@@ -95,8 +96,7 @@ function leaf(
   const common = { path, fullName, name: nameOf(field.name), group, steps };
   if (field.fieldKind === "enum") {
     const { enum: desc } = field;
-    const words = (number: number) =>
-      desc.value[number]?.localName.toLowerCase().replaceAll("_", " ") ?? "";
+    const words = (number: number) => enumeratorInWords(desc, number) ?? "";
     const standsFor = defaultChoiceOf(field);
     const absent = standsFor === 0 ? "default" : `default: ${words(standsFor)}`;
     const options = desc.values.map(({ number, name }) => ({

@@ -350,7 +350,7 @@ void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSetting
   program.Set(uniform::noise_per_m, static_cast<float>(1.0 / tile_m));
   program.Set(uniform::noise_offset, glm::vec3(corner - glm::floor(corner)));
   program.Set(uniform::roughness, share);
-  // What rounds away is added.
+  // A margin for the rounding of distances.
   program.Set(uniform::largest_radius_m, static_cast<float>(1.001 * largest_radius_m));
   const scene::View& view = settings.view;
   const double away_m =
