@@ -12,7 +12,7 @@
 #include "app/commands.h"
 #include "app/local_service.h"
 #include "base/status.h"
-#include "service/scene_messages.h"
+#include "service/messages/scene_messages.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {

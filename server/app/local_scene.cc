@@ -2,11 +2,11 @@
 
 #include "app/local_service.h"
 #include "base/status.h"
-#include "service/camera_messages.h"
-#include "service/engine.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
-#include "session/gl_frame_source.h"
+#include "renderers/technique_registry.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 
 namespace thunderhead::app {
 
@@ -16,7 +16,7 @@ absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& 
   THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(local.message));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store, OpenStorm(path));
   THUNDERHEAD_RETURN_IF_ERROR(service::PrepareScene(
-      *store, session::TechniquesOf(renderers::TechniqueRegistry::BuiltIn()), local.message));
+      *store, renderers::TechniqueRegistry::BuiltIn().Infos(), local.message));
   const auto time_index = static_cast<int>(local.message.time_index());
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
   local.storm_id = local.message.storm_id();

@@ -12,8 +12,8 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "pipeline/sha256.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/scene_messages.h"
 
 namespace thunderhead::app {
 namespace {

@@ -23,7 +23,7 @@
 #include "product/geotiff.h"
 #include "product/light_netcdf.h"
 #include "product/map_place.h"
-#include "service/picture_texts.h"
+#include "service/messages/picture_texts.h"
 
 namespace thunderhead::app {
 namespace {

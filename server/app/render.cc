@@ -19,7 +19,7 @@
 #include "app/server_link.h"
 #include "base/status.h"
 #include "base/whole_file.h"
-#include "service/technique_messages.h"
+#include "service/messages/technique_messages.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {

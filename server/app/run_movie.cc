@@ -17,7 +17,7 @@
 #include "nlohmann/json.hpp"
 #include "pipeline/movie.h"
 #include "pipeline/sha256.h"
-#include "service/picture_texts.h"
+#include "service/messages/picture_texts.h"
 
 namespace thunderhead::app {
 namespace {

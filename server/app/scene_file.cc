@@ -15,9 +15,9 @@
 #include "app/picture_size.h"
 #include "base/status.h"
 #include "frame/png_text.h"
-#include "service/picture_texts.h"
-#include "service/scene_messages.h"
-#include "service/technique_messages.h"
+#include "service/messages/picture_texts.h"
+#include "service/messages/scene_messages.h"
+#include "service/messages/technique_messages.h"
 
 namespace thunderhead::app {
 namespace {

@@ -58,6 +58,14 @@ const TechniqueFactory* TechniqueRegistry::Find(std::string_view name) const {
   return nullptr;
 }
 
+std::vector<scene::TechniqueInfo> TechniqueRegistry::Infos() const {
+  std::vector<scene::TechniqueInfo> infos;
+  for (const auto& technique : techniques_) {
+    infos.push_back({std::string(technique->Name()), technique->Capabilities()});
+  }
+  return infos;
+}
+
 std::shared_ptr<Preparation> TechniqueRegistry::PreparationOfScenes() const {
   ByTechnique::Preparations preparations;
   for (const auto& technique : techniques_) {

@@ -7,6 +7,7 @@
 
 #include "absl/status/status.h"
 #include "renderers/technique.h"
+#include "scene/technique_info.h"
 
 namespace thunderhead::renderers {
 
@@ -23,6 +24,9 @@ class TechniqueRegistry {
 
   // In the order in which to offer them.
   const std::vector<std::shared_ptr<const TechniqueFactory>>& All() const { return techniques_; }
+
+  // The names and capabilities of all, in that order.
+  std::vector<scene::TechniqueInfo> Infos() const;
 
   // For the scenes of every technique; null if none ever waits.
   std::shared_ptr<Preparation> PreparationOfScenes() const;

@@ -3,7 +3,7 @@
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/limits_check.h"
+#include "service/messages/limits_check.h"
 
 namespace thunderhead::service {
 namespace {

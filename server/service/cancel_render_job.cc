@@ -1,6 +1,6 @@
 #include "service/finished.h"
 #include "service/job_messages.h"
-#include "service/limits_check.h"
+#include "service/messages/limits_check.h"
 #include "service/render_job_handlers.h"
 
 namespace thunderhead::service {

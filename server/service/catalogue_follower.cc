@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "service/engine.h"
-#include "service/scene_messages.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 #include "service/scene_update.h"
 #include "spdlog/spdlog.h"
 

@@ -1,6 +1,6 @@
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/limits_check.h"
+#include "service/messages/limits_check.h"
 
 namespace thunderhead::service {
 

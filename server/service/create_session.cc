@@ -2,8 +2,9 @@
 #include "service/finished.h"
 #include "service/handlers.h"
 #include "service/interact_messages.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 #include "telemetry/metrics.h"
 
 namespace thunderhead::service {

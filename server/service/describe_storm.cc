@@ -1,8 +1,9 @@
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 
 namespace thunderhead::service {
 namespace {

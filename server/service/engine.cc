@@ -1,63 +1,18 @@
 #include "service/engine.h"
 
-#include <algorithm>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "base/error_details.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
-#include "service/camera_messages.h"
-#include "service/scene_messages.h"
-#include "service/technique_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/prepare_scene.h"
 
 namespace thunderhead::service {
-namespace {
-
-// Names in an error message: enough to recognise a typing error; there may be thousands of storms.
-constexpr std::size_t kMaxNamesListed = 10;
-
-constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
-
-std::string NamesOf(const std::vector<volume::StormInfoPtr>& storms) {
-  const std::size_t listed = std::min(storms.size(), kMaxNamesListed);
-  std::string names = absl::StrJoin(
-      storms.begin(), storms.begin() + static_cast<std::ptrdiff_t>(listed), ", ",
-      [](std::string* out, const volume::StormInfoPtr& storm) { out->append(storm->id); });
-  if (listed < storms.size()) absl::StrAppend(&names, " and ", storms.size() - listed, " more");
-  return names;
-}
-
-}  // namespace
 
 void SaveThen(Engine& engine, std::function<void()> done) {
   if (engine.keeper == nullptr) return done();
   engine.keeper->SaveThen(std::move(done));
-}
-
-absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
-                                               const std::string& id) {
-  const std::vector<volume::StormInfoPtr> storms = store.Storms();
-  if (storms.empty()) {
-    return base::WithDetails(absl::NotFoundError("the server has no storms"),
-                             {.reason = kStormNotFound});
-  }
-  if (id.empty()) return storms.front();
-  const auto at = std::ranges::find(storms, id, [](const auto& storm) { return storm->id; });
-  if (at != storms.end()) return *at;
-  return base::WithDetails(absl::NotFoundError(absl::StrCat("no storm has the id '", id,
-                                                            "'; there is ", NamesOf(storms))),
-                           {.reason = kStormNotFound, .metadata = {{"storm_id", id}}});
-}
-
-absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
-                       const std::string& path) {
-  if (time_index < storm.times.size()) return absl::OkStatus();
-  const std::size_t last = storm.times.size() - 1;
-  return base::InvalidField(
-      path, absl::StrCat("is ", time_index, "; storm '", storm.id, "' has times 0 to ", last),
-      "VALUE_OUT_OF_RANGE", {{"minimum", "0"}, {"maximum", absl::StrCat(last)}});
 }
 
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
@@ -70,22 +25,6 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
       {.reason = absl::IsNotFound(fields.status()) ? kStormNotFound : "STORM_UNREADABLE",
        .field = path,
        .metadata = {{"storm_id", storm_id}}});
-}
-
-absl::Status PrepareScene(const volume::StormStore& store,
-                          const std::vector<session::TechniqueInfo>& techniques, v1::Scene& scene) {
-  // They would be kept, and sent to every viewer.
-  scene.DiscardUnknownFields();
-  THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm,
-                               FindStorm(store, scene.storm_id()));
-  if (!scene.has_time_index()) {
-    scene.set_time_index(static_cast<std::uint32_t>(storm->times.size() - 1));
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, scene.time_index(), "scene.time_index"));
-  FillSceneDefaults(scene, *storm);
-  return absl::OkStatus();
 }
 
 void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::Status&)> then) {

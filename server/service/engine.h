@@ -41,23 +41,10 @@ struct Engine {
 // it, else on another thread.
 void SaveThen(Engine& engine, std::function<void()> done);
 
-// The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
-absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
-                                               const std::string& id);
-
-// INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
-absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
-                       const std::string& path);
-
 // The storm's fields at that time. An error names `path`, the request's field with the storm's id.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
     volume::StormStore& store, const std::string& storm_id, int time_index,
     const std::string& path);
-
-// Checks a scene (whose limits were checked) and fills in every default that needs no fields.
-// `techniques` are the available ones.
-absl::Status PrepareScene(const volume::StormStore& store,
-                          const std::vector<session::TechniqueInfo>& techniques, v1::Scene& scene);
 
 // Frames the condensate if the camera needs it, then calls `then`: at once if it does not, else on
 // the executor after reading the fields. `scene` must live until then.

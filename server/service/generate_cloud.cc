@@ -2,11 +2,11 @@
 
 #include "base/out_of_memory.h"
 #include "base/status.h"
-#include "service/cloud_messages.h"
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
+#include "service/messages/cloud_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/scene_messages.h"
 
 namespace thunderhead::service {
 namespace {

@@ -1,7 +1,7 @@
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/job_messages.h"
-#include "service/limits_check.h"
+#include "service/messages/limits_check.h"
 #include "service/render_job_handlers.h"
 
 namespace thunderhead::service {

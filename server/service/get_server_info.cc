@@ -1,7 +1,7 @@
 #include "base/version.h"
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/technique_messages.h"
+#include "service/messages/technique_messages.h"
 
 namespace thunderhead::service {
 
@@ -14,7 +14,7 @@ grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerCont
   response->set_gl_version(device.gl_version);
   response->set_device(device.device);
   response->set_max_sessions(static_cast<std::uint32_t>(engine.sessions.max_sessions()));
-  for (const session::TechniqueInfo& technique : engine.loop.Techniques()) {
+  for (const scene::TechniqueInfo& technique : engine.loop.Techniques()) {
     ToMessage(technique, *response->add_techniques());
   }
   AddPresets(*response);

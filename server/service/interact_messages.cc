@@ -13,8 +13,9 @@
 #include "base/error_details.h"
 #include "base/random_hex.h"
 #include "glm/geometric.hpp"
-#include "service/camera_messages.h"
-#include "service/scene_messages.h"
+#include "service/frame_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/scene_messages.h"
 #include "service/status_table.h"
 #include "service/wire.h"
 

@@ -9,7 +9,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/time.h"
-#include "service/enum_tables.h"
+#include "service/messages/enum_tables.h"
+#include "service/messages/prepare_scene.h"
 #include "service/status_table.h"
 
 namespace thunderhead::service {

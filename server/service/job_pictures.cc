@@ -13,8 +13,9 @@
 #include "base/patient_calls.h"
 #include "base/status.h"
 #include "service/catalogue_follower.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 #include "service/picture_job.h"
-#include "service/scene_messages.h"
 #include "thunderhead/v1/job.pb.h"
 
 namespace thunderhead::service {

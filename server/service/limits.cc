@@ -5,7 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "scene/technique.h"
-#include "service/technique_messages.h"
+#include "service/messages/technique_messages.h"
 
 namespace thunderhead::service {
 namespace {

@@ -1,6 +1,6 @@
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/scene_messages.h"
+#include "service/messages/scene_messages.h"
 
 namespace thunderhead::service {
 

@@ -11,10 +11,12 @@
 #include "picture/exr_file.h"
 #include "scene/optical_depths.h"
 #include "scene/view.h"
-#include "service/camera_messages.h"
-#include "service/limits_check.h"
-#include "service/picture_texts.h"
-#include "service/scene_messages.h"
+#include "service/frame_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/picture_texts.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 
 namespace thunderhead::service {
 namespace {

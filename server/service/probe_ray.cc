@@ -2,13 +2,14 @@
 #include <utility>
 
 #include "base/status.h"
-#include "service/camera_messages.h"
 #include "service/finished.h"
 #include "service/handlers.h"
 #include "service/interact_messages.h"
-#include "service/limits_check.h"
-#include "service/probe_messages.h"
-#include "service/scene_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/probe_messages.h"
+#include "service/messages/scene_messages.h"
 #include "service/scene_update.h"
 
 namespace thunderhead::service {

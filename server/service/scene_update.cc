@@ -9,7 +9,8 @@
 #include "base/error_details.h"
 #include "base/status.h"
 #include "google/protobuf/util/field_mask_util.h"
-#include "service/scene_messages.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 
 namespace thunderhead::service {
 namespace {

@@ -1,15 +1,15 @@
 #include "service/stored_scene.h"
 
 #include "base/status.h"
-#include "service/camera_messages.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
-#include "service/technique_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/scene_messages.h"
+#include "service/messages/technique_messages.h"
 
 namespace thunderhead::service {
 
 absl::StatusOr<session::DecodedScene> DecodeStoredScene(
-    const volume::StormStore& store, const std::vector<session::TechniqueInfo>& techniques,
+    const volume::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
     const std::string& serialized) {
   v1::Scene scene;
   if (!scene.ParseFromString(serialized) || NeedsFraming(scene)) {

@@ -15,7 +15,7 @@ namespace thunderhead::service {
 // Checks the scene as a client's, and fills in the defaults of fields that its writer did not know.
 // The storm may be gone, which whoever looks at the session is told.
 absl::StatusOr<session::DecodedScene> DecodeStoredScene(
-    const volume::StormStore& store, const std::vector<session::TechniqueInfo>& techniques,
+    const volume::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
     const std::string& serialized);
 
 }  // namespace thunderhead::service

@@ -2,7 +2,7 @@
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/limits_check.h"
+#include "service/messages/limits_check.h"
 #include "service/scene_update.h"
 
 namespace thunderhead::service {

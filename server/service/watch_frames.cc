@@ -7,9 +7,10 @@
 #include "base/error_details.h"
 #include "base/status.h"
 #include "service/finished.h"
+#include "service/frame_messages.h"
 #include "service/handlers.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/scene_messages.h"
 #include "service/status_table.h"
 
 namespace thunderhead::service {

@@ -24,9 +24,9 @@
 #include "picture/linear_picture.h"
 #include "renderers/content.h"
 #include "renderers/preparation.h"
-#include "scene/capabilities.h"
 #include "scene/frame_stage.h"
 #include "scene/scene.h"
+#include "scene/technique_info.h"
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::session {
@@ -80,12 +80,6 @@ struct DeviceInfo {
   std::string gl_version;
 };
 
-// An available technique.
-struct TechniqueInfo {
-  std::string name;
-  scene::Capabilities capabilities;
-};
-
 using renderers::Preparation;
 
 class FrameSource {
@@ -95,7 +89,7 @@ class FrameSource {
   virtual const DeviceInfo& Device() const = 0;
 
   // In the order in which to offer them.
-  virtual std::vector<TechniqueInfo> Techniques() const = 0;
+  virtual std::vector<scene::TechniqueInfo> Techniques() const = 0;
 
   // Null if no scene needs preparation.
   virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }

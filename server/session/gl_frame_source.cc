@@ -49,7 +49,9 @@ class GlFrameSource final : public FrameSource {
 
   const DeviceInfo& Device() const override { return info_; }
 
-  std::vector<TechniqueInfo> Techniques() const override { return TechniquesOf(*shared_.registry); }
+  std::vector<scene::TechniqueInfo> Techniques() const override {
+    return shared_.registry->Infos();
+  }
 
   std::shared_ptr<Preparation> PreparationOfScenes() const override {
     return shared_.registry->PreparationOfScenes();
@@ -273,14 +275,6 @@ class GlFrameSource final : public FrameSource {
 };
 
 }  // namespace
-
-std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry) {
-  std::vector<TechniqueInfo> techniques;
-  for (const auto& technique : registry.All()) {
-    techniques.push_back({std::string(technique->Name()), technique->Capabilities()});
-  }
-  return techniques;
-}
 
 FrameSourceFactory GlFrameSources(const std::string& device, GlSourceOptions options) {
   return [device, shared = Shared{.options = std::move(options)}](base::DeviceTurn* turn) {

@@ -15,9 +15,6 @@
 
 namespace thunderhead::session {
 
-// The available techniques, in the order in which to offer them.
-std::vector<TechniqueInfo> TechniquesOf(const renderers::TechniqueRegistry& registry);
-
 struct GlSourceOptions {
   // The budget of GL objects: of the machine where its processors draw, else of the GPU. Null:
   // nothing is refused.

@@ -22,7 +22,7 @@ class GuardedSource final : public FrameSource {
       : source_(std::move(source)), guard_(guard), generation_(generation) {}
 
   const DeviceInfo& Device() const override { return source_->Device(); }
-  std::vector<TechniqueInfo> Techniques() const override { return source_->Techniques(); }
+  std::vector<scene::TechniqueInfo> Techniques() const override { return source_->Techniques(); }
   std::shared_ptr<Preparation> PreparationOfScenes() const override {
     return source_->PreparationOfScenes();
   }

@@ -71,7 +71,7 @@ class RenderLoop {
 
   const DeviceInfo& Device() const { return device_; }
   // In the order in which to offer them.
-  const std::vector<TechniqueInfo>& Techniques() const { return techniques_; }
+  const std::vector<scene::TechniqueInfo>& Techniques() const { return techniques_; }
 
   void RenderImage(ImageJob job);
 
@@ -109,7 +109,7 @@ class RenderLoop {
   Sessions& sessions_;
   base::WakeSignal& wake_;
   DeviceInfo device_;  // like the next two, constant after Start
-  std::vector<TechniqueInfo> techniques_;
+  std::vector<scene::TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};
   std::atomic<std::uint64_t> device_generation_{0};  // devices made ready so far

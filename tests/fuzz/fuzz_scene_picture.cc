@@ -6,7 +6,7 @@
 #include <string>
 
 #include "frame/png_text.h"
-#include "service/picture_texts.h"
+#include "service/messages/picture_texts.h"
 #include "tests/fuzz/scene_path.h"
 
 namespace {

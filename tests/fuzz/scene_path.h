@@ -10,11 +10,10 @@
 
 #include "renderers/technique_registry.h"
 #include "scene/view.h"
-#include "service/camera_messages.h"
-#include "service/engine.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
-#include "session/gl_frame_source.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::fuzz {
@@ -67,8 +66,8 @@ class FixedStore final : public volume::StormStore {
 // Aborts if a scene that was taken has a view that cannot be drawn.
 inline void TakeScene(v1::Scene scene) {
   static FixedStore store;
-  static const std::vector<session::TechniqueInfo> techniques =
-      session::TechniquesOf(renderers::TechniqueRegistry::BuiltIn());
+  static const std::vector<scene::TechniqueInfo> techniques =
+      renderers::TechniqueRegistry::BuiltIn().Infos();
   if (!service::CheckLimits(scene).ok()) return;
   if (!service::PrepareScene(store, techniques, scene).ok()) return;
   const auto fields = store.Peek("storm", 0);

@@ -599,6 +599,18 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
   }
 }
 
+TEST_F(MetaballSceneTest, TheirNoiseIsOfAFieldThatIsDrawn) {
+  const auto pixels = [&](float clouds_share, float rains_share) {
+    scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].detail.share = clouds_share;
+    scene_.fields[physics::IndexOf(physics::Hydrometeor::kRain)].detail.share = rains_share;
+    return frame::ReadLinear(*Draw().radiance);
+  };
+  for (scene::FieldParameters& field : scene_.fields) field.detail.share = 0.0F;
+  const std::vector<float> smooth = pixels(0.0F, 0.0F);
+  EXPECT_NE(pixels(1.0F, 0.0F), smooth);
+  EXPECT_EQ(pixels(0.0F, 1.0F), smooth) << "the storm has no rain";
+}
+
 TEST_F(MetaballSceneTest, NothingVisibleNeedsNoBalls) {
   scene_.fields[0].visible = false;
   EXPECT_THAT(Stages(), Not(Contains("light")));

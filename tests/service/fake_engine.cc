@@ -104,7 +104,7 @@ class FakeFrameSource final : public session::FrameSource {
 
   const session::DeviceInfo& Device() const override { return info_; }
 
-  std::vector<session::TechniqueInfo> Techniques() const override {
+  std::vector<scene::TechniqueInfo> Techniques() const override {
     return {{std::string(scene::LightVolume::kName), scene::LightVolume::kCapabilities},
             {std::string(scene::HalfAngle::kName), scene::HalfAngle::kCapabilities},
             {std::string(scene::Metaballs::kName), scene::Metaballs::kCapabilities},

@@ -407,7 +407,7 @@ TEST(StoredSceneTest, OlderScenesGetTheDefaultsOfWhatTheirWriterDidNotKnow) {
   v1::CreateSessionResponse created;
   ASSERT_TRUE(
       Call(service.stub(), &Stub::CreateSession, v1::CreateSessionRequest(), &created).ok());
-  const std::vector<session::TechniqueInfo> techniques{{"light_volume", {}}};
+  const std::vector<scene::TechniqueInfo> techniques{{"light_volume", {}}};
   const auto decoded = [&](const v1::Scene& scene) {
     return service::DecodeStoredScene(*service.store, techniques, scene.SerializeAsString());
   };

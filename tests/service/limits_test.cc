@@ -7,16 +7,15 @@
 #include "gmock/gmock.h"
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
-#include "service/technique_messages.h"
-#include "tests/service/fake_service.h"
+#include "renderers/technique_registry.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/scene_messages.h"
+#include "service/messages/technique_messages.h"
 
 namespace thunderhead::testing {
 namespace {
 
 using ::testing::HasSubstr;
-using Stub = v1::ThunderheadService::Stub;
 
 // The server's error for a scene; empty if it accepts it.
 std::string Complaint(const v1::Scene& scene) {
@@ -160,16 +159,15 @@ TEST(LimitsTest, TheLimitsThemselvesAreAllowed) {
   EXPECT_EQ(Complaint(scene), "");
 }
 
-// The transports that GetServerInfo offers for a technique are those that a scene may have, its
+// The transports that a technique is described with are those that a scene may have, its
 // default first.
 TEST(LimitsTest, TransportsOnOfferAreThoseAllowed) {
-  FakeService service;
-  v1::GetServerInfoResponse info;
-  ASSERT_TRUE(Call(service.stub(), &Stub::GetServerInfo, v1::GetServerInfoRequest(), &info).ok());
   int with_transport = 0;
-  for (const v1::TechniqueDescription& technique : info.techniques()) {
+  for (const scene::TechniqueInfo& info : renderers::TechniqueRegistry::BuiltIn().Infos()) {
+    v1::TechniqueDescription technique;
+    service::ToMessage(info, technique);
     const auto* field = v1::Rendering::descriptor()->FindFieldByName(technique.name());
-    if (field == nullptr) continue;  // an OtherTechnique
+    ASSERT_NE(field, nullptr) << technique.name();
     v1::Scene scene;
     v1::Rendering& rendering = *scene.mutable_rendering();
     google::protobuf::Message* settings =
@@ -207,52 +205,6 @@ TEST(SceneMessages, LightsAreWhatTheMessageSaysAndWhiteWhereItIsSilent) {
   v1::Scene again = message;
   service::FillSceneDefaults(again, storm);
   EXPECT_EQ(again.SerializeAsString(), message.SerializeAsString());
-}
-
-TEST(LimitsTest, EveryRpcChecksItsRequest) {
-  FakeService service;
-  v1::Scene scene = SmallScene();
-  scene.mutable_display()->set_exposure_ev(21);
-  const std::string complaint = "scene.display.exposure_ev is 21; it must be between -20 and 20";
-  const auto expect = [&](const grpc::Status& status, const std::string& text) {
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-    EXPECT_EQ(status.error_message(), text);
-  };
-  v1::CreateSessionRequest create;
-  *create.mutable_scene() = scene;
-  v1::CreateSessionResponse created;
-  expect(Call(service.stub(), &Stub::CreateSession, create, &created), complaint);
-  v1::UpdateSceneRequest update;
-  update.set_session_id(service.Open(SmallScene()));
-  *update.mutable_scene() = scene;
-  v1::UpdateSceneResponse updated;
-  expect(Call(service.stub(), &Stub::UpdateScene, update, &updated), complaint);
-  v1::RenderImageRequest render;
-  *render.mutable_scene() = scene;
-  v1::RenderImageResponse rendered;
-  expect(Call(service.stub(), &Stub::RenderImage, render, &rendered), complaint);
-  render.clear_scene();
-  render.set_format(static_cast<v1::ImageFormat>(9));
-  expect(Call(service.stub(), &Stub::RenderImage, render, &rendered),
-         "format is 9; it must be one of IMAGE_FORMAT_UNSPECIFIED, IMAGE_FORMAT_PNG, "
-         "IMAGE_FORMAT_JPEG, IMAGE_FORMAT_EXR");
-  v1::DescribeStormRequest describe;
-  describe.set_time_index(2000000);
-  v1::DescribeStormResponse described;
-  expect(Call(service.stub(), &Stub::DescribeStorm, describe, &described),
-         "time_index is 2000000; it must be between 0 and 1e+06");
-  v1::CloseSessionRequest close;
-  close.set_session_id(std::string(65, 'a'));
-  v1::CloseSessionResponse closed;
-  expect(Call(service.stub(), &Stub::CloseSession, close, &closed),
-         "session_id is 65 bytes long; it may be at most 64 bytes");
-  v1::AcknowledgeFrameRequest acknowledge;
-  acknowledge.set_session_id(std::string(65, 'a'));
-  v1::AcknowledgeFrameResponse acknowledged;
-  expect(Call(service.stub(), &Stub::AcknowledgeFrame, acknowledge, &acknowledged),
-         "session_id is 65 bytes long; it may be at most 64 bytes");
-  Watcher watcher(service.stub(), std::string(65, 'a'));
-  expect(watcher.End(), "session_id is 65 bytes long; it may be at most 64 bytes");
 }
 
 TEST(Limits, AGivenRadiusIsAFieldsAlone) {

@@ -14,10 +14,10 @@
 #include "google/protobuf/descriptor.h"
 #include "google/protobuf/util/message_differencer.h"
 #include "gtest/gtest.h"
-#include "service/camera_messages.h"
-#include "service/limits_check.h"
-#include "service/scene_messages.h"
-#include "service/technique_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/limits_check.h"
+#include "service/messages/scene_messages.h"
+#include "service/messages/technique_messages.h"
 #include "thunderhead/v1/limits.pb.h"
 
 namespace thunderhead::service {

@@ -5,7 +5,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "physics/sun_position.h"
-#include "service/sun_messages.h"
+#include "service/messages/sun_messages.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
 

@@ -12,9 +12,10 @@
 #include "frame/image_codec.h"
 #include "gtest/gtest.h"
 #include "renderers/technique_registry.h"
-#include "service/camera_messages.h"
 #include "service/engine.h"
-#include "service/scene_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/prepare_scene.h"
+#include "service/messages/scene_messages.h"
 #include "session/gl_frame_source.h"
 #include "volume/storm_store.h"
 
@@ -66,7 +67,7 @@ class StillQuality : public ::testing::Test {
     message.mutable_camera()->mutable_spotter();
     message.mutable_output()->set_width_px(static_cast<std::uint32_t>(width));
     message.mutable_output()->set_height_px(static_cast<std::uint32_t>(height));
-    const auto techniques = session::TechniquesOf(renderers::TechniqueRegistry::BuiltIn());
+    const auto techniques = renderers::TechniqueRegistry::BuiltIn().Infos();
     ASSERT_TRUE(service::PrepareScene(**store, techniques, message).ok());
     const auto fields =
         (*store)->Get(message.storm_id(), static_cast<int>(message.time_index()), {});

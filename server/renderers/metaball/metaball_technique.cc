@@ -1,6 +1,7 @@
 #include "renderers/metaball/metaball_technique.h"
 
 #include <utility>
+#include <vector>
 
 #include "renderers/metaball/ball_fit.h"
 #include "renderers/metaball/metaball_renderer.h"
@@ -29,11 +30,13 @@ class BallPreparation final : public Preparation {
   std::shared_ptr<BallFits> fits_;
 };
 
-// The detail of the visible field that has most of it.
-scene::Detail RoughestOf(const scene::Scene& scene) {
+// The detail of the drawn field that has most of it.
+scene::Detail RoughestOf(const scene::Scene& scene,
+                         const std::vector<physics::Hydrometeor>& drawn) {
   scene::Detail roughest;
-  for (const scene::FieldParameters& field : scene.fields) {
-    if (field.visible && field.detail.share > roughest.share) roughest = field.detail;
+  for (const physics::Hydrometeor hydrometeor : drawn) {
+    const scene::Detail& detail = scene.fields[physics::IndexOf(hydrometeor)].detail;
+    if (detail.share > roughest.share) roughest = detail;
   }
   return roughest;
 }
@@ -68,7 +71,9 @@ class MetaballTechnique final : public Technique {
   absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
                         StageTimes* times) override {
     return Timed(workspace_.Pieces(), scene::FrameStage::kView, times, [&] {
-      return renderer_.DrawView(settings, RoughestOf(scene), &workspace_.noises);
+      return renderer_.DrawView(settings,
+                                RoughestOf(scene, workspace_.medium.Content().hydrometeors),
+                                &workspace_.noises);
     });
   }
 

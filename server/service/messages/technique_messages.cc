@@ -1,4 +1,4 @@
-#include "service/technique_messages.h"
+#include "service/messages/technique_messages.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "accuracy/presets.h"
 #include "base/error_details.h"
 #include "base/status.h"
-#include "service/enum_tables.h"
+#include "service/messages/enum_tables.h"
 
 namespace thunderhead::service {
 namespace {
@@ -76,10 +76,10 @@ absl::Status CheckTransport(const std::string& path, v1::Transport given) {
 }
 
 absl::Status CheckOther(const v1::OtherTechnique& other,
-                        const std::vector<session::TechniqueInfo>& known) {
+                        const std::vector<scene::TechniqueInfo>& known) {
   std::vector<std::string> names;
   names.reserve(known.size());
-  for (const session::TechniqueInfo& technique : known) names.push_back(technique.name);
+  for (const scene::TechniqueInfo& technique : known) names.push_back(technique.name);
   const bool found = std::find(names.begin(), names.end(), other.name()) != names.end();
   const v1::Rendering& fields = v1::Rendering::default_instance();
   const bool own = fields.GetDescriptor()->FindFieldByName(other.name()) != nullptr;
@@ -232,7 +232,7 @@ scene::Technique DefaultsOf(const v1::Rendering& rendering) {
 }  // namespace
 
 absl::Status CheckRendering(const v1::Rendering& rendering,
-                            const std::vector<session::TechniqueInfo>& known) {
+                            const std::vector<scene::TechniqueInfo>& known) {
   switch (rendering.technique_case()) {
     case v1::Rendering::kLightVolume:
       return CheckTransport<scene::LightVolume>("light_volume",
@@ -295,7 +295,7 @@ void ToMessage(const scene::Technique& technique, v1::Rendering& message) {
   std::visit([&](const auto& settings) { SetSettings(settings, message); }, technique);
 }
 
-void ToMessage(const session::TechniqueInfo& technique, v1::TechniqueDescription& message) {
+void ToMessage(const scene::TechniqueInfo& technique, v1::TechniqueDescription& message) {
   message.set_name(technique.name);
   message.set_shows_lights(technique.capabilities.lights);
   message.set_shows_detail(technique.capabilities.detail != scene::DetailUse::kNone);

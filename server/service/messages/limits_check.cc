@@ -1,4 +1,4 @@
-#include "service/limits_check.h"
+#include "service/messages/limits_check.h"
 
 #include <charconv>
 #include <cmath>

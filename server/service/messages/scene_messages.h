@@ -1,4 +1,4 @@
-// Converts scenes, storms and frames between messages and values. Limits are checked elsewhere
+// Converts scenes and storms between messages and values. Limits are checked elsewhere
 // (limits_check.h); here the rules are checked that limits of numbers cannot express.
 #pragma once
 
@@ -8,8 +8,6 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "scene/scene.h"
-#include "session/frame_hub.h"
-#include "session/frame_source.h"
 #include "thunderhead/v1/thunderhead.pb.h"
 #include "volume/storm_store.h"
 
@@ -33,12 +31,7 @@ physics::SizeSource SizesOf(const v1::Scene& scene);
 scene::Scene ToScene(const v1::Scene& message);
 
 v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor);
-void ToMessage(const session::Modelled& modelled, v1::Modelled& message);
-void ToMessage(const session::Refinement& refinement, v1::Refinement& message);
-void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& message);
-void ToMessage(const session::EncodedFrame& frame, v1::Frame& message);
-void ToMessage(const session::Problem& problem, v1::Problem& message);
-void ToMessage(const scene::StageTime& time, v1::StageCost& message);
+void ToMessage(const scene::Ground& ground, v1::Ground& message);
 void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message);
 // Looks at the files of its times.
 void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,

@@ -1,11 +1,11 @@
-#include "service/camera_messages.h"
+#include "service/messages/camera_messages.h"
 
 #include <algorithm>
 #include <variant>
 
 #include "scene/spotter_place.h"
 #include "scene/view.h"
-#include "service/scene_messages.h"
+#include "service/messages/scene_messages.h"
 #include "thunderhead/v1/limits.pb.h"
 #include "volume/strongest_core.h"
 #include "volume/visible_box.h"

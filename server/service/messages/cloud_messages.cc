@@ -1,4 +1,4 @@
-#include "service/cloud_messages.h"
+#include "service/messages/cloud_messages.h"
 
 #include "base/status.h"
 #include "clouds/presets.h"

@@ -1,4 +1,4 @@
-#include "service/sun_messages.h"
+#include "service/messages/sun_messages.h"
 
 #include <string>
 

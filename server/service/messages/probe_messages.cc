@@ -1,17 +1,17 @@
-#include "service/probe_messages.h"
+#include "service/messages/probe_messages.h"
 
 #include <algorithm>
 #include <string>
 
-#include "service/camera_messages.h"
-#include "service/scene_messages.h"
+#include "service/messages/camera_messages.h"
+#include "service/messages/scene_messages.h"
 #include "volume/field_values.h"
 #include "volume/terrain.h"
 
 namespace thunderhead::service {
 namespace {
 
-v1::EarthPlace ToMessage(const volume::EarthPlace& place) {
+v1::EarthPlace PlaceMessage(const volume::EarthPlace& place) {
   v1::EarthPlace message;
   message.set_latitude_deg(place.latitude_deg);
   message.set_longitude_deg(place.longitude_deg);
@@ -22,12 +22,12 @@ v1::EarthPlace ToMessage(const volume::EarthPlace& place) {
 template <typename Message>
 void Name(const volume::HydrometeorFields& fields, std::size_t index, Message& message) {
   const volume::HydrometeorField& field = fields.fields[index];
-  message.set_hydrometeor(service::ToMessage(field.hydrometeor));
+  message.set_hydrometeor(ToMessage(field.hydrometeor));
   message.set_variable(field.variable);
   message.set_units(std::string(volume::UnitOf(volume::QuantityOf(fields, field))));
 }
 
-v1::ProbeRayResponse::Seen ToMessage(scene::Seen seen) {
+v1::ProbeRayResponse::Seen SeenMessage(scene::Seen seen) {
   switch (seen) {
     case scene::Seen::kCloud:
       return v1::ProbeRayResponse::SEEN_CLOUD;
@@ -39,8 +39,8 @@ v1::ProbeRayResponse::Seen ToMessage(scene::Seen seen) {
   return v1::ProbeRayResponse::SEEN_SKY;
 }
 
-void ToMessage(const scene::FieldOnRay& field, const scene::StormRay& ray,
-               const StormPlaces& places, v1::FieldAlongRay& message) {
+void SetFieldAlongRay(const scene::FieldOnRay& field, const scene::StormRay& ray,
+                      const StormPlaces& places, v1::FieldAlongRay& message) {
   Name(places.fields(), field.index, message);
   message.mutable_values()->Assign(field.values.begin(), field.values.end());
   message.set_maximum(static_cast<float>(field.maximum));
@@ -52,8 +52,8 @@ void ToMessage(const scene::FieldOnRay& field, const scene::StormRay& ray,
   message.set_optical_depth(field.optical_depth);
 }
 
-void ToMessage(const volume::FieldPeak& peak, const StormPlaces& places,
-               v1::FieldMaximum& message) {
+void SetFieldMaximum(const volume::FieldPeak& peak, const StormPlaces& places,
+                     v1::FieldMaximum& message) {
   Name(places.fields(), peak.index, message);
   if (peak.value <= 0.0F) return;
   const auto terrain_m = [&](const glm::dvec2& place_m) {
@@ -86,12 +86,12 @@ std::optional<v1::EarthPlace> StormPlaces::OnEarth(const glm::dvec2& place_m) co
   if (!projection_.has_value()) return std::nullopt;
   const std::optional<volume::EarthPlace> place = projection_->PlaceOf(place_m);
   if (!place.has_value()) return std::nullopt;
-  return ToMessage(*place);
+  return PlaceMessage(*place);
 }
 
 std::optional<v1::EarthPlace> StormPlaces::Middle() const {
   if (!storm_.latitude_deg.has_value() || !storm_.longitude_deg.has_value()) return std::nullopt;
-  return ToMessage(volume::EarthPlace{*storm_.latitude_deg, *storm_.longitude_deg});
+  return PlaceMessage(volume::EarthPlace{*storm_.latitude_deg, *storm_.longitude_deg});
 }
 
 v1::RayPlace StormPlaces::Of(const scene::StormRay& ray, double along_m) const {
@@ -134,7 +134,7 @@ void ToMessage(const scene::ViewRay& ray, const scene::StormRay& storm_ray,
   if (const auto ground_m = storm_ray.Ground_m()) {
     *message.mutable_ground() = places.OnGround(storm_ray, *ground_m);
   }
-  message.set_seen(ToMessage(storm_ray.WhatIsSeen()));
+  message.set_seen(SeenMessage(storm_ray.WhatIsSeen()));
   if (storm_ray.WhatIsSeen() == scene::Seen::kGround) {
     *message.mutable_seen_place() = message.ground();
   } else if (const auto seen_m = storm_ray.WhereSeen_m()) {
@@ -147,7 +147,7 @@ void ToMessage(const scene::ViewRay& ray, const scene::StormRay& storm_ray,
   message.mutable_extinctions_per_m()->Assign(probe.extinctions_per_m.begin(),
                                               probe.extinctions_per_m.end());
   for (const scene::FieldOnRay& field : probe.fields) {
-    ToMessage(field, storm_ray, places, *message.add_fields());
+    SetFieldAlongRay(field, storm_ray, places, *message.add_fields());
   }
 }
 
@@ -176,7 +176,8 @@ void ToMessage(const volume::StormMap& map, const StormPlaces& places,
   if (const auto middle = places.Middle()) *message.mutable_middle() = *middle;
   message.mutable_terrain_height_m()->Assign(map.terrain_height_m.begin(),
                                              map.terrain_height_m.end());
-  for (const volume::FieldPeak& peak : map.peaks) ToMessage(peak, places, *message.add_maxima());
+  for (const volume::FieldPeak& peak : map.peaks)
+    SetFieldMaximum(peak, places, *message.add_maxima());
 }
 
 }  // namespace thunderhead::service

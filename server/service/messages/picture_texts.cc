@@ -1,4 +1,4 @@
-#include "service/picture_texts.h"
+#include "service/messages/picture_texts.h"
 
 #include <google/protobuf/util/json_util.h>
 

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 #include "scene/technique.h"
-#include "session/frame_source.h"
+#include "scene/technique_info.h"
 #include "thunderhead/v1/thunderhead.pb.h"
 
 namespace thunderhead::service {
@@ -14,7 +14,7 @@ namespace thunderhead::service {
 // INVALID_ARGUMENT names a transport that the technique does not support, or a technique that is
 // not among `known`. Settings of techniques outside the schema are checked when they draw.
 absl::Status CheckRendering(const v1::Rendering& rendering,
-                            const std::vector<session::TechniqueInfo>& known);
+                            const std::vector<scene::TechniqueInfo>& known);
 
 // Replaces a preset by its technique, an absent technique by the default preset's, and fills in the
 // technique's defaults.
@@ -28,7 +28,7 @@ scene::Technique ToTechnique(const v1::Rendering& rendering);
 
 // Sets every field of the technique's message.
 void ToMessage(const scene::Technique& technique, v1::Rendering& message);
-void ToMessage(const session::TechniqueInfo& technique, v1::TechniqueDescription& message);
+void ToMessage(const scene::TechniqueInfo& technique, v1::TechniqueDescription& message);
 
 // Adds every preset with its technique.
 void AddPresets(v1::GetServerInfoResponse& response);

@@ -1,0 +1,32 @@
+// From a client's scene to one that can be drawn: the storm that it names, and every default.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "scene/technique_info.h"
+#include "thunderhead/v1/scene.pb.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::service {
+
+// The reason of errors that name a storm that is not there.
+inline constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
+
+// The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
+absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
+                                               const std::string& id);
+
+// INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
+absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
+                       const std::string& path);
+
+// Checks a scene (whose limits were checked) and fills in every default that needs no fields.
+// `techniques` are the available ones.
+absl::Status PrepareScene(const volume::StormStore& store,
+                          const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene);
+
+}  // namespace thunderhead::service
