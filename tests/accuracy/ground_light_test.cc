@@ -86,12 +86,15 @@ class GroundLightTest : public testing::Test {
 };
 
 TEST_F(GroundLightTest, AnOvercastGetsTheLightOfTheGroundInItsOwnShadow) {
-  for (const double albedo : {0.0, 0.9}) {
-    const glm::dvec3 drawn = Drawn(albedo);
-    const glm::dvec3 traced = Traced(albedo);
-    for (int color = 0; color < 3; ++color) {
-      EXPECT_NEAR(drawn[color] / traced[color], 1.0, 0.25) << albedo << ' ' << color;
-    }
+  const glm::dvec3 over_black_ground = Drawn(0.0) / Traced(0.0);
+  const glm::dvec3 over_snow = Drawn(0.9) / Traced(0.9);
+  // Red 0.77, green 0.85, blue 0.99: one share for all colours comes up (decision 48), but light
+  // that ground and a thick storm send to and fro becomes redder.
+  const glm::dvec3 tolerance_over_snow(0.26, 0.18, 0.04);
+  for (int color = 0; color < 3; ++color) {
+    // 0.90 to 0.93: diffusion, at a base 40 optical depths below the sunlit top.
+    EXPECT_NEAR(over_black_ground[color], 1.0, 0.12) << color;
+    EXPECT_NEAR(over_snow[color], 1.0, tolerance_over_snow[color]) << color;
   }
 }
 
