@@ -1,13 +1,15 @@
 # Headers that many files include, compiled once a set instead of once a file (decision 50). Every file still
 # includes what it uses; the builds of ./dev lint and those without GCC go without.
 
-# thunderhead_headers(NAME DEPENDS libraries... HEADERS headers...) makes the set thunderhead_NAME.
+# thunderhead_headers(NAME DEPENDS libraries... [OPTIONS options...] HEADERS headers...) makes the set thunderhead_NAME, for
+# targets that have the same options.
 function(thunderhead_headers name)
-  cmake_parse_arguments(SET "" "" "DEPENDS;HEADERS" ${ARGN})
+  cmake_parse_arguments(SET "" "" "DEPENDS;OPTIONS;HEADERS" ${ARGN})
   set(source ${CMAKE_BINARY_DIR}/headers/${name}.cc)
   file(CONFIGURE OUTPUT ${source} CONTENT "")
   add_library(thunderhead_${name} OBJECT ${source})
   target_link_libraries(thunderhead_${name} PRIVATE thunderhead_options ${SET_DEPENDS})
+  target_compile_options(thunderhead_${name} PRIVATE ${SET_OPTIONS})
   target_precompile_headers(thunderhead_${name} PRIVATE ${SET_HEADERS})
 endfunction()
 
@@ -22,7 +24,7 @@ set(THUNDERHEAD_STANDARD_LIBRARIES absl::status absl::statusor absl::strings abs
 
 thunderhead_headers(headers DEPENDS ${THUNDERHEAD_STANDARD_LIBRARIES} HEADERS ${THUNDERHEAD_STANDARD_HEADERS})
 if(THUNDERHEAD_TESTS)
-  thunderhead_headers(test_headers DEPENDS ${THUNDERHEAD_STANDARD_LIBRARIES} GTest::gmock
+  thunderhead_headers(test_headers DEPENDS ${THUNDERHEAD_STANDARD_LIBRARIES} GTest::gmock OPTIONS ${THUNDERHEAD_TEST_OPTIONS}
     HEADERS ${THUNDERHEAD_STANDARD_HEADERS} <gmock/gmock.h> <gtest/gtest.h>)
 endif()
 if(THUNDERHEAD_SERVICE)
@@ -33,6 +35,7 @@ if(THUNDERHEAD_SERVICE)
   add_dependencies(thunderhead_rpc_headers thunderhead_proto_generated)
   if(THUNDERHEAD_TESTS)
     thunderhead_headers(rpc_test_headers DEPENDS ${THUNDERHEAD_STANDARD_LIBRARIES} thunderhead::proto GTest::gmock
+      OPTIONS ${THUNDERHEAD_TEST_OPTIONS}
       HEADERS ${THUNDERHEAD_STANDARD_HEADERS} ${rpc} <gmock/gmock.h> <gtest/gtest.h>)
     add_dependencies(thunderhead_rpc_test_headers thunderhead_proto_generated)
   endif()

@@ -1,12 +1,21 @@
 # A room is one folder of server/ built as one static library, `thunderhead::NAME`.
-# thunderhead_room(NAME [HEADERS set] [DEPENDS rooms and libraries...]) takes every .cc file of the folder. HEADERS is the set
-# of precompiled headers (cmake/headers.cmake), `headers` if none is named.
+# thunderhead_room(NAME [HEADERS set] [FILES files...] [DEPENDS rooms and libraries...]) takes every .cc file of the folder that
+# no library of it has yet, or FILES. HEADERS is the set of precompiled headers (cmake/headers.cmake), `headers` if none is named.
 function(thunderhead_room name)
-  cmake_parse_arguments(ROOM "" "HEADERS" "DEPENDS;SOURCES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "HEADERS" "DEPENDS;SOURCES;FILES" ${ARGN})
   if(NOT ROOM_HEADERS)
     set(ROOM_HEADERS headers)
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+  if(ROOM_FILES)
+    list(TRANSFORM ROOM_FILES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE sources)
+  else()
+    file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
+    get_property(taken DIRECTORY PROPERTY THUNDERHEAD_TAKEN)
+    if(taken)
+      list(REMOVE_ITEM sources ${taken})
+    endif()
+  endif()
+  set_property(DIRECTORY APPEND PROPERTY THUNDERHEAD_TAKEN ${sources})
   list(APPEND sources ${ROOM_SOURCES})
   if(sources)
     add_library(thunderhead_${name} STATIC ${sources})
@@ -23,11 +32,16 @@ endfunction()
 # memory that it still holds, which LeakSanitizer cannot tell from ours by name.
 set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
+# `./dev test` gives ctest three places a processor. A test that computes takes three, one that mostly waits one, and those
+# come first, so that they do not wait one after another at the end.
+set(THUNDERHEAD_BUSY_TEST PROCESSORS 3)
+set(THUNDERHEAD_WAITING_TEST PROCESSORS 1 COST 100)
+
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
 # GoogleTest program and registers each of its cases with ctest under LABEL, those that are GL in its environment and with
-# strict programs. HEADERS is the set of precompiled headers, `test_headers` if none is named.
+# strict programs, and those that WAIT as such that leave a processor to others. HEADERS is the set of precompiled headers, `test_headers` if none is named.
 function(thunderhead_test name)
-  cmake_parse_arguments(TEST "GL" "LABEL;HEADERS" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(TEST "GL;WAITS" "LABEL;HEADERS" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)
     file(GLOB TEST_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   endif()
@@ -45,6 +59,11 @@ function(thunderhead_test name)
   target_compile_definitions(${name} PRIVATE THUNDERHEAD_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   if(TEST_GL)
     list(APPEND TEST_PROPERTIES ENVIRONMENT ${THUNDERHEAD_GL_ENVIRONMENT})
+  endif()
+  if(TEST_WAITS)
+    list(APPEND TEST_PROPERTIES ${THUNDERHEAD_WAITING_TEST})
+  else()
+    list(APPEND TEST_PROPERTIES ${THUNDERHEAD_BUSY_TEST})
   endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT 300
     ${TEST_PROPERTIES})

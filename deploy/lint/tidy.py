@@ -2,7 +2,7 @@
 
 Nearly all of its time goes into the headers that a file includes. So files that are compiled alike are examined as one text,
 twelve at a time, as the build compiles them. Files of a text in which something is found are examined again one by one: that
-decides, and names the file. Each file is also compiled by itself, which finds a forgotten include.
+decides, and names the file. With --alone each file is also compiled by itself, which finds a forgotten include.
 
 A file that passed is not examined again until it, a file of this repository that it includes, its compile command or a
 check changes: what passed is kept in BUILD/passed.json, so an interrupted run goes on where it ended. Headers of the
@@ -111,6 +111,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", help="folder of compile_commands.json")
     parser.add_argument("--seconds", type=float, default=1e9, help="begin no file after so many")
+    parser.add_argument("--alone", action="store_true", help="also compile each file by itself")
     parser.add_argument("--checks", default="", help="added to those of .clang-tidy, as clang-tidy's own --checks")
     flags = parser.parse_args()
     end = time.monotonic() + flags.seconds
@@ -121,7 +122,7 @@ def main():
     commands = {pathlib.Path(entry["file"]): entry["command"]
                 for entry in json.loads((build / "compile_commands.json").read_text())}
     version = subprocess.run(["clang-tidy", "--version"], check=True, capture_output=True, text=True).stdout
-    rules = version + (root / ".clang-tidy").read_text() + flags.checks
+    rules = version + (root / ".clang-tidy").read_text() + flags.checks + ("" if flags.alone else "not alone")
     kept = build / "passed.json"
     passed = set(json.loads(kept.read_text())) if kept.exists() else set()
 
@@ -155,7 +156,7 @@ def main():
             left.extend(name for name, _, _ in batch)
             return
         arguments = batch[0][1]
-        found = {name: compile_alone(root / name, arguments) for name, _, _ in batch}
+        found = {name: flags.alone and compile_alone(root / name, arguments) for name, _, _ in batch}
         text = texts / f"{number}.cc"
         text.write_text("\n".join((root / name).read_text() for name, _, _ in batch))
         if any(found.values()) or tidy(text, arguments, checks):

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scene/capabilities.h"
+#include "scene/technique.h"
 
 namespace thunderhead::scene {
 
@@ -11,5 +13,8 @@ struct TechniqueInfo {
   std::string name;
   Capabilities capabilities;
 };
+
+// Those of scene::Technique that have a message of their own, in its order.
+std::vector<TechniqueInfo> TechniquesOfTheSchema();
 
 }  // namespace thunderhead::scene

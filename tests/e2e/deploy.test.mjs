@@ -10,7 +10,7 @@ import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
-import { launchBrowser, listenForErrors, rested } from "./driver.mjs";
+import { launchBrowser, listenForErrors, rested, until } from "./driver.mjs";
 import { BINARY, freePort, startServer } from "./server_process.mjs";
 
 const ROOT = fileURLToPath(new URL("../../", import.meta.url));
@@ -133,7 +133,9 @@ describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haprox
       request.once("error", reject);
       request.end(body);
     });
-    assert.match(server.log(), /peer="127\.0\.0\.3:0" act=CloseSession verdict=refused/);
+    await until("the refusal in the audit", async () =>
+      /peer="127\.0\.0\.3:0" act=CloseSession verdict=refused/.test(server.log()),
+    );
     assert.doesNotMatch(server.log(), /203\.0\.113\.9/);
   });
 

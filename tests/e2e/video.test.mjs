@@ -1,7 +1,7 @@
 // Video and stills of higher quality in Chromium show the same picture as JPEG.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { canvasData, dragBetween, launchBrowser, listenForErrors, rested, screenshot, until } from "./driver.mjs";
+import { canvasData, changing, dragBetween, launchBrowser, listenForErrors, openTool, rested, restedAndFits, screenshot, until } from "./driver.mjs";
 import { PNG } from "pngjs";
 import { blockDifference, difference, grabCanvas, spread } from "./pictures.mjs";
 import { textOfCode } from "./qr.mjs";
@@ -189,6 +189,11 @@ test("the colours of video are those of JPEG", async () => {
   };
   const presenter = await open(server.url, jpegOnly);
   await rested(presenter);
+  // Without traced light, which comes when the picture rests, after its video.
+  await openTool(presenter, "look");
+  await changing(() => presenter.getByTestId("quality-choice").getByText("Fast", { exact: true }).click(), presenter);
+  await openTool(presenter, undefined);
+  await restedAndFits(presenter);
   const viewer = await open(presenter.url(), keepsVideo);
   await rested(viewer);
   await dragBetween(presenter, { x: 300, y: 350 }, { x: 420, y: 350 }, 20);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "renderers/technique_registry.h"
+#include "scene/technique_info.h"
 #include "scene/view.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/limits_check.h"
@@ -66,8 +66,7 @@ class FixedStore final : public volume::StormStore {
 // Aborts if a scene that was taken has a view that cannot be drawn.
 inline void TakeScene(v1::Scene scene) {
   static FixedStore store;
-  static const std::vector<scene::TechniqueInfo> techniques =
-      renderers::TechniqueRegistry::BuiltIn().Infos();
+  static const std::vector<scene::TechniqueInfo> techniques = scene::TechniquesOfTheSchema();
   if (!service::CheckLimits(scene).ok()) return;
   if (!service::PrepareScene(store, techniques, scene).ok()) return;
   const auto fields = store.Peek("storm", 0);
