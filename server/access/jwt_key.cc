@@ -53,9 +53,15 @@ std::string TextClaim(jwt_t* token, const char* name) {
   return text == nullptr ? "" : text;
 }
 
-// The epoch if the token has no such claim, or not as a number, for which libjwt gives -1 or 0.
+// The epoch if the token has no such claim, or not as a number, for which libjwt gives -1 or 0; a
+// day before the last time that the clock can tell, in the year 2262, for a later one.
 Time TimeClaim(jwt_t* token, const char* name) {
-  return std::chrono::system_clock::from_time_t(std::max(0L, jwt_get_grant_int(token, name)));
+  constexpr long kLast_s =
+      std::chrono::floor<std::chrono::seconds>(Time::max() - std::chrono::hours(24))
+          .time_since_epoch()
+          .count();
+  return std::chrono::system_clock::from_time_t(
+      std::clamp(jwt_get_grant_int(token, name), 0L, kLast_s));
 }
 
 // A JWT's audience is a text or a list of texts.

@@ -7,13 +7,15 @@
 #include <cstring>
 
 #include "absl/strings/str_cat.h"
+#include "app/json_log.h"
 #include "spdlog/sinks/basic_file_sink.h"
 #include "spdlog/sinks/stdout_sinks.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
 
-absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path) {
+absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path,
+                                                         const std::string& log_format) {
   spdlog::sink_ptr sink;
   if (path.empty()) {
     sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
@@ -28,8 +30,11 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
     sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(path);
   }
   const auto log = std::make_shared<spdlog::logger>("audit", std::move(sink));
-  // The line has its own time.
-  log->set_pattern("%v");
+  if (path.empty() && log_format == "json") {
+    log->set_formatter(std::make_unique<JsonFormatter>());
+  } else {
+    log->set_pattern("%v");  // the line has its own time
+  }
   log->flush_on(spdlog::level::info);
   return std::make_shared<access::Audit>([log](const std::string& line) {
     log->log(spdlog::level::info, spdlog::string_view_t(line));

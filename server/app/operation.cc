@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <ctime>
+#include <mutex>
+#include <stop_token>
+#include <thread>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -27,6 +31,9 @@ constexpr milliseconds kOneRequest{250};
 
 // How many times as long as a turn of drawing a lane may work without one.
 constexpr double kLaneFactor = 5.0;
+
+// Between looks at the health that gRPC's clients are told.
+constexpr std::chrono::seconds kHealthPause{1};
 
 // A signal of those, or 0 after a while.
 int Taken(const sigset_t& signals) {
@@ -92,10 +99,23 @@ absl::StatusOr<std::unique_ptr<Operation>> Operation::Start(const OperationFlags
 
 Operation::~Operation() {
   port_.reset();
+  telling_ = {};
   second_signal_.request_stop();
 }
 
-void Operation::SetServer(const service::Server* server, Budget memory, Budget gpu) {
+void Operation::SetServer(service::Server* server, Budget memory, Budget gpu) {
+  // Before the lock, which it takes.
+  telling_ = {};
+  if (server != nullptr) {
+    telling_ = std::jthread([this, server](const std::stop_token& stop) {
+      std::mutex unshared;
+      std::unique_lock lock(unshared);
+      std::condition_variable_any stopped;
+      while (!stopped.wait_for(lock, stop, kHealthPause, [&] { return stop.stop_requested(); })) {
+        server->SetServing(HealthNow().ready);
+      }
+    });
+  }
   const std::lock_guard lock(mutex_);
   server_ = server;
   memory_ = std::move(memory);
@@ -170,6 +190,17 @@ telemetry::Health Operation::HealthNow() {
                                      load.jobs.stalled_s)};
   }
   return {.alive = true, .ready = true, .state = "serving"};
+}
+
+std::jthread EndIfToldWhileStarting(const sigset_t& signals) {
+  return std::jthread([signals](const std::stop_token& started) {
+    while (!started.stop_requested()) {
+      if (Taken(signals) == 0) continue;
+      spdlog::info("told to stop while starting: nothing is lost");
+      spdlog::default_logger()->flush();
+      _exit(0);
+    }
+  });
 }
 
 void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server) {

@@ -28,6 +28,10 @@ void AddOperationFlags(CLI::App& command, OperationFlags& flags);
 // Text, or JSON with one object a line, on standard error.
 void SetLogFormat(const std::string& format);
 
+// While the thread runs, one of `signals`, which all threads must block, ends the process at once
+// with 0.
+std::jthread EndIfToldWhileStarting(const sigset_t& signals);
+
 // The operator's port of the flags, null without one. It serves at once, and says that the server
 // starts until it is given one.
 class Operation {
@@ -40,8 +44,8 @@ class Operation {
   using Budget = std::shared_ptr<const base::MemoryBudget>;
 
   // The server, which must outlive what follows until SetServer(nullptr), and what it counts its
-  // memory in.
-  void SetServer(const service::Server* server, Budget memory = nullptr, Budget gpu = nullptr);
+  // memory in. gRPC's health service is told of its health while there is one.
+  void SetServer(service::Server* server, Budget memory = nullptr, Budget gpu = nullptr);
 
   // Waits for SIGINT or SIGTERM, which this thread blocks; tells the clients, and returns when the
   // pictures that were begun are delivered, at the latest after the grace. From then on a second
@@ -61,6 +65,7 @@ class Operation {
   Budget gpu_memory_;
   bool ended_ = false;
   std::unique_ptr<telemetry::OperatorPort> port_;
+  std::jthread telling_;
   std::jthread second_signal_;
 };
 

@@ -119,6 +119,8 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
                                Operation::Start(flags.operation));
+  // Reading the storms' headers takes long on some storages, and for ever on one that hangs.
+  std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
   // Before any port opens, for its errors name the files.
@@ -143,6 +145,7 @@ absl::Status Serve(ServeFlags flags) {
       spdlog::warn("skipping {}: {}", file, std::string(added.status().message()));
     }
   }
+  starting = {};
   service::ServerOptions server_options;
   THUNDERHEAD_ASSIGN_OR_RETURN(const State state, OpenState(flags.state));
   server_options.session_store = state.sessions;

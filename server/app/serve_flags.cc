@@ -217,7 +217,8 @@ absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) 
                                                    has_file ? absl::StrCat(" ", flags.auth[1]) : "",
                                                    "'; it must be none, tokens FILE or jwt FILE"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<access::Audit> audit, OpenAudit(flags.audit_log));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<access::Audit> audit,
+                               OpenAudit(flags.audit_log, flags.operation.log_format));
   THUNDERHEAD_ASSIGN_OR_RETURN(base::TrustedProxies proxies, ProxiesOf(flags));
   return std::make_shared<access::Door>(std::move(authenticator), std::move(audit), flags.quotas,
                                         std::move(proxies));

@@ -17,7 +17,10 @@ constexpr milliseconds kBusyPause = seconds(1);
 constexpr milliseconds kFailedPause = seconds(5);
 constexpr milliseconds kLongestPause = minutes(5);
 
+// A size that is refused is refused again until the server is started with another limit.
 bool MayPass(const absl::Status& why) {
+  const std::string& reason = base::DetailsOf(why).reason;
+  if (reason == "PICTURE_TOO_LARGE" || reason == "TOO_MANY_SAMPLES") return false;
   return absl::IsUnavailable(why) || absl::IsAborted(why) || absl::IsCancelled(why) ||
          base::DetailsOf(why).retry_after.has_value();
 }

@@ -463,10 +463,10 @@ class InteractCall : public InteractReactor,
     return absl::OkStatus();
   }
 
-  // Calls `then` with the camera whose defaults are filled in: at once, or on the executor if they
-  // depend on the storm.
+  // Calls `then` with the camera whose defaults are filled in, or with why there is none: at once,
+  // or on the executor if they depend on the storm. Not if it returns an error.
   absl::Status WithCamera(std::uint64_t request_id, const v1::Camera& message,
-                          std::function<absl::Status(const scene::Camera&)> then) {
+                          std::function<absl::Status(const absl::StatusOr<scene::Camera>&)> then) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const ReadScene newest, NewestSceneOf(*session_));
     const auto scene = std::make_shared<v1::Scene>(newest.scene);
     if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene->mutable_camera() = message;
@@ -475,49 +475,94 @@ class InteractCall : public InteractReactor,
     FrameThen(engine_, *scene,
               [self = shared_from_this(), request_id, scene,
                then = std::move(then)](const absl::Status& framed) {
-                self->UpdateDone(request_id,
-                                 framed.ok() ? then(ToCamera(scene->camera())) : framed);
+                using Camera = absl::StatusOr<scene::Camera>;
+                self->UpdateDone(request_id, then(framed.ok() ? Camera(ToCamera(scene->camera()))
+                                                              : Camera(framed)));
               });
     return absl::OkStatus();
   }
 
+  // Cameras of the own view take effect in the order of their requests, though some wait for the
+  // storm's fields. Who returns to the session's view meanwhile stays there.
   absl::Status Detach(std::uint64_t request_id, const v1::Detach& detach) {
+    const std::uint64_t returns = session_->audience().Returns(person_id_);
+    const std::uint64_t look = BeginLook(true);
     // Not before there is a view of one's own: who is refused a camera goes on following.
-    return WithCamera(
-        request_id, detach.camera(), [this](const scene::Camera& camera) -> absl::Status {
-          THUNDERHEAD_RETURN_IF_ERROR(session_->audience().Change(
-              [this](session::Roster& roster) { return roster.Detach(person_id_); }, Clock::now()));
-          LookFrom(camera);
-          return absl::OkStatus();
+    absl::Status asked = WithCamera(
+        request_id, detach.camera(),
+        [this, look, returns](const absl::StatusOr<scene::Camera>& camera) -> absl::Status {
+          bool detached = false;
+          absl::Status status = camera.status();
+          if (status.ok()) {
+            status = session_->audience().Change(
+                [&](session::Roster& roster) -> absl::Status {
+                  THUNDERHEAD_ASSIGN_OR_RETURN(detached, roster.Detach(person_id_, returns));
+                  return absl::OkStatus();
+                },
+                Clock::now());
+          }
+          if (detached) LookFrom(look, *camera, true);
+          EndDetach();
+          return status;
         });
-  }
-
-  void LookFrom(const scene::Camera& camera) {
-    std::shared_ptr<session::OwnView> own_view = OwnView();
-    if (own_view != nullptr) return own_view->MoveCamera(camera);
-    own_view = engine_.sessions.OpenView(session_, camera);
-    {
-      const std::lock_guard lock(mutex_);
-      own_view_ = own_view;
-    }
-    Wake();
-  }
-
-  std::shared_ptr<session::OwnView> OwnView() {
-    const std::lock_guard lock(mutex_);
-    return own_view_;
+    if (!asked.ok()) EndDetach();
+    return asked;
   }
 
   absl::Status MoveCamera(std::uint64_t request_id, const v1::MoveCamera& move) {
-    if (OwnView() == nullptr) {
-      return base::WithDetails(
-          absl::FailedPreconditionError("you follow the session's view; detach from it first"),
-          {.reason = "NOT_DETACHED"});
+    {
+      const std::lock_guard lock(mutex_);
+      if (own_view_ == nullptr && detaching_ == 0) {
+        return base::WithDetails(
+            absl::FailedPreconditionError("you follow the session's view; detach from it first"),
+            {.reason = "NOT_DETACHED"});
+      }
     }
-    return WithCamera(request_id, move.camera(), [this](const scene::Camera& camera) {
-      if (const auto own_view = OwnView(); own_view != nullptr) own_view->MoveCamera(camera);
-      return absl::OkStatus();
-    });
+    const std::uint64_t look = BeginLook(false);
+    return WithCamera(request_id, move.camera(),
+                      [this, look](const absl::StatusOr<scene::Camera>& camera) {
+                        if (camera.ok()) LookFrom(look, *camera, false);
+                        return camera.status();
+                      });
+  }
+
+  // The number of a request for a camera of the own view.
+  std::uint64_t BeginLook(bool detaches) {
+    const std::lock_guard lock(mutex_);
+    if (detaches) ++detaching_;
+    return ++looks_;
+  }
+
+  void EndDetach() {
+    const std::lock_guard lock(mutex_);
+    --detaching_;
+  }
+
+  // Moves the own view to the newest camera asked for, which may be a later one than `camera`;
+  // opens the view if it `detaches`. Without a view the camera is kept for the one that is coming.
+  void LookFrom(std::uint64_t look, const scene::Camera& camera, bool detaches) {
+    std::unique_lock lock(mutex_);
+    if (look > looked_) {
+      looked_ = look;
+      camera_ = camera;
+    }
+    if (own_view_ == nullptr && detaches) {
+      const std::uint64_t opened_for = looked_;
+      const scene::Camera first = *camera_;
+      lock.unlock();
+      const std::shared_ptr<session::OwnView> opened = engine_.sessions.OpenView(session_, first);
+      lock.lock();
+      if (own_view_ == nullptr) own_view_ = opened;
+      if (own_view_ == opened && opened_for == looked_) {
+        lock.unlock();
+        return Wake();
+      }
+    }
+    const std::shared_ptr<session::OwnView> own_view = own_view_;
+    const std::optional<scene::Camera> newest = camera_;
+    lock.unlock();
+    if (own_view != nullptr) own_view->MoveCamera(*newest);
+    if (detaches) Wake();
   }
 
   // A request is on its way to its answer.
@@ -641,9 +686,8 @@ class InteractCall : public InteractReactor,
   }
 
   absl::Status EraseMarks(const v1::EraseMarks& message) {
-    session_->audience().Erase(person_id_, {message.mark_ids().begin(), message.mark_ids().end()},
-                               Clock::now());
-    return absl::OkStatus();
+    return session_->audience().Erase(
+        person_id_, {message.mark_ids().begin(), message.mark_ids().end()}, Clock::now());
   }
 
   Engine& engine_;
@@ -677,6 +721,10 @@ class InteractCall : public InteractReactor,
   bool takes_stills_ = false;
   session::ViewerWants wants_;
   std::shared_ptr<session::OwnView> own_view_;
+  int detaching_ = 0;                          // requests on their way to a view of one's own
+  std::uint64_t looks_ = 0;                    // requests for its camera
+  std::uint64_t looked_ = 0;                   // the newest that has taken effect
+  std::optional<scene::Camera> camera_;        // of that
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
   std::uint64_t told_scene_ = 0;

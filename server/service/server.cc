@@ -139,9 +139,7 @@ class RunningServer final : public Server {
           ": it is not an address of this machine, or the port is in use; choose another"));
     }
     THUNDERHEAD_ASSIGN_OR_RETURN(local_, LocalListener::Start(*server_));
-    server_->GetHealthCheckService()->SetServingStatus(true);
-    server_->GetHealthCheckService()->SetServingStatus(v1::ThunderheadService::service_full_name(),
-                                                       true);
+    SetServing(true);
     if (jobs_ != nullptr) jobs_->Start(JobPictures(*engine_, job_files_));
     return absl::OkStatus();
   }
@@ -182,9 +180,16 @@ class RunningServer final : public Server {
     return place.ok() ? std::optional(*std::move(place)) : std::nullopt;
   }
 
+  void SetServing(bool serving) override {
+    serving = serving && !drain_.HasBegun();
+    grpc::HealthCheckServiceInterface& health = *server_->GetHealthCheckService();
+    health.SetServingStatus(serving);
+    health.SetServingStatus(v1::ThunderheadService::service_full_name(), serving);
+  }
+
   void BeginDrain() override {
-    server_->GetHealthCheckService()->SetServingStatus(false);
     drain_.Begin();
+    SetServing(false);
     if (jobs_ != nullptr) jobs_->Drain();
     sessions_.RefuseNew(base::ShuttingDown());
   }

@@ -85,6 +85,9 @@ class Server {
   // viewers and pictures, and tells health checks. Sessions, for those who stay, and pictures that
   // were begun go on. Returns at once.
   virtual void BeginDrain() = 0;
+
+  // What gRPC's health service says from now on; true once it has started.
+  virtual void SetServing(bool serving) = 0;
   // Ends every stream with UNAVAILABLE, refuses queued work, and waits for running work. The
   // destructor does it too.
   virtual void Shutdown() = 0;

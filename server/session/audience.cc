@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/error_details.h"
+
 namespace thunderhead::session {
 namespace {
 
@@ -23,7 +25,7 @@ std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
                                             std::size_t most, const std::string& owner_key) {
   std::unique_lock lock(mutex_);
   if (role == Role::kViewer && members_.size() >= most) return std::nullopt;
-  const std::uint64_t id = roster_.Join(role, name);
+  const std::uint64_t id = roster_.Join(role, name, now, owner_key);
   members_[id] = std::move(member);
   board_.HandOver(owner_key, id);
   Settle(std::move(lock), now);
@@ -59,12 +61,19 @@ void Audience::WithdrawPointers() {
   }
 }
 
-void Audience::Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now) {
+absl::Status Audience::Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids,
+                             Time now) {
   std::unique_lock lock(mutex_);
   const Person* const person = roster_.Find(id);
   const bool any = person != nullptr && person->role == Role::kPresenter;
+  if (!any && board_.HasOfOthers(mark_ids, id)) {
+    return base::WithDetails(
+        absl::PermissionDeniedError("a viewer erases the own marks only; ask a presenter"),
+        {.reason = "NOT_YOUR_MARK"});
+  }
   board_.Erase(mark_ids, any ? std::nullopt : std::optional(id));
   Settle(std::move(lock), now);
+  return absl::OkStatus();
 }
 
 absl::Status Audience::Draw(std::uint64_t id, const BoardChange& change, Time now) {
@@ -138,6 +147,12 @@ absl::Status Audience::PresenterMaySteer() const {
 absl::Status Audience::MayMark(std::uint64_t id) const {
   const std::lock_guard lock(mutex_);
   return roster_.MayMark(id);
+}
+
+std::uint64_t Audience::Returns(std::uint64_t id) const {
+  const std::lock_guard lock(mutex_);
+  const Person* const person = roster_.Find(id);
+  return person == nullptr ? 0 : person->returns;
 }
 
 bool Audience::Follows(std::uint64_t id) const {

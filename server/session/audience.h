@@ -79,8 +79,9 @@ class Audience {
   using BoardChange = std::function<absl::Status(Board&)>;
   absl::Status Change(const RosterChange& change, Time now);
   absl::Status Draw(std::uint64_t id, const BoardChange& change, Time now);
-  // Erases those marks, or all: a presenter anybody's, a viewer the own ones.
-  void Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now);
+  // Erases those marks, or all: a presenter anybody's, a viewer the own ones. PERMISSION_DENIED,
+  // and none is erased, if a viewer names another's.
+  absl::Status Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now);
   // Moves the person's pointer to what the ray meets, as soon as Tick has found it; without a ray
   // it goes.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
@@ -100,6 +101,7 @@ class Audience {
   absl::Status PresenterMaySteer() const;
   absl::Status MayMark(std::uint64_t id) const;
   bool Follows(std::uint64_t id) const;
+  std::uint64_t Returns(std::uint64_t id) const;  // Person::returns
   bool Empty() const;
 
   Told Presence() const;

@@ -60,6 +60,12 @@ std::uint64_t Board::LastPerson() const {
   return last;
 }
 
+bool Board::HasOfOthers(const std::vector<std::uint64_t>& ids, std::uint64_t person_id) const {
+  return std::ranges::any_of(marks_, [&](const Mark& mark) {
+    return mark.person_id != person_id && std::ranges::find(ids, mark.id) != ids.end();
+  });
+}
+
 void Board::Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id) {
   const auto erased = std::erase_if(marks_, [&](const Mark& mark) {
     return (ids.empty() || std::ranges::find(ids, mark.id) != ids.end()) &&

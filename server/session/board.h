@@ -43,6 +43,8 @@ class Board {
                                     const std::string& owner_key = "");
   // The marks with that key are now the person's, who has come back with another id.
   void HandOver(const std::string& owner_key, std::uint64_t person_id);
+  // True if one of `ids` is a mark of somebody else.
+  bool HasOfOthers(const std::vector<std::uint64_t>& ids, std::uint64_t person_id) const;
   // Erases `ids`, or every mark if there are none: of anybody, or only of that person.
   void Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id);
 

@@ -1,5 +1,8 @@
 #include "session/encoded_frame.h"
 
+#include "base/error_details.h"
+#include "telemetry/metrics.h"
+
 namespace thunderhead::session {
 namespace {
 
@@ -17,14 +20,24 @@ Problem::Code CodeOf(absl::StatusCode code) {
   }
 }
 
+// As calls that end with an error are counted.
+void CountRefusal(const absl::Status& why) {
+  const std::string reason = base::DetailsOf(why).reason;
+  telemetry::Counted()
+      .refusals.Of(reason.empty() ? absl::StatusCodeToString(why.code()) : reason)
+      .Add();
+}
+
 }  // namespace
 
 Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why) {
+  CountRefusal(why);
   return {scene_revision, std::string(why.message()), CodeOf(why.code())};
 }
 
 Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why) {
   if (absl::IsResourceExhausted(why)) return ProblemOf(scene_revision, why);
+  CountRefusal(why);
   const bool gone = absl::IsNotFound(why);
   return {scene_revision, std::string(why.message()),
           gone ? Problem::Code::kStormGone : Problem::Code::kStormUnreadable};

@@ -61,9 +61,9 @@ struct Problem {
   Code code = Code::kInternal;
 };
 
-// The problem of a scene that could not be drawn.
+// The problem of a scene that could not be drawn, counted among the refusals.
 Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
-// The problem of a scene whose storm could not be read.
+// That of a scene whose storm could not be read, likewise.
 Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
 
 }  // namespace thunderhead::session

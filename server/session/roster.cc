@@ -26,17 +26,26 @@ std::string NameOf(const Person& person) {
 
 }  // namespace
 
-std::uint64_t Roster::Join(Role role, std::string name) {
+std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string key) {
   ++revision_;
-  people_.push_back({.id = ++count_, .name = std::move(name), .role = role});
+  std::erase_if(asked_and_left_,
+                [&](const auto& asked) { return now >= asked.second + timeouts_.ask_again; });
+  people_.push_back({.id = ++count_, .name = std::move(name), .role = role, .key = std::move(key)});
+  if (const auto asked = asked_and_left_.find(people_.back().key); asked != asked_and_left_.end()) {
+    people_.back().asked_at = asked->second;
+  }
   if (role == Role::kPresenter && away_since_.has_value()) Give(people_.back());
   return count_;
 }
 
 void Roster::Leave(std::uint64_t id, Time now) {
-  const auto erased =
-      std::erase_if(people_, [id](const Person& person) { return person.id == id; });
-  if (erased == 0) return;
+  const auto leaves = std::ranges::find(people_, id, &Person::id);
+  if (leaves == people_.end()) return;
+  if (leaves->asked_at.has_value() && !leaves->key.empty() &&
+      now < *leaves->asked_at + timeouts_.ask_again) {
+    asked_and_left_[leaves->key] = *leaves->asked_at;
+  }
+  people_.erase(leaves);
   ++revision_;
   if (steering_ == id) GiveBack(now);
 }
@@ -114,8 +123,7 @@ absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now)
   }
   ++revision_;
   if (Find(from)->role == Role::kPresenter) {
-    steering_ = 0;
-    away_since_.reset();
+    Free();
   } else {
     GiveBack(now);
   }
@@ -151,26 +159,27 @@ absl::Status Roster::SetRules(std::uint64_t id, const Rules& rules) {
   ++revision_;
   for (Person& other : people_) {
     if (rules_.control_locked) other.asks = false;
-    if (rules_.following_locked && other.role == Role::kViewer) other.follows = true;
+    if (rules_.following_locked && other.role == Role::kViewer) ReturnToView(other);
   }
   return absl::OkStatus();
 }
 
-absl::Status Roster::Detach(std::uint64_t id) {
+absl::StatusOr<bool> Roster::Detach(std::uint64_t id, std::uint64_t returns) {
   Person* const person = FindPerson(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (rules_.following_locked && person->role == Role::kViewer) {
     return Denied("the presenter has locked the session to one view", "FOLLOWING_LOCKED");
   }
+  if (person->returns != returns) return false;
   person->follows = false;
   ++revision_;
-  return absl::OkStatus();
+  return true;
 }
 
 absl::Status Roster::Follow(std::uint64_t id) {
   Person* const person = FindPerson(id);
   if (person == nullptr) return NoSuchPerson(id);
-  person->follows = true;
+  ReturnToView(*person);
   ++revision_;
   return absl::OkStatus();
 }
@@ -191,7 +200,7 @@ void Roster::Advance(Time now) {
     ++revision_;
   }
   if (away_since_.has_value() && rules_.free_when_away && now >= *away_since_ + timeouts_.away) {
-    away_since_.reset();
+    Free();
     ++revision_;
   }
 }
@@ -222,8 +231,24 @@ void Roster::Give(Person& to) {
   steering_ = to.id;
   away_since_.reset();
   // A steering person sees what is steered.
-  to.follows = true;
+  ReturnToView(to);
   to.asks = false;
+}
+
+void Roster::ReturnToView(Person& person) {
+  person.follows = true;
+  ++person.returns;
+}
+
+void Roster::Free() {
+  steering_ = 0;
+  away_since_.reset();
+  if (!rules_.viewers_may_steer) return;
+  Person* first = nullptr;
+  for (Person& person : people_) {
+    if (person.asks && (first == nullptr || *person.asked_at < *first->asked_at)) first = &person;
+  }
+  if (first != nullptr) Give(*first);
 }
 
 void Roster::GiveBack(Time now) {

@@ -7,11 +7,13 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 
 namespace thunderhead::session {
 
@@ -36,6 +38,8 @@ struct Person {
   bool hidden = false;                                            // the window
   bool asks = false;                                              // for control
   std::optional<std::chrono::steady_clock::time_point> asked_at;  // last
+  std::uint64_t returns = 0;                                      // to the session's view, so far
+  std::string key = {};                                           // that the person comes back with
 
   bool operator==(const Person&) const = default;
 };
@@ -57,7 +61,8 @@ class Roster {
          const RosterTimeouts& timeouts = {})
       : timeouts_(timeouts), rules_(rules), away_since_(now), count_(last_id) {}
 
-  std::uint64_t Join(Role role, std::string name);
+  // Who comes back with the same key has asked for control when the one who left had.
+  std::uint64_t Join(Role role, std::string name, Time now, std::string key = "");
   void Leave(std::uint64_t id, Time now);
   void Rename(std::uint64_t id, std::string name);
   void SetHidden(std::uint64_t id, bool hidden);
@@ -72,7 +77,8 @@ class Roster {
   // presenter. PERMISSION_DENIED while control is locked, RESOURCE_EXHAUSTED for asking too often.
   absl::Status AskControl(std::uint64_t id, Time now);
   // From the one who steers, or a presenter: to a person, or to nobody (0). Nobody gets a
-  // presenter's control, and it is free; a viewer's goes back to the presenters.
+  // presenter's control, and it is free, for the viewer who asked first if there is one; a viewer's
+  // goes back to the presenters.
   absl::Status GiveControl(std::uint64_t from, std::uint64_t to, Time now);
   // The same people may say no.
   absl::Status RefuseControl(std::uint64_t from, std::uint64_t to);
@@ -81,8 +87,9 @@ class Roster {
   absl::Status SetRules(std::uint64_t id, const Rules& rules);
   const Rules& rules() const { return rules_; }
 
-  // Leaves the session's view; a viewer may not while following is locked.
-  absl::Status Detach(std::uint64_t id);
+  // Leaves the session's view; a viewer may not while following is locked. False if the person has
+  // returned to it since Person::returns was `returns`: that came later, and counts.
+  absl::StatusOr<bool> Detach(std::uint64_t id, std::uint64_t returns);
   absl::Status Follow(std::uint64_t id);
 
   absl::Status MayMark(std::uint64_t id) const;
@@ -106,11 +113,15 @@ class Roster {
   Person* FindPerson(std::uint64_t id);
   absl::Status MayAnswer(std::uint64_t id) const;
   void Give(Person& to);
+  void ReturnToView(Person& person);
+  // Gives control to nobody, or to the viewer who waits for it longest.
+  void Free();
   // To a presenter, or kept for one.
   void GiveBack(Time now);
 
   RosterTimeouts timeouts_;
   Rules rules_;
+  std::map<std::string, Time> asked_and_left_;  // by key, for as long as it counts
   std::vector<Person> people_;
   std::uint64_t steering_ = 0;
   std::optional<Time> away_since_;  // while control is kept for presenters

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <mutex>
 #include <span>
@@ -49,6 +50,12 @@ class Histogram {
 template <typename Kind>
 class Labelled {
  public:
+  // Values that are known beforehand are told from the start, at 0: Prometheus sees no increase in
+  // what it has not seen before, so an alert would miss the first.
+  explicit Labelled(std::initializer_list<std::string_view> known = {}) {
+    for (const std::string_view value : known) Of(value);
+  }
+
   Kind& Of(std::string_view value) {
     const std::lock_guard lock(mutex_);
     const auto at = kinds_.find(value);
@@ -76,9 +83,10 @@ struct Metrics {
   Counter frame_bytes_sent;    // of their pictures
   Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
-  Labelled<Counter> job_pictures;     // of render jobs, by outcome: drawn, failed or dropped
-  Counter device_losses;              // the device was reset, or could not be opened again
-  Labelled<Counter> reader_failures;  // of untrusted files' readers, by what happened
+  Labelled<Counter> job_pictures{"drawn", "failed", "dropped"};  // of render jobs, by outcome
+  Counter device_losses;  // the device was reset, or could not be opened again
+  // Of untrusted files' readers, by what happened.
+  Labelled<Counter> reader_failures{"time", "killed", "crashed", "nonsense"};
 };
 
 // The process's.

@@ -1,12 +1,12 @@
 // The real program as its operator sees it: metrics, health, JSON logs, draining. Needs no browser.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, statSync } from "node:fs";
+import { linkSync, mkdtempSync, rmSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import { setTimeout } from "node:timers/promises";
-import { BINARY, freePort, startServer } from "./server_process.mjs";
+import { BINARY, ROOT, freePort, startServer } from "./server_process.mjs";
 
 async function start(...more) {
   const operatorPort = await freePort();
@@ -54,7 +54,7 @@ test("metrics, health and logs of a server that serves and then stops", async ()
   const exit = ended(server.child);
   server.child.kill("SIGTERM");
   assert.deepEqual(await exit, { code: 0, signal: null });
-  const lines = server.log().split("\n").filter((line) => line.startsWith("{"));
+  const lines = server.log().split("\n").filter((line) => line !== "" && !line.startsWith("Thunderhead is ready"));
   const messages = lines.map((line) => JSON.parse(line));
   for (const { time, level, message } of messages) {
     assert.match(time, /^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z$/);
@@ -62,6 +62,30 @@ test("metrics, health and logs of a server that serves and then stops", async ()
     assert.equal(typeof message, "string");
   }
   assert.ok(messages.some(({ message }) => message.startsWith("draining")));
+});
+
+test("SIGTERM ends a server that still reads its storms", async () => {
+  const folder = mkdtempSync(join(ROOT, "build", "starting-"));
+  try {
+    // Some 20 ms of reading each.
+    for (let i = 0; i < 1500; i += 1) linkSync(join(ROOT, "samples", "supercell.nc"), join(folder, `storm${i}.nc`));
+    const ports = ["--http", `127.0.0.1:${await freePort()}`, "--grpc", `127.0.0.1:${await freePort()}`];
+    const child = spawn(BINARY, ["serve", "--data", folder, "--state", "none", ...ports]);
+    let said = "";
+    for (const stream of [child.stdout, child.stderr]) {
+      stream.on("data", (text) => {
+        said += text;
+      });
+    }
+    await setTimeout(1000);
+    assert.equal(child.exitCode, null, said);
+    const exit = ended(child);
+    child.kill("SIGTERM");
+    assert.deepEqual(await exit, { code: 0, signal: null });
+    assert.match(said, /told to stop while starting/);
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
 });
 
 test("SIGTERM waits for the picture that was begun, a second one ends at once", async () => {

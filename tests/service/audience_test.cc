@@ -260,7 +260,7 @@ TEST_F(AudienceTest, NothingIsToldWithoutNews) {
     EXPECT_EQ(Tick(), std::nullopt);
     now_ += seconds(1);
   }
-  audience_.Erase(presenter_, {}, now_);
+  EXPECT_TRUE(audience_.Erase(presenter_, {}, now_).ok());
   EXPECT_EQ(audience_.Presence().count, presence.count);
   EXPECT_EQ(audience_.Marks().count, marks.count);
   EXPECT_EQ(viewers_[0]->wakes, wakes);
@@ -278,14 +278,14 @@ TEST_F(AudienceTest, ViewersEraseTheirOwnMarksAndWhoeverHasTheirKeyToo) {
   const auto join = [&](const std::string& key) {
     return *audience_.Join(Role::kViewer, "", viewers_[1], now_, 100, key);
   };
-  audience_.Erase(join(""), {}, now_);
-  audience_.Erase(join("another key"), {}, now_);
+  EXPECT_TRUE(audience_.Erase(join(""), {}, now_).ok());
+  EXPECT_TRUE(audience_.Erase(join("another key"), {}, now_).ok());
   ASSERT_EQ(audience_.Drawn().marks().size(), 2U);
   const std::uint64_t revision = audience_.MarksRevision();
   const std::uint64_t back = join("key of Ana");
   EXPECT_THAT(audience_.MarksRevision(), Gt(revision)) << "others are told whose it is now";
   EXPECT_EQ(audience_.Drawn().marks()[0].person_id, back);
-  audience_.Erase(back, {}, now_);
+  EXPECT_TRUE(audience_.Erase(back, {}, now_).ok());
   ASSERT_EQ(audience_.Drawn().marks().size(), 1U);
   EXPECT_EQ(audience_.Drawn().marks()[0].person_id, ben_);
 }

@@ -3,8 +3,10 @@
 
 #include <array>
 
+#include "base/error_details.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::session {
 namespace {
@@ -221,6 +223,16 @@ TEST_F(FrameHubTest, ClosingWakesAndRefuses) {
   EXPECT_FALSE(hub_.Take(id).has_value());
   EXPECT_EQ(hub_.ClosedBecause().message(), "closed");
   EXPECT_EQ(hub_.Join(viewer).status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST(Problems, AreCountedAsRefusals) {
+  telemetry::Counter& counted = telemetry::Counted().refusals.Of("MEMORY_BUDGET");
+  const std::uint64_t before = counted.Value();
+  const absl::Status full = base::WithDetails(absl::ResourceExhaustedError("no memory is left"),
+                                              {.reason = "MEMORY_BUDGET"});
+  EXPECT_EQ(ProblemOf(1, full).code, Problem::Code::kBusy);
+  EXPECT_EQ(UnreadableStorm(1, full).code, Problem::Code::kBusy);
+  EXPECT_EQ(counted.Value(), before + 2);
 }
 
 }  // namespace

@@ -562,6 +562,81 @@ TEST(InteractTest, WhoIsRefusedAViewOfTheirOwnGoesOnFollowing) {
   }));
 }
 
+// A class whose session goes to a time that is being read until the gate opens, and Ana's request
+// for a view from a place that the storm of that time decides.
+struct SlowlyLeaving : Class {
+  SlowlyLeaving() {
+    EXPECT_TRUE(ana->AwaitFrame(1));
+    service.store->reading.Close();
+    v1::InteractRequest later;
+    v1::SceneUpdate& update = *later.mutable_update_scene();
+    update.mutable_scene()->set_time_index(2);
+    update.mutable_update_mask()->add_paths("time_index");
+    EXPECT_EQ(presenter->AnswerCode(presenter->Send(later)), grpc::StatusCode::OK);
+    EXPECT_TRUE(service.store->reading.AwaitWaiting(1));
+    v1::InteractRequest detach;
+    detach.mutable_detach()->mutable_camera()->mutable_spotter();
+    ana->Send(detach);
+    EXPECT_TRUE(service.store->reading.AwaitWaiting(2));
+  }
+  ~SlowlyLeaving() { service.store->reading.Open(); }
+
+  bool AnaFollows(bool follows) {
+    return ben->AwaitPresence([&](const v1::Presence& presence) {
+      const v1::Person* const person = Find(presence, ana->viewer_id());
+      return person != nullptr && person->follows() == follows;
+    });
+  }
+};
+
+TEST(InteractTest, WhoComesBackBeforeTheOwnViewIsThereStays) {
+  SlowlyLeaving group;
+  group.ana->Send(Follows());
+  v1::InteractRequest rename;
+  rename.mutable_set_name()->set_name("Anna");
+  group.ana->Send(rename);
+  ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
+    const v1::Person* const ana = Find(presence, group.ana->viewer_id());
+    return ana != nullptr && ana->name() == "Anna";
+  }));
+  group.service.store->reading.Open();
+  ASSERT_TRUE(group.ana->AwaitFrame(2, /*own_view=*/false));
+  // Motions are taken for the view that is coming, and refused once it is known that none comes.
+  v1::InteractRequest move;
+  move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
+  const auto is_refused = [](const Response& message) {
+    return message.has_refused() && ReasonOf(message.refused().status()) == "NOT_DETACHED";
+  };
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (std::ranges::none_of(group.ana->All(), is_refused)) {
+    ASSERT_LT(std::chrono::steady_clock::now(), end);
+    group.ana->Send(move);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_TRUE(group.AnaFollows(true));
+}
+
+TEST(InteractTest, TheOwnViewIsFromWhereItWasTurnedToWhileItCame) {
+  SlowlyLeaving group;
+  v1::InteractRequest move;
+  move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
+  group.ana->Send(move);
+  v1::InteractRequest rename;
+  rename.mutable_set_name()->set_name("Anna");
+  group.ana->Send(rename);
+  ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
+    const v1::Person* const ana = Find(presence, group.ana->viewer_id());
+    return ana != nullptr && ana->name() == "Anna";
+  }));
+  group.service.store->reading.Open();
+  ASSERT_TRUE(group.AnaFollows(false));
+  EXPECT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {
+    return std::ranges::any_of(messages, [](const Response& message) {
+      return message.frame().own_view() && message.frame().camera().orbit().azimuth_deg() == 45.0F;
+    });
+  }));
+}
+
 TEST(InteractTest, NobodyPointsWithoutTheRightOrJoinsTwice) {
   Class group;
   v1::InteractRequest point;
@@ -663,6 +738,14 @@ TEST(InteractTest, ViewersMarkIfAllowedAndEraseTheirOwn) {
     });
   };
   group.ana->Send(Draws());
+  ASSERT_TRUE(marks_are(2));
+  v1::InteractRequest erase_others;
+  const v1::Marks both = group.ben->AwaitNewest(Response::kMarks).marks();
+  for (const v1::Mark& mark : both.marks()) {
+    erase_others.mutable_erase_marks()->add_mark_ids(mark.mark_id());
+  }
+  const Response refused = group.ana->Answer(group.ana->Send(erase_others));
+  EXPECT_EQ(ReasonOf(refused.refused().status()), "NOT_YOUR_MARK");
   ASSERT_TRUE(marks_are(2));
   v1::InteractRequest erase;
   erase.mutable_erase_marks();

@@ -18,9 +18,9 @@ std::string ReasonOf(const absl::Status& status) { return base::DetailsOf(status
 // A presenter, Ana and Ben.
 struct Class {
   explicit Class(const Rules& rules = {}) : roster(rules, kOpenedAt) {
-    presenter = roster.Join(Role::kPresenter, "Teacher");
-    ana = roster.Join(Role::kViewer, "Ana");
-    ben = roster.Join(Role::kViewer, "");
+    presenter = roster.Join(Role::kPresenter, "Teacher", kOpenedAt);
+    ana = roster.Join(Role::kViewer, "Ana", kOpenedAt);
+    ben = roster.Join(Role::kViewer, "", kOpenedAt);
   }
 
   Roster roster;
@@ -28,6 +28,10 @@ struct Class {
   std::uint64_t ana = 0;
   std::uint64_t ben = 0;
 };
+
+absl::StatusOr<bool> Detach(Class& group, std::uint64_t id) {
+  return group.roster.Detach(id, group.roster.Find(id)->returns);
+}
 
 TEST(RosterTest, PresenterSteersOnComing) {
   const Class group;
@@ -45,11 +49,11 @@ TEST(RosterTest, NobodySteersWithTheIdOfNobody) {
 
 TEST(RosterTest, ViewersWaitForAPresenterWhoIsOnTheWay) {
   Roster roster({}, kOpenedAt);
-  const std::uint64_t ana = roster.Join(Role::kViewer, "Ana");
+  const std::uint64_t ana = roster.Join(Role::kViewer, "Ana", kOpenedAt);
   ASSERT_TRUE(roster.AskControl(ana, kOpenedAt).ok());
   EXPECT_EQ(roster.steering(), 0U);
   EXPECT_TRUE(roster.presenter_away());
-  const std::uint64_t presenter = roster.Join(Role::kPresenter, "");
+  const std::uint64_t presenter = roster.Join(Role::kPresenter, "", kOpenedAt);
   EXPECT_EQ(roster.steering(), presenter);
   EXPECT_FALSE(roster.presenter_away());
 }
@@ -105,6 +109,37 @@ TEST(RosterTest, FreeControlGoesToWhoAsksFirst) {
   EXPECT_EQ(group.roster.steering(), group.ben);
 }
 
+TEST(RosterTest, ControlThatBecomesFreeGoesToWhoHasAskedLongest) {
+  Class group;
+  ASSERT_TRUE(group.roster.AskControl(group.ben, kOpenedAt).ok());
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt + seconds(1)).ok());
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt + seconds(2)).ok());
+  EXPECT_EQ(group.roster.steering(), group.ben);
+  EXPECT_FALSE(group.roster.Find(group.ben)->asks);
+  EXPECT_TRUE(group.roster.Find(group.ana)->asks);
+}
+
+TEST(RosterTest, ControlThatIsFreeBecauseThePresentersAreAwayGoesToWhoAsks) {
+  Class group({.free_when_away = true});
+  group.roster.Leave(group.presenter, kOpenedAt);
+  const Roster::Time asked_at = kOpenedAt + kTimeouts.away - seconds(1);
+  ASSERT_TRUE(group.roster.AskControl(group.ana, asked_at).ok());
+  group.roster.Advance(kOpenedAt + kTimeouts.away);
+  EXPECT_EQ(group.roster.steering(), group.ana);
+}
+
+TEST(RosterTest, WhoComesBackHasAskedBefore) {
+  Class group;
+  const std::uint64_t eve = group.roster.Join(Role::kViewer, "Eve", kOpenedAt, "key");
+  ASSERT_TRUE(group.roster.AskControl(eve, kOpenedAt).ok());
+  group.roster.Leave(eve, kOpenedAt + seconds(1));
+  const std::uint64_t back = group.roster.Join(Role::kViewer, "Eve", kOpenedAt + seconds(1), "key");
+  EXPECT_EQ(ReasonOf(group.roster.AskControl(back, kOpenedAt + seconds(2))), "ASKED_TOO_OFTEN");
+  const std::uint64_t other = group.roster.Join(Role::kViewer, "", kOpenedAt + seconds(1), "other");
+  EXPECT_TRUE(group.roster.AskControl(other, kOpenedAt + seconds(2)).ok());
+  EXPECT_TRUE(group.roster.AskControl(back, kOpenedAt + kTimeouts.ask_again).ok());
+}
+
 TEST(RosterTest, FreeControlIsNotGivenWhereViewersMayNotSteer) {
   Class group({.viewers_may_steer = false});
   ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt).ok());
@@ -147,7 +182,7 @@ TEST(RosterTest, ControlIsKeptForAPresenterWhoReloads) {
   group.roster.Advance(kOpenedAt + seconds(59));
   ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt + seconds(59)).ok());
   EXPECT_EQ(group.roster.steering(), 0U);
-  const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher");
+  const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher", kOpenedAt);
   EXPECT_EQ(group.roster.steering(), back);
 }
 
@@ -159,7 +194,7 @@ TEST(RosterTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
   ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt + kTimeouts.away).ok());
   EXPECT_EQ(group.roster.steering(), group.ana);
   // A presenter who comes back does not take it by coming.
-  const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher");
+  const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher", kOpenedAt);
   EXPECT_EQ(group.roster.steering(), group.ana);
   EXPECT_TRUE(group.roster.TakeControl(back).ok());
 }
@@ -173,7 +208,7 @@ TEST(RosterTest, ControlOfAnAbsentPresenterStaysElse) {
 
 TEST(RosterTest, SecondPresenterTakesOverFromOneWhoLeaves) {
   Class group;
-  const std::uint64_t second = group.roster.Join(Role::kPresenter, "Tablet");
+  const std::uint64_t second = group.roster.Join(Role::kPresenter, "Tablet", kOpenedAt);
   EXPECT_EQ(group.roster.steering(), group.presenter);
   group.roster.Leave(group.presenter, kOpenedAt);
   EXPECT_EQ(group.roster.steering(), second);
@@ -181,17 +216,32 @@ TEST(RosterTest, SecondPresenterTakesOverFromOneWhoLeaves) {
 
 TEST(RosterTest, LockedFollowingEndsLookingAround) {
   Class group;
-  ASSERT_TRUE(group.roster.Detach(group.ana).ok());
-  ASSERT_TRUE(group.roster.Detach(group.presenter).ok());
+  ASSERT_TRUE(Detach(group, group.ana).ok());
+  ASSERT_TRUE(Detach(group, group.presenter).ok());
   ASSERT_TRUE(group.roster.SetRules(group.presenter, {.following_locked = true}).ok());
   EXPECT_TRUE(group.roster.Find(group.ana)->follows);
   EXPECT_FALSE(group.roster.Find(group.presenter)->follows) << "a presenter may";
-  EXPECT_EQ(ReasonOf(group.roster.Detach(group.ana)), "FOLLOWING_LOCKED");
+  EXPECT_EQ(ReasonOf(Detach(group, group.ana).status()), "FOLLOWING_LOCKED");
+}
+
+TEST(RosterTest, ReturningToTheSessionsViewCountsBeforeAnEarlierRequestToLeaveIt) {
+  Class group;
+  const auto leaves = [&](std::uint64_t returns) {
+    return *group.roster.Detach(group.ana, returns) && !group.roster.Find(group.ana)->follows;
+  };
+  const std::uint64_t before = group.roster.Find(group.ana)->returns;
+  ASSERT_TRUE(group.roster.Follow(group.ana).ok());
+  EXPECT_FALSE(leaves(before));
+  EXPECT_TRUE(group.roster.Find(group.ana)->follows);
+  const std::uint64_t followed = group.roster.Find(group.ana)->returns;
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  EXPECT_FALSE(leaves(followed)) << "who steers sees what is steered";
+  EXPECT_TRUE(leaves(group.roster.Find(group.ana)->returns));
 }
 
 TEST(RosterTest, WhoGetsControlFollows) {
   Class group;
-  ASSERT_TRUE(group.roster.Detach(group.ana).ok());
+  ASSERT_TRUE(Detach(group, group.ana).ok());
   ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
   EXPECT_TRUE(group.roster.Find(group.ana)->follows);
 }

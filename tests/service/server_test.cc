@@ -75,6 +75,15 @@ TEST(ServerTest, HealthIsServingInProcessAndOnItsPort) {
     EXPECT_EQ(Ask(channel, "/grpc.health.v1.Health/Check", ""), serving);
     EXPECT_EQ(Ask(channel, "/grpc.health.v1.Health/Check", by_name), serving);
   }
+  const std::string not_serving("\x08\x02", 2);
+  const auto health = [&] { return Ask(remote, "/grpc.health.v1.Health/Check", by_name); };
+  service.server().SetServing(false);
+  EXPECT_EQ(health(), not_serving);
+  service.server().SetServing(true);
+  EXPECT_EQ(health(), serving);
+  service.server().BeginDrain();
+  service.server().SetServing(true);
+  EXPECT_EQ(health(), not_serving) << "it drains";
 }
 
 TEST(ServerTest, ReflectionListsTheService) {

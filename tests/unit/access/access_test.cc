@@ -182,7 +182,9 @@ TEST_F(JwtTest, TimesAndClaimsAreChecked) {
   EXPECT_EQ(Complaint(Sign({.expires_in_s = -10})), "");  // within the clocks' difference
   EXPECT_THAT(Complaint(Sign({.expires_in_s = -60})), HasSubstr("has expired"));
   EXPECT_THAT(Complaint(Sign({.expires_in_s = 0})), HasSubstr("no time at which it expires"));
+  EXPECT_EQ(Complaint(Sign({.expires_in_s = 253'402'300'799})), "") << "beyond the year 9999";
   EXPECT_THAT(Complaint(Sign({.begins_in_s = 120})), HasSubstr("not valid yet"));
+  EXPECT_THAT(Complaint(Sign({.begins_in_s = 253'402'300'799})), HasSubstr("not valid yet"));
   EXPECT_THAT(Complaint(Sign({.subject = ""})), HasSubstr("(sub)"));
   EXPECT_THAT(Complaint(Sign({.role = ""})), HasSubstr("no role"));
   EXPECT_THAT(Complaint(Sign({.role = "king"})), HasSubstr("no role"));

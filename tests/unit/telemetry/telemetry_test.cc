@@ -50,6 +50,16 @@ TEST(Counter, CountsFromManyThreads) {
   EXPECT_EQ(counter.Value(), 40'000U);
 }
 
+TEST(Exposition, HasWhatAlertsWaitForFromTheStart) {
+  const std::string text = Expose(Metrics(), {});
+  for (const char* line : {"thunderhead_job_pictures_total{outcome=\"failed\"} 0\n",
+                           "thunderhead_job_pictures_total{outcome=\"drawn\"} 0\n",
+                           "thunderhead_reader_failures_total{reason=\"crashed\"} 0\n",
+                           "thunderhead_device_losses_total 0\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+}
+
 TEST(Exposition, IsPrometheusText) {
   Metrics metrics;
   metrics.frames.Of("light_volume").Add(3);
