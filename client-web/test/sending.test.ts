@@ -349,6 +349,26 @@ describe("scenes on their way to the server", () => {
     expect(lost).toHaveBeenCalledTimes(1);
   });
 
+  it("made while another steers are given up at once, with a word, until this page steers", async () => {
+    const b = steering();
+    b.sync.told(sceneOf(1), 2n);
+    b.sync.hold();
+    const lost = vi.fn();
+    b.sync.discard(lost);
+    expect(lost).not.toHaveBeenCalled();
+    b.toTime(3);
+    expect(b.page.scene.timeIndex).toBe(1);
+    expect(lost).toHaveBeenCalledTimes(1);
+    b.toTime(4);
+    expect(b.page.scene.timeIndex).toBe(1);
+    expect(lost).toHaveBeenCalledTimes(2);
+    b.sync.allow();
+    b.toTime(3);
+    await b.refresh();
+    expect(b.page.scene.timeIndex).toBe(3);
+    expect(b.sent).toHaveLength(1);
+  });
+
   it("go on where this page steers again before the answer", async () => {
     const b = steering();
     b.toTime(2);

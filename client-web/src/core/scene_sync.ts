@@ -55,7 +55,7 @@ export class SceneSync {
   // Nothing is sent before the newer scene is known.
   #stale = false;
   #openingEdits = 0;
-  // Another steers, and what was sent has no answer yet.
+  // Another steers: called when edits are given up.
   #onLost: (() => void) | undefined;
   #withdrawPaint: (() => void) | undefined;
   #withdrawRest: (() => void) | undefined;
@@ -78,6 +78,8 @@ export class SceneSync {
   edited(edit: Edit): void {
     this.#edits.push(edit);
     this.#unsent = true;
+    // A hand may be faster than the controls, which cannot be used while another steers.
+    this.#giveUp();
     this.#schedule();
   }
 
@@ -114,22 +116,19 @@ export class SceneSync {
     this.#withdrawPaint = undefined;
   }
 
-  // Another steers: gives edits up that the server does not take, and calls `onLost` if there are any. Those that were sent
-  // await their answer, as they may have come before the other took control.
+  // Another steers: until allow(), gives edits up that the server does not take, and calls `onLost` if there are any. Those that
+  // were sent await their answer, as they may have come before the other took control.
   discard(onLost: () => void): void {
     this.#onLost = onLost;
     this.#giveUp();
   }
 
   #giveUp(): void {
-    const onLost = this.#onLost;
-    if (onLost === undefined || this.#inFlight > 0) return;
-    this.#onLost = undefined;
-    if (this.#edits.length === 0) return;
+    if (this.#onLost === undefined || this.#inFlight > 0 || this.#edits.length === 0) return;
     this.#edits = [];
     this.#unsent = false;
     if (this.#told !== undefined) this.#rebase(this.#told.scene, this.#told.revision);
-    onLost();
+    this.#onLost();
   }
 
   // The session's scene.
