@@ -86,7 +86,8 @@ class Server {
   // were begun go on. Returns at once.
   virtual void BeginDrain() = 0;
 
-  // What gRPC's health service says from now on; true once it has started.
+  // Sets the status that gRPC's health service gives: serving from the start, and never again once
+  // the server drains.
   virtual void SetServing(bool serving) = 0;
   // Ends every stream with UNAVAILABLE, refuses queued work, and waits for running work. The
   // destructor does it too.

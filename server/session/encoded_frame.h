@@ -63,7 +63,7 @@ struct Problem {
 
 // The problem of a scene that could not be drawn, counted among the refusals.
 Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
-// That of a scene whose storm could not be read, likewise.
+// The problem of a scene whose storm could not be read, counted among the refusals.
 Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
 
 }  // namespace thunderhead::session

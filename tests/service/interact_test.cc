@@ -581,6 +581,17 @@ struct SlowlyLeaving : Class {
   }
   ~SlowlyLeaving() { service.store->reading.Open(); }
 
+  // Requests are obeyed in turn, so after a last one, of a new name, all are.
+  bool AnaIsObeyed() {
+    v1::InteractRequest rename;
+    rename.mutable_set_name()->set_name("Anna");
+    ana->Send(rename);
+    return ben->AwaitPresence([&](const v1::Presence& presence) {
+      const v1::Person* const person = Find(presence, ana->viewer_id());
+      return person != nullptr && person->name() == "Anna";
+    });
+  }
+
   bool AnaFollows(bool follows) {
     return ben->AwaitPresence([&](const v1::Presence& presence) {
       const v1::Person* const person = Find(presence, ana->viewer_id());
@@ -592,13 +603,7 @@ struct SlowlyLeaving : Class {
 TEST(InteractTest, WhoComesBackBeforeTheOwnViewIsThereStays) {
   SlowlyLeaving group;
   group.ana->Send(Follows());
-  v1::InteractRequest rename;
-  rename.mutable_set_name()->set_name("Anna");
-  group.ana->Send(rename);
-  ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
-    const v1::Person* const ana = Find(presence, group.ana->viewer_id());
-    return ana != nullptr && ana->name() == "Anna";
-  }));
+  ASSERT_TRUE(group.AnaIsObeyed());
   group.service.store->reading.Open();
   ASSERT_TRUE(group.ana->AwaitFrame(2, /*own_view=*/false));
   // Motions are taken for the view that is coming, and refused once it is known that none comes.
@@ -621,13 +626,7 @@ TEST(InteractTest, TheOwnViewIsFromWhereItWasTurnedToWhileItCame) {
   v1::InteractRequest move;
   move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
   group.ana->Send(move);
-  v1::InteractRequest rename;
-  rename.mutable_set_name()->set_name("Anna");
-  group.ana->Send(rename);
-  ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
-    const v1::Person* const ana = Find(presence, group.ana->viewer_id());
-    return ana != nullptr && ana->name() == "Anna";
-  }));
+  ASSERT_TRUE(group.AnaIsObeyed());
   group.service.store->reading.Open();
   ASSERT_TRUE(group.AnaFollows(false));
   EXPECT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {

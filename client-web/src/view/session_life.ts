@@ -267,12 +267,11 @@ export class SessionLife implements SessionListener {
       this.#parts.pausePlayback();
       if (this.#opened && presence.steeringViewerId === 0n) this.#parts.takeControl();
       else if (this.#resumesSteering && presenterSteers(presence)) this.#parts.takeControl();
-      else {
+      else
         this.#sync.discard(() => {
           const why = session.editBlock.peek() ?? "";
           notes.say("control", `Your last change was not taken. ${why}`);
         });
-      }
     }
     this.#opened = false;
     this.#resumesSteering = false;
