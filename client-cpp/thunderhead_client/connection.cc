@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
@@ -19,6 +21,12 @@ constexpr int kMaxMessage_bytes = 256 << 20;
 // two minutes.
 constexpr int kReconnectFirst_ms = 100;
 constexpr int kReconnectLongest_ms = 500;
+// How long one try to connect may take, TLS's round trips over a slow link included; despite its
+// name that is what gRPC's least back-off means.
+constexpr int kConnectPatience_ms = 10'000;
+constexpr std::chrono::seconds kReconnectPatience{8};
+
+constexpr absl::string_view kPemCertificate = "-----BEGIN CERTIFICATE-----";
 
 absl::StatusOr<std::string> ReadFile(const std::string& path, const std::string& purpose) {
   std::ifstream file(path, std::ios::binary);
@@ -39,6 +47,10 @@ absl::Status CheckAddress(const std::string& address) {
   return absl::OkStatus();
 }
 
+std::string Unreachable(const std::string& address) {
+  return absl::StrCat("The server at ", address, " cannot be reached");
+}
+
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<Connection>> Connection::Open(ServerAccess access) {
@@ -48,12 +60,17 @@ absl::StatusOr<std::shared_ptr<Connection>> Connection::Open(ServerAccess access
     absl::StatusOr<std::string> roots =
         ReadFile(access.tls_ca_file, "the certificates of --tls-ca");
     if (!roots.ok()) return roots.status();
+    if (!absl::StrContains(*roots, kPemCertificate)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("'", access.tls_ca_file, "' holds no certificate in PEM (", kPemCertificate,
+                       "); give that of who signed the server's, or the server's own"));
+    }
     credentials = grpc::SslCredentials({*std::move(roots), "", ""});
   }
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(kMaxMessage_bytes);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, kReconnectFirst_ms);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, kReconnectFirst_ms);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, kConnectPatience_ms);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, kReconnectLongest_ms);
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   const auto channel = grpc::CreateCustomChannel(access.address, credentials, arguments);
@@ -64,7 +81,40 @@ absl::StatusOr<std::shared_ptr<Connection>> Connection::Open(ServerAccess access
 }
 
 Connection::Connection(ServerAccess access, const std::shared_ptr<grpc::Channel>& channel)
-    : access_(std::move(access)), stub_(v1::ThunderheadService::NewStub(channel)) {}
+    : access_(std::move(access)),
+      channel_(channel),
+      stub_(v1::ThunderheadService::NewStub(channel)) {}
+
+void Connection::AwaitReconnection(const std::function<bool()>& gives_up) const {
+  constexpr std::chrono::milliseconds kSlice{100};
+  const bool failed = channel_->GetState(true) == GRPC_CHANNEL_TRANSIENT_FAILURE;
+  const auto deadline = std::chrono::system_clock::now() + kReconnectPatience;
+  while (std::chrono::system_clock::now() < deadline && !gives_up()) {
+    const grpc_connectivity_state state = channel_->GetState(true);
+    if (state == GRPC_CHANNEL_READY || state == GRPC_CHANNEL_SHUTDOWN) return;
+    // After a first failure the channel stays in this state until it is connected.
+    if (!failed && state == GRPC_CHANNEL_TRANSIENT_FAILURE) return;
+    channel_->WaitForStateChange(state, std::chrono::system_clock::now() + kSlice);
+  }
+}
+
+std::string Connection::Explain(const grpc::Status& status) const {
+  // Thunderhead's own refusals have details.
+  if (status.error_code() != grpc::StatusCode::UNAVAILABLE || !status.error_details().empty()) {
+    return status.error_message();
+  }
+  // gRPC 1.51 has no codes for these, only words.
+  if (access_.tls_ca_file.empty()) {
+    if (!absl::StrContains(status.error_message(), "Socket closed")) return Unreachable(address());
+    return absl::StrCat(address(), " answers, but hangs up: it may want TLS; give its certificate ",
+                        "with --tls-ca");
+  }
+  const bool answers = absl::StrContains(status.error_message(), "handshake failed") ||
+                       absl::StrContains(status.error_message(), "peer certificate");
+  if (!answers) return Unreachable(address());
+  return absl::StrCat(address(), " answers, but not by TLS with a certificate that '",
+                      access_.tls_ca_file, "' vouches for and that names this host");
+}
 
 absl::Status Connection::Authorize(grpc::ClientContext& context) const {
   if (access_.token_file.empty()) return absl::OkStatus();

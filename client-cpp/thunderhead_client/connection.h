@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -21,12 +22,22 @@ struct ServerAccess {
 
 class Connection {
  public:
-  // Connects at the first call. An error names the file that cannot be read or the address that is
-  // none.
+  // Connects at the first call. An error names the file that cannot be read or is no PEM, or the
+  // address that is none.
   static absl::StatusOr<std::shared_ptr<Connection>> Open(ServerAccess access);
 
   v1::ThunderheadService::Stub& stub() const { return *stub_; }
   const std::string& address() const { return access_.address; }
+
+  // Waits for a server that was reached before, or could not be, for some seconds at most or until
+  // `gives_up`, which is asked ten times a second. A call that comes at once fails with the
+  // channel's last failure, and while nothing waits on a channel gRPC works on it only every five
+  // seconds.
+  void AwaitReconnection(const std::function<bool()>& gives_up) const;
+
+  // For people: why a call failed. The server's own words, or, where none has answered, what may
+  // be wrong and what to try.
+  std::string Explain(const grpc::Status& status) const;
 
   // Adds the token. An error if its file cannot be read.
   absl::Status Authorize(grpc::ClientContext& context) const;
@@ -47,6 +58,7 @@ class Connection {
   Connection(ServerAccess access, const std::shared_ptr<grpc::Channel>& channel);
 
   const ServerAccess access_;
+  const std::shared_ptr<grpc::Channel> channel_;
   const std::unique_ptr<v1::ThunderheadService::Stub> stub_;
 };
 

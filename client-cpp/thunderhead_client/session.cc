@@ -73,6 +73,10 @@ void Session::Run() {
     Settle(outcome);
     const std::chrono::milliseconds delay = back_off_.Next(outcome.least);
     if (!Wait(outcome, delay)) return;
+    connection_->AwaitReconnection([this] {
+      const std::lock_guard lock(mutex_);
+      return ends_;
+    });
   }
 }
 
@@ -125,7 +129,7 @@ std::optional<Session::Outcome> Session::Open() {
       connection_->Call(&Stub::CreateSession, request, &response, kPatience);
   if (!status.ok()) {
     const Link link = IsLocked(status.error_code()) ? Link::kRefused : Link::kLost;
-    return Outcome{link, status.error_message(), RetryAfter(status)};
+    return Outcome{link, connection_->Explain(status), RetryAfter(status)};
   }
   const std::lock_guard lock(mutex_);
   key_ = response.session_id();
@@ -172,9 +176,7 @@ Session::Outcome Session::Interact() {
   if (IsLocked(status.error_code())) return {Link::kRefused, status.error_message()};
   const std::string reason =
       status.ok() ? "The server ended the connection"
-                  : (call.joined || status.error_code() != grpc::StatusCode::UNAVAILABLE
-                         ? status.error_message()
-                         : "The server cannot be reached");
+                  : (call.joined ? status.error_message() : connection_->Explain(status));
   return {Link::kLost, reason, RetryAfter(status)};
 }
 
