@@ -9,14 +9,16 @@ import { Page } from "./view/page";
 const root = document.getElementById("page");
 if (root === null) throw new Error("index.html has no element #page");
 
-const token = new AccessToken(sessionStorageOf(window));
-const participant = new Participant(sessionStorageOf(window));
+const tabStore = sessionStorageOf(window);
+const token = new AccessToken(tabStore);
+const participant = new Participant(tabStore);
 const page = new Page(
   createSameOriginTransport(document.baseURI, () => token.value),
   sameOriginInteract(document.baseURI, () => token.value),
   window,
   token,
   participant,
+  tabStore,
 );
 render(<App page={page} />, root);
 

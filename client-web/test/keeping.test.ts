@@ -2,15 +2,20 @@
 
 import { deflateSync } from "node:zlib";
 import { create, equals } from "@bufbuild/protobuf";
-import { expect, test } from "vitest";
+import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
+import { describe, expect, test } from "vitest";
+import { BackOff } from "../src/core/back_off";
 import { cameraOfPose, type OrbitPose, poseOfCamera, type SpotterPose } from "../src/core/camera";
 import { History } from "../src/core/history";
 import { cameraPath, type MovieDraft, movieScenes, pictureCount } from "../src/core/movie_plan";
+import { RememberedMovie } from "../src/core/movie_work";
 import { NamedViews } from "../src/core/named_views";
 import { crc32, pngText, withPngText } from "../src/core/png_text";
 import { withDisplay, withField, withSun, withSunClock, withTime } from "../src/core/scene";
 import { sceneOfFile, sceneToText, withScene } from "../src/core/scene_file";
+import { RenderJobPictureState_State, RenderJobService } from "../src/gen/thunderhead/v1/job_pb";
 import { Hydrometeor, type Scene, SceneSchema, ToneMap } from "../src/gen/thunderhead/v1/scene_pb";
+import { type DrawnPicture, RenderCalls } from "../src/transport/render_calls";
 
 const ORBIT: OrbitPose = {
   kind: "orbit",
@@ -227,4 +232,82 @@ test("a camera path goes the shorter way around, and through every view", () => 
   expect(azimuths[4]).toBe(10);
   expect((path[2]?.pose as OrbitPose | undefined)?.distanceM).toBeCloseTo(40_000, 6);
   expect(path.map(({ timeIndex }) => timeIndex)).toEqual([0, 0, 1, 2, 2]);
+});
+
+test("a movie is remembered until it is forgotten, and what is no movie is none", () => {
+  const texts = new Map<string, string>();
+  const store = {
+    getItem: (name: string) => texts.get(name) ?? null,
+    setItem: (name: string, text: string) => void texts.set(name, text),
+  };
+  const movie = new RememberedMovie(store);
+  expect(movie.work).toBeUndefined();
+  const work = { jobId: "j1", pictures: 3, draft: DRAFT, stormId: "supercell" };
+  expect(movie.remember(work)).toBe(true);
+  expect(new RememberedMovie(store).work).toEqual(work);
+  movie.forget();
+  expect(new RememberedMovie(store).work).toBeUndefined();
+  for (const text of ["{", "[]", '{"jobId":"j1"}']) {
+    for (const name of texts.keys()) texts.set(name, text);
+    expect(new RememberedMovie(store).work).toBeUndefined();
+  }
+  expect(new RememberedMovie(undefined).remember(work)).toBe(false);
+});
+
+describe("pictures of a job", () => {
+  const all = { index: 0, state: RenderJobPictureState_State.DRAWN };
+  const drawn = [all, { ...all, index: 1 }, { ...all, index: 2 }];
+
+  // A server whose first connections are cut after so many results each.
+  function callsTo(cuts: number[], states = drawn) {
+    const fetched: number[] = [];
+    let left = 0;
+    const transport = createRouterTransport(({ service }) => {
+      service(RenderJobService, {
+        async *watchRenderJob() {
+          left = cuts.shift() ?? Number.POSITIVE_INFINITY;
+          yield { pictures: states };
+        },
+        async *fetchRenderResult({ index }) {
+          if (left === 0) throw new ConnectError("cut", Code.Unavailable);
+          left -= 1;
+          fetched.push(index);
+          yield { picture: {}, chunk: new Uint8Array([index]) };
+        },
+      });
+    });
+    return { calls: new RenderCalls(transport), fetched };
+  }
+  async function bytesOf(pictures: AsyncGenerator<DrawnPicture>): Promise<number[]> {
+    const bytes: number[] = [];
+    for await (const picture of pictures) bytes.push(...picture.bytes);
+    return bytes;
+  }
+  const noDelay = () => new BackOff(() => 0);
+
+  test("a lost connection delays them, and none is fetched twice", async () => {
+    const { calls, fetched } = callsTo([1, 0, 1]);
+    const never = new AbortController().signal;
+    expect(await bytesOf(calls.picturesOfJob("j1", 3, never, noDelay()))).toEqual([0, 1, 2]);
+    expect(fetched).toEqual([0, 1, 2]);
+  });
+
+  test("a picture that failed ends them with its problem", async () => {
+    const failed = {
+      index: 1,
+      state: RenderJobPictureState_State.FAILED,
+      problem: { message: "no storm" },
+    };
+    const { calls } = callsTo([], [drawn[0] as typeof all, failed as never]);
+    const pictures = calls.picturesOfJob("j1", 3, new AbortController().signal, noDelay());
+    await expect(bytesOf(pictures)).rejects.toThrow("picture 2: no storm");
+  });
+
+  test("who gives up waits no longer", async () => {
+    const { calls } = callsTo([0]);
+    const giving = new AbortController();
+    const pictures = calls.picturesOfJob("j1", 3, giving.signal, new BackOff(() => 1));
+    setTimeout(() => giving.abort(), 20);
+    await expect(bytesOf(pictures)).rejects.toThrow();
+  });
 });

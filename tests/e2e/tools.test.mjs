@@ -336,33 +336,61 @@ test("a file that is no scene is refused where it was opened", async () => {
   await page.keyboard.press("Escape");
 });
 
+async function fillMovieForm(format) {
+  await openPanel(page, "keep");
+  await page.getByTestId("keep-movie").locator("summary").click();
+  assert.match(await text("movie-length"), /^4 pictures, 1 s/);
+  await page.getByTestId("movie-size").selectOption("own");
+  await page.getByTestId("movie-size-width").fill("500");
+  await page.getByTestId("movie-size-width").press("Enter");
+  await page.getByTestId("movie-size-height").fill("310");
+  await page.getByTestId("movie-size-height").press("Enter");
+  await page.getByTestId("movie-format").selectOption(format);
+}
+
+async function assertIsTheMovie(download) {
+  const file = await download.path();
+  const probe = execFileSync(
+    "ffprobe",
+    ["-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries", "stream=width,height,nb_read_frames,codec_name", "-of", "json", file],
+    { encoding: "utf8" },
+  );
+  const [stream] = JSON.parse(probe).streams;
+  assert.deepEqual([stream.width, stream.height, stream.nb_read_frames], [500, 310, "4"], probe);
+  await restedAndFits(page);
+  assertLastPictureIs(await grabCanvas(page), file);
+}
+
 for (const format of ["webm", "mp4"])
   test(`a movie of all times as ${format}, by a job of the server`, { timeout: 240_000 }, async () => {
-    await openPanel(page, "keep");
-    await page.getByTestId("keep-movie").locator("summary").click();
-    assert.match(await text("movie-length"), /^4 pictures, 1 s/);
-    await page.getByTestId("movie-size").selectOption("own");
-    await page.getByTestId("movie-size-width").fill("500");
-    await page.getByTestId("movie-size-width").press("Enter");
-    await page.getByTestId("movie-size-height").fill("310");
-    await page.getByTestId("movie-size-height").press("Enter");
-    await page.getByTestId("movie-format").selectOption(format);
+    await fillMovieForm(format);
     const coming = page.waitForEvent("download", { timeout: 200_000 });
     await page.getByTestId("save-movie").click();
     await page.keyboard.press("Escape");
     await page.getByTestId("at-work").waitFor();
-    const download = await coming;
-    const file = await download.path();
-    const probe = execFileSync(
-      "ffprobe",
-      ["-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries", "stream=width,height,nb_read_frames,codec_name", "-of", "json", file],
-      { encoding: "utf8" },
-    );
-    const [stream] = JSON.parse(probe).streams;
-    assert.deepEqual([stream.width, stream.height, stream.nb_read_frames], [500, 310, "4"], probe);
-    await restedAndFits(page);
-    assertLastPictureIs(await grabCanvas(page), file);
+    await assertIsTheMovie(await coming);
   });
+
+test("a reload while a movie is made goes on with it, and the next does not make it again", { timeout: 240_000 }, async () => {
+  await fillMovieForm("webm");
+  const downloads = [];
+  page.on("download", (download) => downloads.push(download));
+  await page.getByTestId("save-movie").click();
+  await page.keyboard.press("Escape");
+  const remembered = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie") || undefined);
+  await until("a movie that outlives the page", remembered);
+  assert.equal(downloads.length, 0);
+  await page.reload();
+  await page.getByTestId("at-work").waitFor();
+  await until("the movie", async () => downloads.length > 0, 200_000);
+  await assertIsTheMovie(downloads[0]);
+  assert.equal(await remembered(), undefined);
+  await page.reload();
+  await restedAndFits(page);
+  assert.equal(downloads.length, 1);
+  assert.equal(await page.getByTestId("at-work").count(), 0);
+  page.removeAllListeners("download");
+});
 
 test("two times are compared with one camera", async () => {
   await openPanel(page, "compare");

@@ -1,13 +1,18 @@
 // Calls for pictures that are kept: one with its progress, or a job of many.
 import { type Client, Code, ConnectError, createClient, type Transport } from "@connectrpc/connect";
+import { BackOff } from "../core/back_off";
 import {
-  type RenderJob,
   RenderJobService,
   RenderJobPictureState_State as State,
 } from "../gen/thunderhead/v1/job_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { RenderImageResponse } from "../gen/thunderhead/v1/thunderhead_pb";
 import { ImageFormat, ThunderheadService } from "../gen/thunderhead/v1/thunderhead_pb";
+import { NETWORK_CODES } from "./network_codes";
+import { retryAfterMs } from "./retry_info";
+
+// Some minutes without a single picture.
+const MAX_ATTEMPTS = 60;
 
 export interface DrawnPicture {
   readonly bytes: Uint8Array<ArrayBuffer>;
@@ -43,35 +48,21 @@ export class RenderCalls {
     throw new ConnectError("the server ended without a picture", Code.Internal);
   }
 
-  // Pictures in the order of the scenes, drawn by a job that goes on if this page is closed; where the server keeps no jobs, one
-  // after the other.
-  async *pictures(
-    scenes: readonly Scene[],
-    label: string,
-    signal: AbortSignal,
-  ): AsyncGenerator<DrawnPicture> {
-    const job = await this.#createJob(scenes, label, signal);
-    if (job === undefined) {
-      for (const scene of scenes)
-        yield await this.picture(scene, ImageFormat.JPEG, signal, () => undefined);
-      return;
-    }
-    try {
-      yield* this.#results(job.id, scenes.length, signal);
-    } finally {
-      // Done or given up: nobody else fetches them.
-      await this.#jobs.cancelRenderJob({ jobId: job.id, forget: true }).catch(() => undefined);
-    }
+  // The scenes' pictures in their order, one after the other.
+  async *pictures(scenes: readonly Scene[], signal: AbortSignal): AsyncGenerator<DrawnPicture> {
+    for (const scene of scenes)
+      yield await this.picture(scene, ImageFormat.JPEG, signal, () => undefined);
   }
 
-  async #createJob(
+  // The id of a job that draws the scenes, and goes on if this page is closed; undefined where the server keeps no jobs.
+  async beginJob(
     scenes: readonly Scene[],
     label: string,
     signal: AbortSignal,
-  ): Promise<RenderJob | undefined> {
+  ): Promise<string | undefined> {
     const pictures = scenes.map((scene) => ({ scene, format: ImageFormat.JPEG }));
     try {
-      return (await this.#jobs.createRenderJob({ label, pictures }, { signal })).job;
+      return (await this.#jobs.createRenderJob({ label, pictures }, { signal })).job?.id;
     } catch (error) {
       const { code } = ConnectError.from(error);
       if (code === Code.FailedPrecondition || code === Code.Unimplemented) return undefined;
@@ -79,14 +70,50 @@ export class RenderCalls {
     }
   }
 
-  async *#results(jobId: string, count: number, signal: AbortSignal): AsyncGenerator<DrawnPicture> {
+  // The job's pictures in their order. A lost connection only delays them.
+  async *picturesOfJob(
+    jobId: string,
+    count: number,
+    signal: AbortSignal,
+    backOff = new BackOff(),
+  ): AsyncGenerator<DrawnPicture> {
     let next = 0;
+    while (next < count) {
+      try {
+        for await (const picture of this.#results(jobId, next, count, signal)) {
+          yield picture;
+          next += 1;
+          backOff.reset();
+        }
+      } catch (error) {
+        const lost = error instanceof ConnectError && NETWORK_CODES.has(error.code);
+        if (signal.aborted || !lost || backOff.attempts === MAX_ATTEMPTS) throw error;
+        await pause(backOff.next(retryAfterMs(error)), signal);
+      }
+    }
+  }
+
+  // Ends the job if it still draws, and drops its pictures.
+  async forgetJob(jobId: string): Promise<void> {
+    await this.#jobs.cancelRenderJob({ jobId, forget: true }).catch(() => undefined);
+  }
+
+  async *#results(
+    jobId: string,
+    first: number,
+    count: number,
+    signal: AbortSignal,
+  ): AsyncGenerator<DrawnPicture> {
+    let next = first;
     const drawn = new Set<number>();
     for await (const { pictures } of this.#jobs.watchRenderJob({ jobId }, { signal })) {
       for (const { index, state, problem } of pictures) {
         if (state === State.DRAWN) drawn.add(index);
         else if (state === State.FAILED || state === State.DROPPED)
-          throw new ConnectError(`picture ${index + 1}: ${problem?.message ?? "it failed"}`);
+          throw new ConnectError(
+            `picture ${index + 1}: ${problem?.message ?? "it failed"}`,
+            Code.FailedPrecondition,
+          );
       }
       while (drawn.has(next)) {
         yield await this.#result(jobId, next, signal);
@@ -117,4 +144,14 @@ function whole(chunks: readonly Uint8Array[]): Uint8Array<ArrayBuffer> {
     at += chunk.length;
   }
   return bytes;
+}
+
+function pause(delayMs: number, signal: AbortSignal): Promise<void> {
+  return new Promise((resolve, reject) => {
+    const timer = setTimeout(resolve, delayMs);
+    signal.addEventListener("abort", () => {
+      clearTimeout(timer);
+      reject(signal.reason);
+    });
+  });
 }

@@ -19,6 +19,7 @@ import type {
 } from "../gen/thunderhead/v1/interact_pb";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { BidiCall, BidiListener, CallEnd } from "./interact_socket";
+import { NETWORK_CODES } from "./network_codes";
 import { reasonOfStatus, retryAfterMs, retryAfterMsOfStatus } from "./retry_info";
 import type { ServerCalls } from "./server_calls";
 
@@ -378,15 +379,6 @@ const NO_WEBSOCKET =
 
 // The server does not know who this is, or that role may not.
 const LOCKED_CODES = new Set<Code>([Code.Unauthenticated, Code.PermissionDenied]);
-
-// Codes of network failures; some servers' failures have the same ones.
-const NETWORK_CODES = new Set<Code>([
-  Code.Unknown,
-  Code.Unavailable,
-  Code.Canceled,
-  Code.DeadlineExceeded,
-  Code.Internal,
-]);
 
 function outcomeOfEnd(end: End): Outcome {
   const message = end.message || "The session has ended";

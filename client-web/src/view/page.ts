@@ -9,7 +9,7 @@ import type { CameraKind, Pose } from "../core/camera";
 import { Marking } from "../core/marking";
 import { type NamedView, NamedViews } from "../core/named_views";
 import type { Later } from "../core/newest";
-import { OwnKeys } from "../core/own_keys";
+import { OwnKeys, type TextStore } from "../core/own_keys";
 import { Participant } from "../core/participant";
 import { Playback } from "../core/playback";
 import { keepPreferences, loadPreferences } from "../core/preferences";
@@ -73,6 +73,7 @@ export class Page {
     window: Window,
     token = new AccessToken(undefined),
     participant = new Participant(undefined),
+    tabStore: TextStore | undefined = undefined,
   ) {
     this.#window = window;
     this.#token = token;
@@ -104,7 +105,7 @@ export class Page {
     this.#map = new StormMap(this.calls, state);
     this.probing = new Probing(this.calls, state);
     this.views = new NamedViews(store, () => state.stormId.peek());
-    this.keeper = new Keeper(transport, state, this.notes, () => this.views.all.peek());
+    this.keeper = new Keeper(transport, state, this.notes, () => this.views.all.peek(), tabStore);
     this.addresses = new Addresses(window, state, keys);
     this.addresses.adoptPresentersLink();
     this.#life = new SessionLife({
@@ -360,6 +361,12 @@ export class Page {
     window.addEventListener("online", () => this.#client.retryNow(), options);
     window.document.addEventListener("visibilitychange", () => this.#life.sendWindow(), options);
     this.keeper.listen(window, options);
+    this.#disposals.push(
+      effect(() => {
+        const id = this.state.storm.value?.id;
+        if (id !== undefined) untracked(() => this.keeper.resumeMovie(id));
+      }),
+    );
     const stillHere = setInterval(() => {
       if (!window.document.hidden) this.#life.sendWindow();
     }, STILL_HERE_EVERY_MS);

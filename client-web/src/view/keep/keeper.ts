@@ -4,7 +4,9 @@ import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
 import { type PictureSize, poseOfCamera } from "../../core/camera";
 import { type MovieDraft, movieScenes } from "../../core/movie_plan";
+import { type MovieWork, RememberedMovie } from "../../core/movie_work";
 import type { NamedView } from "../../core/named_views";
+import type { TextStore } from "../../core/own_keys";
 import { projectionOf } from "../../core/projection";
 import { outputSize, withOutput } from "../../core/scene";
 import { sceneOfFile, sceneToText, withScene } from "../../core/scene_file";
@@ -32,7 +34,10 @@ export class Keeper {
   readonly #state: PageState;
   readonly #notes: Notes;
   readonly #views: () => readonly NamedView[];
+  readonly #remembered: RememberedMovie;
   #working: AbortController | undefined;
+  // The file that is being made is not lost with the page.
+  #outlivesPage = false;
   // The file being made; undefined if none is.
   readonly work = signal<Work | undefined>(undefined);
 
@@ -41,11 +46,14 @@ export class Keeper {
     state: PageState,
     notes: Notes,
     views: () => readonly NamedView[],
+    // Of this tab alone.
+    tabStore: TextStore | undefined,
   ) {
     this.#calls = new RenderCalls(transport);
     this.#state = state;
     this.#notes = notes;
     this.#views = views;
+    this.#remembered = new RememberedMovie(tabStore);
   }
 
   listen(window: Window, options: { readonly signal: AbortSignal }): void {
@@ -64,7 +72,7 @@ export class Keeper {
     window.addEventListener(
       "beforeunload",
       (event) => {
-        if (this.work.peek() !== undefined) event.preventDefault();
+        if (this.work.peek() !== undefined && !this.#outlivesPage) event.preventDefault();
       },
       options,
     );
@@ -82,7 +90,7 @@ export class Keeper {
     return this.#make("Picture", async (abort, progress) => {
       const scene = withOutput(this.sceneShown(), outputSize(widthPx, heightPx, 1));
       const picture = await this.#calls.picture(scene, ImageFormat.PNG, abort, progress);
-      const canvas = await this.#annotate(picture, scene);
+      const canvas = await this.#annotate(picture);
       const blob = await canvas.convertToBlob({ type: "image/png" });
       const file = withScene(new Uint8Array(await blob.arrayBuffer()), scene);
       if (file !== undefined) this.#download(file, "png", "image/png");
@@ -109,24 +117,64 @@ export class Keeper {
 
   saveMovie(draft: MovieDraft): Promise<void> {
     return this.#make("Movie", async (abort, progress) => {
-      const { startMovie } = await import("./movie_file");
       const scenes = movieScenes(this.sceneShown(), draft, this.#views());
-      const movie = await startMovie(draft);
-      try {
-        let done = 0;
-        const label = `movie of ${this.#state.stormId.peek()}`;
-        for await (const picture of this.#calls.pictures(scenes, label, abort)) {
-          const scene = scenes[done];
-          if (scene !== undefined) await movie.add(await this.#annotate(picture, scene));
-          done += 1;
-          progress(done / scenes.length);
-        }
-        this.#download(await movie.finish(), draft.format, `video/${draft.format}`);
-      } catch (error) {
-        await movie.cancel();
-        throw error;
+      const stormId = this.#state.stormId.peek();
+      const jobId = await this.#calls.beginJob(scenes, `movie of ${stormId}`, abort);
+      if (jobId === undefined) {
+        const pictures = this.#calls.pictures(scenes, abort);
+        return this.#writeMovie(draft, pictures, scenes.length, progress);
       }
+      const work = { jobId, pictures: scenes.length, draft, stormId };
+      this.#outlivesPage = this.#remembered.remember(work);
+      await this.#writeMovieOfJob(work, abort, progress);
     });
+  }
+
+  // Goes on with the movie that a reload interrupted, once its storm is shown.
+  resumeMovie(stormId: string): void {
+    const work = this.#remembered.work;
+    if (work?.stormId !== stormId || this.#working !== undefined) return;
+    void this.#make("Movie", (abort, progress) => {
+      this.#outlivesPage = true;
+      return this.#writeMovieOfJob(work, abort, progress);
+    });
+  }
+
+  async #writeMovieOfJob(
+    { jobId, pictures, draft }: MovieWork,
+    abort: AbortSignal,
+    progress: (share: number) => void,
+  ): Promise<void> {
+    try {
+      const drawn = this.#calls.picturesOfJob(jobId, pictures, abort);
+      await this.#writeMovie(draft, drawn, pictures, progress);
+    } finally {
+      // Done or given up: nobody else fetches them.
+      this.#remembered.forget();
+      await this.#calls.forgetJob(jobId);
+    }
+  }
+
+  async #writeMovie(
+    draft: MovieDraft,
+    pictures: AsyncGenerator<DrawnPicture>,
+    count: number,
+    progress: (share: number) => void,
+  ): Promise<void> {
+    const { startMovie } = await import("./movie_file");
+    const movie = await startMovie(draft);
+    try {
+      let done = 0;
+      for await (const picture of pictures) {
+        await movie.add(await this.#annotate(picture));
+        done += 1;
+        progress(done / count);
+      }
+      this.#download(await movie.finish(), draft.format, `video/${draft.format}`);
+    } catch (error) {
+      await movie.cancel();
+      throw error;
+    }
   }
 
   async #make(
@@ -148,6 +196,7 @@ export class Keeper {
       this.#notes.problem("keep", `${what} not saved: ${why}`);
     } finally {
       this.#working = undefined;
+      this.#outlivesPage = false;
       this.work.value = undefined;
     }
   }
@@ -160,7 +209,7 @@ export class Keeper {
     return own === undefined ? scene : { ...scene, camera: own };
   }
 
-  async #annotate({ bytes, drawn }: DrawnPicture, scene: Scene): Promise<OffscreenCanvas> {
+  async #annotate({ bytes, drawn }: DrawnPicture): Promise<OffscreenCanvas> {
     const bitmap = await createImageBitmap(new Blob([bytes]));
     const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
     const context = canvas.getContext("2d");
@@ -174,7 +223,7 @@ export class Keeper {
     const content = annotated(this.#state, {
       projection,
       pose: poseOfCamera(drawn.scene?.camera),
-      timeIndex: scene.timeIndex,
+      timeIndex: drawn.scene?.timeIndex,
     });
     if (content !== undefined) drawAnnotations(context, content, choice, canvas);
     return canvas;
