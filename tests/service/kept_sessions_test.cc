@@ -298,12 +298,14 @@ TEST_F(KeptSessionsTest, ChangesAreSavedWhileTheServerRunsAndOnlyThey) {
   const int saves = store_->Saves();
   std::this_thread::sleep_for(3 * session::SessionKeeper::kPause);
   EXPECT_EQ(store_->Saves(), saves) << "nothing has changed";
-  // A drag of many scenes is few saves.
+  // A drag of many scenes is few saves: one in each pause, however slow the machine is.
+  const auto began = std::chrono::steady_clock::now();
   for (int i = 0; i < 100; ++i) {
     TurnSun(created.session_id(), static_cast<float>(i));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_LE(store_->Saves() - saves, 5);
+  const auto pauses = (std::chrono::steady_clock::now() - began) / session::SessionKeeper::kPause;
+  EXPECT_LE(store_->Saves() - saves, pauses + 2);
 }
 
 TEST_F(KeptSessionsTest, RevisionsGoOnOverSeveralRestarts) {

@@ -171,7 +171,7 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
   EXPECT_EQ(Start("sequence", "run", {"--times", "99"})->Wait().code, 64);
   size_ = "1920x1080";
   const auto client = Start("sequence", "run");
-  std::this_thread::sleep_for(milliseconds(700));
+  ASSERT_TRUE(EventuallyTrue([&] { return Made() >= 1; })) << Errors();
   client->Signal(SIGTERM);
   EXPECT_EQ(client->Wait().code, 75) << Errors();
   EXPECT_THAT(Errors(), HasSubstr("the same command goes on"));
