@@ -99,6 +99,10 @@ grpc::Status FakeService::CreateSession(grpc::ServerContext* /*context*/,
                                         const v1::CreateSessionRequest* request,
                                         v1::CreateSessionResponse* response) {
   const std::lock_guard lock(mutex_);
+  if (answer_opening) {
+    const grpc::Status status = answer_opening(request->scene());
+    if (!status.ok()) return status;
+  }
   ++opened_;
   forgets_sessions = false;
   response->set_session_id(kPresenterKey);

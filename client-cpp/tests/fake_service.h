@@ -50,6 +50,8 @@ class FakeService final : public v1::ThunderheadService::Service {
   // revision.
   std::function<v1::InteractResponse(const v1::InteractRequest&)> answer_scene;
   bool answers_scenes = true;
+  // The answer to a scene to open a session with; by default it is taken.
+  std::function<grpc::Status(const v1::Scene&)> answer_opening;
   bool forgets_sessions = false;  // joins end with NOT_FOUND until another session is opened
 
   static constexpr char kPresenterKey[] = "presenter-key";

@@ -206,6 +206,21 @@ TEST_F(SessionTest, OpensANewSessionWhenTheServerHasLostItsOwn) {
   EXPECT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
 }
 
+TEST_F(SessionTest, BeginsAnewWhereTheStormIsGoneToo) {
+  Steer();
+  session->Edit([](v1::Scene& scene) { scene.set_storm_id("gone"); });
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
+  service.answer_opening = [](const v1::Scene& scene) {
+    return scene.storm_id() == "gone"
+               ? grpc::Status(grpc::StatusCode::NOT_FOUND, "no storm has the id 'gone'")
+               : grpc::Status::OK;
+  };
+  service.forgets_sessions = true;
+  service.EndCall(grpc::Status::OK);
+  EXPECT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+  EXPECT_THAT(session->State().notice, ::testing::HasSubstr("no storm has the id 'gone'"));
+}
+
 TEST_F(SessionTest, SomebodyElsesSessionThatEndedIsGone) {
   SessionOptions options;
   options.key = FakeService::kViewerKey;

@@ -18,6 +18,10 @@ bool IsLocked(grpc::StatusCode code) {
   return code == grpc::StatusCode::UNAUTHENTICATED || code == grpc::StatusCode::PERMISSION_DENIED;
 }
 
+bool RefusesScene(grpc::StatusCode code) {
+  return code == grpc::StatusCode::NOT_FOUND || code == grpc::StatusCode::INVALID_ARGUMENT;
+}
+
 }  // namespace
 
 Session::Session(std::shared_ptr<const Connection> connection, SessionOptions options,
@@ -125,8 +129,16 @@ std::optional<Session::Outcome> Session::Open() {
     }
   }
   v1::CreateSessionResponse response;
-  const grpc::Status status =
-      connection_->Call(&Stub::CreateSession, request, &response, kPatience);
+  grpc::Status status = connection_->Call(&Stub::CreateSession, request, &response, kPatience);
+  const std::string refusal = status.error_message();
+  const bool began_anew = RefusesScene(status.error_code());
+  if (began_anew) {
+    // Its storm or time may be gone: the server's own first scene, at this window's size.
+    v1::Scene plain;
+    *plain.mutable_output() = request.scene().output();
+    *request.mutable_scene() = std::move(plain);
+    status = connection_->Call(&Stub::CreateSession, request, &response, kPatience);
+  }
   if (!status.ok()) {
     const Link link = IsLocked(status.error_code()) ? Link::kRefused : Link::kLost;
     return Outcome{link, connection_->Explain(status), RetryAfter(status)};
@@ -135,6 +147,7 @@ std::optional<Session::Outcome> Session::Open() {
   key_ = response.session_id();
   state_.presenter_key = key_;
   opened_ = opens_sessions_ = true;
+  if (began_anew) Say(refusal + "; this is a new session without that scene");
   return {};
 }
 

@@ -61,6 +61,33 @@ void ChoiceSetting(Ui& ui, const Parameter& parameter, const char* label) {
   ui.Edit(parameter.path, [=](v1::Scene& scene) { client::SetNumber(scene, parameter, value); });
 }
 
+// A field to type in: true when its value is entered, or left by Tab or a click. ImGui keeps no
+// value between frames, so what has been typed so far is kept here, of the one field that has the
+// keys.
+template <typename Value, typename Draw>
+bool TypeInto(const char* id, Value& value, const Draw& draw) {
+  static ImGuiID field = 0;
+  static Value typed{};
+  const ImGuiID here = ImGui::GetID(id);
+  Value now = field == here ? typed : value;
+  draw(id, &now);
+  const bool entered = ImGui::IsItemDeactivatedAfterEdit();
+  if (ImGui::IsItemActive()) {
+    field = here;
+    typed = now;
+  } else if (field == here) {
+    field = 0;
+  }
+  if (entered) value = now;
+  return entered;
+}
+
+bool TypedNumber(const std::string& format, double& value) {
+  return TypeInto("##number", value, [&](const char* id, double* number) {
+    ImGui::InputDouble(id, number, 0.0, 0.0, format.c_str());
+  });
+}
+
 void TextSetting(Ui& ui, const Parameter& parameter, const char* label) {
   constexpr std::size_t kMaxBytes = 256;
   std::string text = client::TextIn(ui.state.scene, parameter);
@@ -115,9 +142,7 @@ bool Slider(const char* label, const Limits& limits, double& value) {
                                      "", flags | ImGuiSliderFlags_NoInput);
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1.0F);
-  changed |= ImGui::InputDouble("##number", &shown, 0.0, 0.0, format.c_str(),
-                                ImGuiInputTextFlags_EnterReturnsTrue);
-  changed |= ImGui::IsItemDeactivatedAfterEdit();
+  changed |= TypedNumber(format, shown);
   ImGui::PopID();
   if (changed) value = client::Clamp(shown / unit.factor, limits);
   return changed;
@@ -129,12 +154,10 @@ bool NumberField(const char* label, const Limits& limits, double& value) {
   double shown = value * unit.factor;
   BeginLine(label);
   ImGui::PushID(label);
-  const bool changed = ImGui::InputDouble("##number", &shown, 0.0, 0.0, format.c_str(),
-                                          ImGuiInputTextFlags_EnterReturnsTrue);
-  const bool left = ImGui::IsItemDeactivatedAfterEdit();
+  const bool changed = TypedNumber(format, shown);
   ImGui::PopID();
-  if (changed || left) value = client::Clamp(shown / unit.factor, limits);
-  return changed || left;
+  if (changed) value = client::Clamp(shown / unit.factor, limits);
+  return changed;
 }
 
 bool Segments(const char* id, const std::vector<const char*>& labels, int& chosen) {
@@ -189,11 +212,11 @@ bool Choice(const char* label, const std::vector<std::pair<int, std::string>>& o
 bool TextField(const char* label, std::string& text, std::size_t most_bytes) {
   BeginLine(label);
   ImGui::PushID(label);
-  const bool entered = ImGui::InputText("##text", &text, ImGuiInputTextFlags_EnterReturnsTrue);
-  const bool left = ImGui::IsItemDeactivatedAfterEdit();
+  const bool entered = TypeInto(
+      "##text", text, [](const char* id, std::string* typed) { ImGui::InputText(id, typed); });
   ImGui::PopID();
   if (text.size() > most_bytes) text.resize(most_bytes);
-  return entered || left;
+  return entered;
 }
 
 bool AccentButton(const char* label) {

@@ -18,6 +18,8 @@ ScreenPoint PointOf(int x, int y) { return {static_cast<float>(x), static_cast<f
 void PointerInput::SetTool(const ToolSteps* tool) {
   if (tool == tool_) return;
   if (draws_) EndDrag(true);
+  if (hovers_ && tool_ != nullptr) tool_->hover({});
+  hovers_ = false;
   tool_ = tool;
 }
 

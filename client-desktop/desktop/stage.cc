@@ -39,7 +39,9 @@ Stage::Stage(Ui& ui) : ui_(ui) {
   };
   pointer_.press = points;
   pointer_.drag = points;
-  pointer_.release = [](bool) {};
+  pointer_.release = [points](bool cancelled) {
+    if (cancelled) points({});
+  };
   pointer_.hover = points;
 }
 

@@ -3,6 +3,7 @@
 
 #include "desktop/history.h"
 #include "desktop/keyboard.h"
+#include "desktop/kiosk.h"
 #include "desktop/pointer_input.h"
 #include "desktop/texts.h"
 #include "gtest/gtest.h"
@@ -201,6 +202,30 @@ TEST(Texts, AreThePages) {
   EXPECT_EQ(CompassPoint(22.0), "NNE");
   EXPECT_EQ(DescribePose(OrbitPose{{}, 200.0, 4.0, 61'000.0, 35.0}),
             "Seen from SSW (200°), 4° high, 61 km away");
+}
+
+TEST(KioskView, IsLaidOverTheSceneWithoutDoublingItsLists) {
+  v1::Scene scene;
+  scene.set_storm_id("run");
+  scene.set_time_index(3);
+  scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(10.0);
+  for (const auto name : {v1::HYDROMETEOR_CLOUD, v1::HYDROMETEOR_RAIN}) {
+    scene.add_fields()->set_hydrometeor(name);
+  }
+  scene.add_lights();
+  v1::Scene view;
+  view.add_fields()->set_hydrometeor(v1::HYDROMETEOR_RAIN);
+  view.add_lights();
+  view.mutable_camera()->mutable_top_down();
+  for (int cycle = 0; cycle < 3; ++cycle) LayView(view, scene);
+  ASSERT_EQ(scene.fields_size(), 1);
+  EXPECT_EQ(scene.fields(0).hydrometeor(), v1::HYDROMETEOR_RAIN);
+  EXPECT_EQ(scene.lights_size(), 1);
+  EXPECT_TRUE(scene.camera().has_top_down());
+  EXPECT_EQ(scene.time_index(), 3);
+  view.set_storm_id("another");
+  LayView(view, scene);
+  EXPECT_FALSE(scene.has_time_index());
 }
 
 }  // namespace

@@ -132,6 +132,20 @@ test("every tool and panel opens by its key and closes by Escape", async () => {
   }
 });
 
+test("a number that is typed and left by Tab counts", async () => {
+  display.key("m");
+  await sleep(500);
+  // The field beside "Seen from".
+  await display.click(366, 214);
+  display.key("ctrl+a");
+  display.xdotool("type", "--delay", 80, "123");
+  display.screenshot("typing");
+  display.key("Tab");
+  await desktop.until("the typed azimuth", (now) => rests(now) && apart(now.azimuth_deg, 123) < 0.5);
+  display.key("Escape");
+  display.key("Escape");
+});
+
 test("a browser joins as a viewer and follows", async () => {
   const browser = await launchBrowser();
   try {

@@ -37,12 +37,12 @@ std::string AccuracyText(const v1::Frame& frame) {
                          100.0F * frame.accuracy().estimated_error());
 }
 
+// Its right upper corner is at `at`; the next one's is below it.
 void Notice(const Layout& layout, const char* id, const std::string& text, const ImVec4& color,
-            float& y) {
+            ImVec2& at) {
   if (text.empty()) return;
-  const float width =
-      std::min(440.0F / 12.0F * layout.margin, layout.window.x - 2.0F * layout.margin);
-  ImGui::SetNextWindowPos({layout.window.x - layout.margin, y}, ImGuiCond_Always, {1.0F, 0.0F});
+  const float width = std::min(440.0F / 12.0F * layout.margin, at.x - layout.margin);
+  ImGui::SetNextWindowPos(at, ImGuiCond_Always, {1.0F, 0.0F});
   if (ImGui::Begin(id, nullptr, kFlags)) {
     ImGui::PushStyleColor(ImGuiCol_Text, color);
     ImGui::PushTextWrapPos(width);
@@ -50,16 +50,16 @@ void Notice(const Layout& layout, const char* id, const std::string& text, const
     ImGui::PopTextWrapPos();
     ImGui::PopStyleColor();
   }
-  y += ImGui::GetWindowHeight() + 0.5F * layout.margin;
+  at.y += ImGui::GetWindowHeight() + 0.5F * layout.margin;
   ImGui::End();
 }
 
 }  // namespace
 
 void DrawAccuracy(Ui& ui, const Layout& layout) {
-  float y = layout.top();
+  ImVec2 at(layout.window.x - layout.margin, layout.top());
   if (ui.choices.panel != Panel::kNone) return;
-  Notice(layout, "accuracy", AccuracyText(ui.frame), ImGui::GetStyle().Colors[ImGuiCol_Text], y);
+  Notice(layout, "accuracy", AccuracyText(ui.frame), ImGui::GetStyle().Colors[ImGuiCol_Text], at);
 }
 
 void DrawNotices(Ui& ui, const Layout& layout) {
@@ -70,14 +70,18 @@ void DrawNotices(Ui& ui, const Layout& layout) {
     said_at = Clock::now();
   }
   const bool open = ui.choices.panel != Panel::kNone;
-  float y =
-      open || AccuracyText(ui.frame).empty() ? layout.top() : layout.top() + 4.2F * layout.margin;
-  if (open) return;
-  if (ui.state.link != client::Link::kLive) Notice(layout, "link", ui.state.reason, kBad, y);
-  if (ui.state.problem) Notice(layout, "problem", ui.state.problem->message(), kBad, y);
-  Notice(layout, "failure", ui.failure, kBad, y);
+  // Beside a panel that is open, below the accuracy otherwise.
+  ImVec2 at(layout.window.x - layout.margin, layout.top());
+  if (open) {
+    at.x -= layout.panel_width() + layout.margin;
+  } else if (!AccuracyText(ui.frame).empty()) {
+    at.y += 4.2F * layout.margin;
+  }
+  if (ui.state.link != client::Link::kLive) Notice(layout, "link", ui.state.reason, kBad, at);
+  if (ui.state.problem) Notice(layout, "problem", ui.state.problem->message(), kBad, at);
+  Notice(layout, "failure", ui.failure, kBad, at);
   if (ui.state.notice_count > 0 && Clock::now() - said_at < kStays) {
-    Notice(layout, "notice", ui.state.notice, kAccent, y);
+    Notice(layout, "notice", ui.state.notice, kAccent, at);
   }
 }
 

@@ -18,6 +18,7 @@ struct Layout {
   ImVec2 window;
 
   static Layout Of(const Ui& ui);
+  float panel_width() const { return 400.0F / 330.0F * tool_width; }  // of one at the right
   // Below the bar, above the time line.
   float top() const { return 2.0F * margin + bar_height; }
   float bottom() const { return window.y - 2.0F * margin - line_height; }

@@ -32,7 +32,7 @@ constexpr std::array<PanelText, 5> kPanels{{
 void DrawPanel(Ui& ui, const Layout& layout) {
   for (const PanelText& each : kPanels) {
     if (each.panel != ui.choices.panel) continue;
-    const float width = 400.0F / 330.0F * layout.tool_width;
+    const float width = layout.panel_width();
     const float most = layout.bottom() - layout.top();
     ImGui::SetNextWindowSizeConstraints({width, 0.0F}, {width, most});
     const ImVec2 place(layout.window.x - layout.margin - width, layout.top());
