@@ -166,6 +166,8 @@ test("a browser joins as a viewer and follows", async () => {
     await display.click(265, 128);
     await display.drag({ x: 640, y: 380 }, { x: 820, y: 420 });
     await desktop.until("a mark", (now) => now.marks === 1);
+    const marksInBrowser = () => page.getByTestId("mark").count();
+    await until("the mark in the browser", async () => (await marksInBrowser()) === 1);
     display.screenshot("mark");
     display.key("Escape");
     display.key("Escape");
@@ -179,9 +181,19 @@ test("a browser joins as a viewer and follows", async () => {
     await display.click(give.x, give.y);
     await desktop.until("gave control", (now) => !now.steers);
     const turnedBefore = desktop.status().azimuth_deg;
-    await openTool(page, undefined).catch(() => {});
     await dragBetween(page, { x: 620, y: 300 }, { x: 720, y: 300 });
     await desktop.until("the window follows the browser", (now) => apart(now.azimuth_deg, turnedBefore) > 5);
+    await openTool(page, "marks");
+    await page.getByTestId("tool-pen").click();
+    await dragBetween(page, { x: 500, y: 300 }, { x: 640, y: 330 });
+    await desktop.until("the browser's mark", (now) => now.marks === 2);
+    await page.getByTestId("tool-pointer").click();
+    await page.mouse.move(600, 320);
+    await desktop.until("the browser's pointer", (now) => now.pointers === 1);
+    display.screenshot("browsers_pointer");
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("Escape");
+    await desktop.until("the pointer put away", (now) => now.pointers === 0);
   } finally {
     await browser.close();
   }
