@@ -98,11 +98,11 @@ void FakeService::EndCall(const grpc::Status& status) {
 grpc::Status FakeService::CreateSession(grpc::ServerContext* /*context*/,
                                         const v1::CreateSessionRequest* request,
                                         v1::CreateSessionResponse* response) {
-  const std::lock_guard lock(mutex_);
   if (answer_opening) {
     const grpc::Status status = answer_opening(request->scene());
     if (!status.ok()) return status;
   }
+  const std::lock_guard lock(mutex_);
   ++opened_;
   forgets_sessions = false;
   response->set_session_id(kPresenterKey);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <future>
 
 #include "client-cpp/tests/fake_service.h"
 #include "gmock/gmock.h"
@@ -219,6 +220,22 @@ TEST_F(SessionTest, BeginsAnewWhereTheStormIsGoneToo) {
   service.EndCall(grpc::Status::OK);
   EXPECT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
   EXPECT_THAT(session->State().notice, ::testing::HasSubstr("no storm has the id 'gone'"));
+}
+
+TEST_F(SessionTest, EndsWithoutWaitingForAServerThatHangs) {
+  std::promise<void> asked;
+  std::promise<void> over;
+  service.answer_opening = [&](const v1::Scene&) {
+    asked.set_value();
+    over.get_future().wait();
+    return grpc::Status::OK;
+  };
+  session = std::make_unique<Session>(service.Connect(), SessionOptions(), listener);
+  asked.get_future().wait();
+  const auto began = std::chrono::steady_clock::now();
+  session.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
+  over.set_value();
 }
 
 TEST_F(SessionTest, SomebodyElsesSessionThatEndedIsGone) {

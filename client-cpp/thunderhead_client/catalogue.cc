@@ -22,6 +22,7 @@ Catalogue::~Catalogue() {
     const std::lock_guard lock(mutex_);
     ends_ = true;
   }
+  calls_.Cancel();
   changed_.notify_all();
   thread_.join();
 }
@@ -71,10 +72,13 @@ void Catalogue::Run() {
 void Catalogue::Learn() {
   v1::ListStormsResponse storms;
   const bool listed =
-      connection_->Call(&Stub::ListStorms, v1::ListStormsRequest(), &storms, kPatience).ok();
+      connection_->Call(&Stub::ListStorms, v1::ListStormsRequest(), &storms, kPatience, calls_)
+          .ok();
   v1::GetServerInfoResponse server;
   const bool told =
-      connection_->Call(&Stub::GetServerInfo, v1::GetServerInfoRequest(), &server, kPatience).ok();
+      connection_
+          ->Call(&Stub::GetServerInfo, v1::GetServerInfoRequest(), &server, kPatience, calls_)
+          .ok();
   const std::lock_guard lock(mutex_);
   if (listed) state_.storms = std::move(storms);
   if (told) state_.server = std::move(server);
@@ -88,7 +92,8 @@ void Catalogue::LearnStorm(const StormTime& wanted) {
   request.set_storm_id(wanted.first);
   request.set_time_index(wanted.second);
   v1::DescribeStormResponse response;
-  const bool ok = connection_->Call(&Stub::DescribeStorm, request, &response, kPatience).ok();
+  const bool ok =
+      connection_->Call(&Stub::DescribeStorm, request, &response, kPatience, calls_).ok();
   const std::lock_guard lock(mutex_);
   if (!ok) return;
   state_.storm = std::move(*response.mutable_storm());

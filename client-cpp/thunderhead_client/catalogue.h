@@ -48,6 +48,7 @@ class Catalogue {
   void LearnStorm(const StormTime& wanted);
 
   const std::shared_ptr<const Connection> connection_;
+  Canceller calls_;
   const std::function<void()> changed_listener_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -53,6 +53,25 @@ std::string Unreachable(const std::string& address) {
 
 }  // namespace
 
+void Canceller::Cancel() {
+  const std::lock_guard lock(mutex_);
+  cancelled_ = true;
+  for (grpc::ClientContext* const context : running_) context->TryCancel();
+}
+
+Canceller::Running::Running(Canceller& canceller, grpc::ClientContext& context)
+    : canceller_(canceller), context_(context) {
+  const std::lock_guard lock(canceller_.mutex_);
+  canceller_.running_.insert(&context_);
+  // Before the call has begun, that ends it as soon as it does.
+  if (canceller_.cancelled_) context_.TryCancel();
+}
+
+Canceller::Running::~Running() {
+  const std::lock_guard lock(canceller_.mutex_);
+  canceller_.running_.erase(&context_);
+}
+
 absl::StatusOr<std::shared_ptr<Connection>> Connection::Open(ServerAccess access) {
   if (const absl::Status status = CheckAddress(access.address); !status.ok()) return status;
   auto credentials = grpc::InsecureChannelCredentials();

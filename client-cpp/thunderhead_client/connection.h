@@ -5,6 +5,8 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 
 #include "absl/status/status.h"
@@ -18,6 +20,35 @@ struct ServerAccess {
   std::string address;      // HOST:PORT of the server's gRPC port
   std::string tls_ca_file;  // PEM of who vouches for its certificate; empty: no encryption
   std::string token_file;   // a bearer token, read again for each call; empty: none
+};
+
+// Ends unary calls from another thread: whoever makes calls can be destroyed without waiting for a
+// server that does not answer.
+class Canceller {
+ public:
+  // Cancels what runs; every later call ends at once.
+  void Cancel();
+
+ private:
+  friend class Connection;
+  class Running;
+
+  std::mutex mutex_;
+  bool cancelled_ = false;
+  std::set<grpc::ClientContext*> running_;
+};
+
+// A call of a canceller, while it runs.
+class Canceller::Running {
+ public:
+  Running(Canceller& canceller, grpc::ClientContext& context);
+  ~Running();
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+
+ private:
+  Canceller& canceller_;
+  grpc::ClientContext& context_;
 };
 
 class Connection {
@@ -42,11 +73,12 @@ class Connection {
   // Adds the token. An error if its file cannot be read.
   absl::Status Authorize(grpc::ClientContext& context) const;
 
-  // Calls one unary rpc: Call(&Stub::ListStorms, request, &response, patience).
+  // Calls one unary rpc: Call(&Stub::ListStorms, request, &response, patience, canceller).
   template <typename Method, typename Request, typename Response>
   grpc::Status Call(Method method, const Request& request, Response* response,
-                    std::chrono::milliseconds patience) const {
+                    std::chrono::milliseconds patience, Canceller& canceller) const {
     grpc::ClientContext context;
+    const Canceller::Running running(canceller, context);
     if (const absl::Status status = Authorize(context); !status.ok()) {
       return {grpc::StatusCode::UNAUTHENTICATED, std::string(status.message())};
     }

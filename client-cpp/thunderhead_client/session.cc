@@ -40,6 +40,7 @@ Session::~Session() {
     ends_ = true;
     if (call_ != nullptr) call_->context.TryCancel();
   }
+  calls_.Cancel();
   changed_.notify_all();
   runner_.join();
 }
@@ -129,7 +130,8 @@ std::optional<Session::Outcome> Session::Open() {
     }
   }
   v1::CreateSessionResponse response;
-  grpc::Status status = connection_->Call(&Stub::CreateSession, request, &response, kPatience);
+  grpc::Status status =
+      connection_->Call(&Stub::CreateSession, request, &response, kPatience, calls_);
   const std::string refusal = status.error_message();
   const bool began_anew = RefusesScene(status.error_code());
   if (began_anew) {
@@ -137,7 +139,7 @@ std::optional<Session::Outcome> Session::Open() {
     v1::Scene plain;
     *plain.mutable_output() = request.scene().output();
     *request.mutable_scene() = std::move(plain);
-    status = connection_->Call(&Stub::CreateSession, request, &response, kPatience);
+    status = connection_->Call(&Stub::CreateSession, request, &response, kPatience, calls_);
   }
   if (!status.ok()) {
     const Link link = IsLocked(status.error_code()) ? Link::kRefused : Link::kLost;
@@ -266,8 +268,8 @@ void Session::Watch(Call& call) {
     }
     lock.unlock();
     v1::GetServerInfoResponse response;
-    const grpc::Status status =
-        connection_->Call(&Stub::GetServerInfo, v1::GetServerInfoRequest(), &response, kCheck);
+    const grpc::Status status = connection_->Call(&Stub::GetServerInfo, v1::GetServerInfoRequest(),
+                                                  &response, kCheck, calls_);
     lock.lock();
     const bool reached = status.error_code() != grpc::StatusCode::UNAVAILABLE &&
                          status.error_code() != grpc::StatusCode::DEADLINE_EXCEEDED;

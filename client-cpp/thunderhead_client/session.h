@@ -121,6 +121,7 @@ class Session {
   void Touch();
 
   const std::shared_ptr<const Connection> connection_;
+  Canceller calls_;
   const SessionOptions options_;
   SessionListener& listener_;
   BackOff back_off_;  // of the runner alone
