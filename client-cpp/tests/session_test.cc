@@ -250,6 +250,9 @@ TEST_F(SessionTest, SomebodyElsesSessionThatEndedIsGone) {
   ASSERT_TRUE(listener.Await([&] { return session->State().link == Link::kGone; }));
   EXPECT_EQ(session->State().reason, "closed by the presenter");
   EXPECT_EQ(service.opened(), 0);
+  session->OpenAnother();
+  ASSERT_TRUE(listener.Await([&] { return session->State().link == Link::kLive; }));
+  EXPECT_EQ(service.opened(), 1);
 }
 
 TEST_F(SessionTest, WhoDoesNotSteerLooksAroundAndFollowsAgain) {

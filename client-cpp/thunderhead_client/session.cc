@@ -91,12 +91,16 @@ void Session::Settle(const Outcome& outcome) {
   if (outcome.link != Link::kGone) return;
   const bool reopens = (opens_sessions_ && outcome.forgotten) || options_.never_gives_up;
   if (!reopens) return;
+  LeaveSession();
+  state_.notice = "The server had lost the session; this is a new one with the same scene.";
+  ++state_.notice_count;
+}
+
+void Session::LeaveSession() {
   key_.clear();
   participant_key_.clear();
   state_.presenter_key.clear();
   state_.marks.Clear();
-  state_.notice = "The server had lost the session; this is a new one with the same scene.";
-  ++state_.notice_count;
 }
 
 bool Session::Wait(const Outcome& outcome, std::chrono::milliseconds delay) {

@@ -90,6 +90,8 @@ class Session {
   void SetRules(const v1::SessionRules& rules);
   // Ends the wait before the next attempt.
   void RetryNow();
+  // After the session has ended: opens one of its own with the same scene.
+  void OpenAnother();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -115,6 +117,8 @@ class Session {
   void TakeScene(Call& call, const v1::SceneTaken& taken, std::unique_lock<std::mutex>& lock);
   bool Wait(const Outcome& outcome, std::chrono::milliseconds delay);
   void Settle(const Outcome& outcome);
+  // Forgets the session, so that the next attempt opens another one.
+  void LeaveSession();
   void Say(const std::string& notice);
   // Both need mutex_.
   void Send(v1::InteractRequest request);

@@ -159,4 +159,13 @@ void Session::RetryNow() {
   changed_.notify_all();
 }
 
+void Session::OpenAnother() {
+  const std::lock_guard lock(mutex_);
+  if (state_.link != Link::kGone) return;
+  LeaveSession();
+  state_.looks_around = false;
+  retry_now_ = true;
+  changed_.notify_all();
+}
+
 }  // namespace thunderhead::client

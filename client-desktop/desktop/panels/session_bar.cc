@@ -53,12 +53,30 @@ void Asking(Ui& ui) {
   }
 }
 
+bool HasCompany(const client::SessionState& state) {
+  if (state.link != client::Link::kLive || state.presence.people().empty()) return false;
+  return !state.Alone() || !state.Steers();
+}
+
+// Who steers, and what can be done about it.
+void People(Ui& ui) {
+  ImGui::TextUnformatted(WhoSteers(ui.state).c_str());
+  ImGui::SameLine();
+  ControlButton(ui);
+  Asking(ui);
+  if (!ui.state.looks_around) return;
+  ImGui::SameLine(0.0F, 20.0F * ui.scale);
+  QuietLine("You look around");
+  ImGui::SameLine();
+  if (AccentButton("Back to presenter")) ui.session.Follow();
+}
+
 }  // namespace
 
 void DrawSessionBar(Ui& ui, const Layout& layout) {
   const client::SessionState& state = ui.state;
-  if (state.link != client::Link::kLive || state.presence.people().empty()) return;
-  if (state.Alone() && state.Steers()) return;
+  const bool gone = state.link == client::Link::kGone;
+  if (!gone && !HasCompany(state)) return;
   const float bottom = ui.time_count() > 1 ? layout.bottom() : layout.window.y - layout.margin;
   ImGui::SetNextWindowPos({0.5F * layout.window.x, bottom}, ImGuiCond_Always, {0.5F, 1.0F});
   constexpr ImGuiWindowFlags kFlags =
@@ -66,15 +84,10 @@ void DrawSessionBar(Ui& ui, const Layout& layout) {
       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
   if (ImGui::Begin("session", nullptr, kFlags)) {
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(WhoSteers(state).c_str());
-    ImGui::SameLine();
-    ControlButton(ui);
-    Asking(ui);
-    if (state.looks_around) {
-      ImGui::SameLine(0.0F, 20.0F * ui.scale);
-      QuietLine("You look around");
-      ImGui::SameLine();
-      if (AccentButton("Back to presenter")) ui.session.Follow();
+    if (gone) {
+      if (AccentButton("Open a session of your own")) ui.session.OpenAnother();
+    } else {
+      People(ui);
     }
   }
   ImGui::End();

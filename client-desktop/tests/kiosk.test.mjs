@@ -1,0 +1,77 @@
+// A kiosk before the real server: its views in turn, whole; no input moves it; it comes back also where session and storm are gone.
+import assert from "node:assert/strict";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+import { freePort, ROOT, startServer } from "../../tests/e2e/server_process.mjs";
+import { startDesktop } from "./desktop_process.mjs";
+import { startDisplay } from "./xvfb.mjs";
+
+const SIZE = { width: 640, height: 400 };
+// Lists and different kinds of cameras: each must replace what the view before has said.
+const VIEWS = [
+  {
+    camera: { orbit: { azimuthDeg: 45 } },
+    fields: [{ hydrometeor: "HYDROMETEOR_ICE", visible: false }],
+    lights: [{ azimuthDeg: 90, elevationDeg: 20 }],
+  },
+  { camera: { topDown: {} }, fields: [{ hydrometeor: "HYDROMETEOR_ICE", visible: true }] },
+];
+
+let folder;
+let display;
+let server;
+let serverFlags;
+let kiosk;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "thunderhead-kiosk-"));
+  display = await startDisplay(SIZE.width, SIZE.height);
+  serverFlags = { httpPort: await freePort(), grpcPort: await freePort() };
+  server = await startServer(serverFlags);
+  const files = VIEWS.map((view, at) => {
+    const file = join(folder, `view_${at}.json`);
+    writeFileSync(file, JSON.stringify(view));
+    return file;
+  });
+  kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "3", "--views", ...files]);
+});
+
+after(async () => {
+  await kiosk?.stop();
+  await server?.stop();
+  await display?.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+// That view's camera is in the picture.
+const shows = (at) => (now) => now.view === at && now.camera === ["orbit", "top_down"][at] && now.shown_revision === now.revision;
+
+test("every view is taken by the server, round after round", async () => {
+  for (const at of [0, 1, 0, 1, 0]) {
+    const { revision, problem } = await kiosk.until(`view ${at}`, shows(at));
+    assert.equal(problem, "");
+    await kiosk.until("the next one", (now) => now.revision > revision || now.view !== at);
+  }
+});
+
+test("input moves nothing", async () => {
+  await kiosk.until("the first view", shows(0));
+  display.key("Left", "Left", "x");
+  await display.drag({ x: 200, y: 200 }, { x: 400, y: 200 });
+  const now = await kiosk.until("a view", (status) => shows(0)(status) || shows(1)(status));
+  if (now.view === 0) assert.ok(Math.abs(now.azimuth_deg - 45) < 0.5, `it turned to ${now.azimuth_deg}`);
+});
+
+test("a server that has lost its sessions and its storm is shown as it is now", async () => {
+  const { storm, joined } = kiosk.status();
+  await server.stop("SIGKILL");
+  await kiosk.until("the loss", (now) => now.link !== "live");
+  await sleep(500);
+  server = await startServer({ ...serverFlags, data: `${ROOT}samples/supercell-500m.nc` });
+  const back = await kiosk.until("the other storm", (now) => now.joined > joined && now.shown_revision > 0 && now.storm !== storm);
+  assert.equal(back.storm, "supercell-500m");
+  await kiosk.until("a view of it", (now) => now.link === "live" && now.camera !== "none");
+});
