@@ -25,8 +25,8 @@ class Kiosk {
   void Advance(Ui& ui, TimePoint now);
   // The index of the view shown; -1 before the first.
   int shown() const { return shown_; }
-  // What is wrong: the picture is old, as the connection has been lost for a while, or the scene
-  // cannot be drawn. Empty if nothing is.
+  // The warning that the picture is old, as the connection has been lost for a while, or that the
+  // scene cannot be drawn; else empty.
   static std::string Warning(const Ui& ui, TimePoint last_live, TimePoint now);
 
  private:

@@ -79,17 +79,17 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
   // The viewers' key, for others to join by; never the presenter's.
   file_
       << absl::StrFormat(
-             R"({"t_s":%.1f,"link":"%s","reason":%s,"problem":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
+             R"({"t_s":%.1f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
              R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
              R"("camera":"%s","azimuth_deg":%.2f,"refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
              std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
              JsonString(ui.state.reason),
-             JsonString(ui.state.problem ? ui.state.problem->message() : ui.state.notice),
-             ui.state.joined_count, ui.state.Presents() ? "presenter" : "viewer",
-             ui.state.Steers() ? "true" : "false", ui.state.looks_around ? "true" : "false",
-             ui.state.presence.people_size(), asking, ui.state.viewer_key,
-             ui.state.scene.storm_id(), ui.time_index(), ui.state.scene_revision,
-             ui.frame.scene_revision(), camera.kind, camera.azimuth_deg,
+             JsonString(ui.state.problem ? ui.state.problem->message() : ""),
+             JsonString(ui.state.notice), ui.state.joined_count,
+             ui.state.Presents() ? "presenter" : "viewer", ui.state.Steers() ? "true" : "false",
+             ui.state.looks_around ? "true" : "false", ui.state.presence.people_size(), asking,
+             ui.state.viewer_key, ui.state.scene.storm_id(), ui.time_index(),
+             ui.state.scene_revision, ui.frame.scene_revision(), camera.kind, camera.azimuth_deg,
              ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
              ui.state.pointers.pointers_size(), view)
       << absl::StrFormat(

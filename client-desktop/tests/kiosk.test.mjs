@@ -51,8 +51,8 @@ const shows = (at) => (now) => now.view === at && now.camera === ["orbit", "top_
 
 test("every view is taken by the server, round after round", async () => {
   for (const at of [0, 1, 0, 1, 0]) {
-    const { revision, problem } = await kiosk.until(`view ${at}`, shows(at));
-    assert.equal(problem, "");
+    const { revision, problem, notice } = await kiosk.until(`view ${at}`, shows(at));
+    assert.deepEqual({ problem, notice }, { problem: "", notice: "" });
     await kiosk.until("the next one", (now) => now.revision > revision || now.view !== at);
   }
 });

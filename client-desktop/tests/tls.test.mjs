@@ -1,11 +1,11 @@
 // The native client before a real server that speaks TLS and wants tokens: what it shows, and what it says where it cannot.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { createHash } from "node:crypto";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, afterEach, before, test } from "node:test";
+import { digest, writeCertificate } from "../../tests/e2e/credentials.mjs";
 import { freePort, startServer } from "../../tests/e2e/server_process.mjs";
 import { throttledLink } from "../../tests/e2e/throttled_link.mjs";
 import { PROGRAM, rests, startDesktop } from "./desktop_process.mjs";
@@ -23,13 +23,6 @@ const started = [];
 
 const file = (name) => join(folder, name);
 
-function writeCertificate(name) {
-  execFileSync("openssl", [
-    ..."req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=localhost".split(" "),
-    ...["-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", file(`${name}.key`), "-out", file(`${name}.pem`)],
-  ], { stdio: "ignore" });
-}
-
 const start = (...flags) => startAt(serverFlags.grpcPort, ...flags);
 
 function startAt(port, ...flags) {
@@ -43,11 +36,11 @@ const hasToken = (name) => ["--token-file", file(`${name}.token`)];
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "thunderhead-desktop-tls-"));
-  for (const name of ["server", "other"]) writeCertificate(name);
+  for (const name of ["server", "other"]) writeCertificate(file(`${name}.pem`), file(`${name}.key`));
   const roles = { teacher: "presenter", student: "viewer" };
   const lines = Object.entries(TOKENS).map(([name, token]) => {
     writeFileSync(file(`${name}.token`), `${token}\n`, { mode: 0o600 });
-    return `${name} ${roles[name]} ${createHash("sha256").update(token).digest("hex")}\n`;
+    return `${name} ${roles[name]} ${digest(token)}\n`;
   });
   writeFileSync(file("tokens"), lines.join(""), { mode: 0o600 });
   writeFileSync(file("wrong.token"), "wrong-token-77", { mode: 0o600 });

@@ -10,6 +10,7 @@ import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
+import { writeCertificate } from "./credentials.mjs";
 import { launchBrowser, listenForErrors, rested, until } from "./driver.mjs";
 import { BINARY, freePort, startServer } from "./server_process.mjs";
 
@@ -28,14 +29,7 @@ describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haprox
   let said = "";
 
   before(async () => {
-    execFileSync(
-      "openssl",
-      [
-        ..."req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=localhost".split(" "),
-        ...["-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", file("key.pem"), "-out", file("cert.pem")],
-      ],
-      { stdio: "ignore" },
-    );
+    writeCertificate(file("cert.pem"), file("key.pem"));
     writeFileSync(file("both.pem"), readFileSync(file("cert.pem"), "utf8") + readFileSync(file("key.pem"), "utf8"), {
       mode: 0o600,
     });

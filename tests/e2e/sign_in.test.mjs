@@ -1,12 +1,11 @@
 // A server that wants tokens and speaks TLS, in a real browser: nobody sees a storm without a token, and a viewer's token
 // watches and does no more.
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { createHash } from "node:crypto";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { digest, writeCertificate } from "./credentials.mjs";
 import { launchBrowser, PICTURE_TIMEOUT_MS, rested, screenshot, until } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
@@ -17,7 +16,6 @@ let server;
 let browser;
 
 const file = (name) => join(folder, name);
-const digest = (token) => createHash("sha256").update(token).digest("hex");
 const audit = () => readFileSync(file("audit.log"), "utf8");
 
 function writeTokens(lines) {
@@ -30,10 +28,7 @@ before(async () => {
     `teacher presenter ${digest(TOKENS.teacher)}`,
     `student viewer ${digest(TOKENS.student)}`,
   ]);
-  execFileSync("openssl", [
-    ..."req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=localhost".split(" "),
-    ...["-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", file("key.pem"), "-out", file("cert.pem")],
-  ], { stdio: "ignore" });
+  writeCertificate(file("cert.pem"), file("key.pem"));
   server = await startServer({
     httpPort: await freePort(),
     grpcPort: await freePort(),

@@ -6,7 +6,7 @@ export interface MovieWork {
   readonly jobId: string;
   readonly pictures: number;
   readonly draft: MovieDraft;
-  // Whose texts the pictures get.
+  // The storm that the pictures' texts are of.
   readonly stormId: string;
 }
 
