@@ -78,6 +78,7 @@ bool FramePlanner::DrawsWhole(const scene::Scene& scene) const {
 
 void FramePlanner::Drawn(std::uint64_t revision, const FramePlan& plan) {
   revision_ = revision;
+  drawn_revision_ = revision;
   finished_ = IsFull(plan.quality);
   drawn_ = plan;
 }
@@ -88,6 +89,7 @@ void FramePlanner::GiveUp(std::uint64_t revision) {
 }
 
 void FramePlanner::Again() {
+  revision_ = drawn_revision_;
   finished_ = false;
   drawn_ = {FrameQuality{0.0, 0.0}, false};
 }

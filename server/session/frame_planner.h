@@ -82,7 +82,8 @@ class FramePlanner {
   // False where a frame at full quality is predicted to take longer than longest_ms.
   bool DrawsWhole(const scene::Scene& scene) const;
 
-  // Starts again with the revision drawn last, as its setting has changed.
+  // Starts again with the newest revision, as its setting has changed or what it lacked may be
+  // there now: coarse, if it was given up before any frame of it.
   void Again();
 
   // The newest revision drawn or given up.
@@ -99,6 +100,7 @@ class FramePlanner {
   const accuracy::MachineCosts& costs_;
   const std::string view_;
   std::uint64_t revision_ = 0;
+  std::uint64_t drawn_revision_ = 0;
   bool finished_ = false;  // no finer frame follows for that revision
   FramePlan drawn_;
 };

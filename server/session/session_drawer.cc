@@ -190,6 +190,7 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
     const std::shared_ptr<Session> session = FindById(sessions, kept->first);
     if (session == nullptr || !session->hub().HasViewers()) {
       kept->second.fields.Release();
+      kept->second.refused = false;
       kept->second.reference.Release();
       if (session != nullptr) session->video().Release();
       light_tracer_.Stop(kept->first);
@@ -206,8 +207,10 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
 
 void SessionDrawer::YieldMemory() {
   const Clock::time_point now = Clock::now();
+  const bool lack_pictures =
+      std::ranges::any_of(kept_, [](const auto& entry) { return entry.second.refused; });
   for (auto& [id, kept] : kept_) {
-    if (lane_.IsFor(id) || !kept.view.Yield(now)) continue;
+    if (lane_.IsFor(id) || !kept.view.Yield(now, lack_pictures)) continue;
     kept.work = WaitUntil{};
     kept.fields.Yield();
     light_tracer_.Stop(id);
@@ -222,7 +225,9 @@ void SessionDrawer::TakeRead(const Turn& turn) {
     turn.kept.fields.TryAgain();
     return;
   }
-  turn.kept.view.Failed(unreadable->revision, TryAgainAt(unreadable->why));
+  const auto try_again_at = TryAgainAt(unreadable->why);
+  turn.kept.refused = absl::IsResourceExhausted(unreadable->why) && try_again_at.has_value();
+  turn.kept.view.Failed(unreadable->revision, try_again_at);
   turn.session->hub().Publish(UnreadableStorm(unreadable->revision, unreadable->why));
 }
 
@@ -426,6 +431,7 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
                          DisplayFrame picture, std::optional<frame::FineImage> fine,
                          std::optional<Refinement> refinement) {
   turn.kept.losses = 0;
+  turn.kept.refused = false;
   turn.kept.tells = picture.accuracy.has_value();
   turn.kept.device_bytes = picture.modelled.device_bytes;
   turn.kept.fields.AddStages(&picture.stages);

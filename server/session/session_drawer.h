@@ -38,8 +38,9 @@ class SessionDrawer {
   // Sends the frame that was drawn in the lane, if one is ready. `sessions` are in order of id.
   void TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessions);
 
-  // Memory is short: sessions whose pictures are shown leave their fields to others, and have no
-  // light traced, for a while.
+  // Memory is short: sessions whose final pictures are shown leave their fields to others, and have
+  // no light traced, for a while; those whose pictures become finer do so too where a session has
+  // been refused the fields for its own.
   void YieldMemory();
 
   // The device is another: what the sources kept is gone.
@@ -62,6 +63,7 @@ class SessionDrawer {
     bool gives_turn = false;         // to its frame that is in the lane; there is no other work
     int losses = 0;                  // of the device, since the last frame
     bool tells = false;              // the last frame said its error
+    bool refused = false;            // memory for its fields, since the last frame
     std::uint64_t device_bytes = 0;  // of the last frame
     // The revision whose frame at rest had no room in the lane; it is drawn whole.
     std::uint64_t whole_revision = 0;

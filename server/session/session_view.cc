@@ -135,14 +135,17 @@ bool SessionView::TriesAgain(Clock::time_point now) {
   try_again_at_.reset();
   failed_revision_.reset();
   planner_.Again();
-  state_ = State::kRefining;
+  state_ = State::kWaitingForFields;
   return true;
 }
 
-bool SessionView::Yield(Clock::time_point now) {
-  if (state_ != State::kSettled && state_ != State::kTracingLight) return false;
+bool SessionView::Yield(Clock::time_point now, bool others_lack_pictures) {
+  const bool goes_on =
+      state_ == State::kTracingLight ||
+      (others_lack_pictures && (state_ == State::kRefining || state_ == State::kChecking));
+  if (!goes_on && state_ != State::kSettled) return false;
   returns_at_.reset();
-  if (state_ == State::kTracingLight) returns_at_ = now + kYieldedFor;
+  if (goes_on) returns_at_ = now + kYieldedFor;
   state_ = State::kYielded;
   return true;
 }

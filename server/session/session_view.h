@@ -102,8 +102,9 @@ class SessionView {
   // True once when a failed revision may be tried again; it is the next work then.
   bool TriesAgain(Clock::time_point now);
   // Memory is short: true if the view can do without its fields and light for a while, since the
-  // picture of its scene is shown.
-  bool Yield(Clock::time_point now);
+  // picture of its scene is shown: the final one, or any if others have been refused the memory for
+  // theirs.
+  bool Yield(Clock::time_point now, bool others_lack_pictures);
   // None if `decided` is to be drawn; else the time at which to ask again, if that can be before a
   // change.
   std::optional<WaitUntil> Resting(const NewestScene& decided, Clock::time_point now);
@@ -145,7 +146,7 @@ class SessionView {
   ErrorMeasuring error_;
   std::optional<std::uint64_t> failed_revision_;
   std::optional<Clock::time_point> try_again_at_;  // the failed revision
-  std::optional<Clock::time_point> returns_at_;    // to tracing light, after yielding
+  std::optional<Clock::time_point> returns_at_;    // to refining or tracing light, after yielding
 };
 
 }  // namespace thunderhead::session

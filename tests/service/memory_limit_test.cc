@@ -25,7 +25,7 @@ using Stub = v1::ThunderheadService::Stub;
 
 constexpr int kStorms = 64;
 constexpr int kAttempts = 20;  // a second apart
-constexpr std::chrono::seconds kPatience{200};
+constexpr std::chrono::seconds kPatience{400};
 constexpr double kBudget_mib = 256.0;  // drawing one storm takes about half of them
 
 // A value of /proc/PID/status, in MiB.

@@ -206,9 +206,19 @@ class YieldingViewTest : public SessionViewTest {
 
 TEST_F(YieldingViewTest, AViewWhosePictureIsComingKeepsWhatItNeeds) {
   Change();
-  EXPECT_FALSE(view_.Yield(kStart));
+  EXPECT_FALSE(view_.Yield(kStart, false));
+  EXPECT_FALSE(view_.Yield(kStart, true));
   ASSERT_TRUE(DrawNext(milliseconds(0)));
-  EXPECT_FALSE(view_.Yield(kStart)) << "finer ones follow";
+  EXPECT_FALSE(view_.Yield(kStart, false)) << "finer ones follow";
+}
+
+TEST_F(YieldingViewTest, FinerFramesGiveWayToThoseWhoHaveNoPictureAndComeBack) {
+  Drag();
+  ASSERT_TRUE(view_.Yield(After(milliseconds(50)), true));
+  EXPECT_EQ(Resting(milliseconds(60))->time, After(milliseconds(30'050)));
+  EXPECT_FALSE(Resting(milliseconds(30'050)).has_value());
+  ASSERT_TRUE(NextIs<DrawFrame>(milliseconds(30'050)));
+  EXPECT_EQ(view_.state(), State::kRefining);
 }
 
 TEST_F(YieldingViewTest, TracingGivesWayForAWhileAndComesBack) {
@@ -216,7 +226,7 @@ TEST_F(YieldingViewTest, TracingGivesWayForAWhileAndComesBack) {
   ComeToRest();
   ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
   EXPECT_EQ(Resting(milliseconds(600)).has_value(), false);
-  ASSERT_TRUE(view_.Yield(After(milliseconds(600))));
+  ASSERT_TRUE(view_.Yield(After(milliseconds(600)), false));
   EXPECT_EQ(Resting(milliseconds(700))->time, After(milliseconds(30'600)));
   EXPECT_FALSE(view_.StaysYielded(revision_, After(milliseconds(700)))) << "nothing was asked for";
   EXPECT_FALSE(Resting(milliseconds(30'600)).has_value());
@@ -232,7 +242,7 @@ TEST_F(YieldingViewTest, AChangeIsDrawnAtOnceAndItsRefusalIsTold) {
   Change();
   ComeToRest();
   ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
-  ASSERT_TRUE(view_.Yield(After(milliseconds(600))));
+  ASSERT_TRUE(view_.Yield(After(milliseconds(600)), false));
   Change();
   EXPECT_FALSE(Resting(milliseconds(700)).has_value());
   EXPECT_FALSE(view_.StaysYielded(revision_, After(milliseconds(700))));
@@ -244,7 +254,7 @@ TEST_F(SessionViewTest, AFinalPictureNeedsNothingUntilAChange) {
   ComeToRest();
   EndMeasuring(milliseconds(10'000));
   ASSERT_TRUE(NextIsNothing(milliseconds(10'000)));
-  ASSERT_TRUE(view_.Yield(kStart));
+  ASSERT_TRUE(view_.Yield(kStart, false));
   const auto rests = view_.Resting(**view_.Decide(newest_), kStart + std::chrono::hours(1));
   ASSERT_TRUE(rests.has_value());
   EXPECT_FALSE(rests->time.has_value());
@@ -417,7 +427,17 @@ TEST_F(SessionViewTest, WhatFailedForAWhileIsTriedAgainWhenThatIsOver) {
   EXPECT_FALSE(view_.TriesAgain(kStart + milliseconds(499)));
   EXPECT_TRUE(view_.TriesAgain(kStart + milliseconds(500)));
   EXPECT_FALSE(view_.TriesAgain(kStart + milliseconds(500))) << "once";
-  EXPECT_TRUE(DrawNext(milliseconds(500)));
+  EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(500)));
+  EXPECT_EQ(view_.state(), State::kMoving) << "nobody has seen it yet";
+}
+
+TEST_F(SessionViewTest, AFinerFrameThatFailedForAWhileIsTriedAgainAsOne) {
+  Drag();
+  ASSERT_TRUE(NextIs<DrawFrame>(milliseconds(600)));
+  view_.Failed(revision_, kStart + milliseconds(700));
+  EXPECT_TRUE(view_.TriesAgain(kStart + milliseconds(700)));
+  EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(700)));
+  EXPECT_EQ(view_.state(), State::kRefining);
 }
 
 }  // namespace
