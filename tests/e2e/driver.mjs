@@ -16,7 +16,7 @@ const CHROMIUM_ARGS = [
   "--disable-sync",
 ];
 // Software rendering on two busy cores may take seconds for a refined picture.
-export const PICTURE_TIMEOUT_MS = 60_000;
+export const PICTURE_TIMEOUT_MS = 120_000;
 const REST_MS = 600;
 
 export function launchBrowser(more = []) {
