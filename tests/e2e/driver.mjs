@@ -18,6 +18,8 @@ const CHROMIUM_ARGS = [
 // Software rendering on two busy cores may take seconds for a refined picture.
 export const PICTURE_TIMEOUT_MS = 120_000;
 const REST_MS = 600;
+// The first refined frame may be smaller than the last, which follows within this time.
+const LARGER_WITHIN_MS = 4000;
 
 export function launchBrowser(more = []) {
   mkdirSync(OUTPUT, { recursive: true });
@@ -50,7 +52,10 @@ export async function until(what, holds, timeoutMs = PICTURE_TIMEOUT_MS) {
   }
 }
 
-// Waits until `holds` has held without a break for REST_MS, for one frame on the canvas.
+const fits = ({ size, canvasSize }) => size === canvasSize;
+
+// Waits until `holds` has held without a break for one frame on the canvas: for REST_MS, or LARGER_WITHIN_MS if the
+// frame is smaller than the canvas.
 async function resting(what, page, holds) {
   let held = { sequence: undefined, since: 0 };
   await until(what, async () => {
@@ -58,7 +63,7 @@ async function resting(what, page, holds) {
     const now = Date.now();
     const good = holds(data);
     if (!good || data.sequence !== held.sequence) held = { sequence: data.sequence, since: now };
-    return good && now - held.since >= REST_MS;
+    return good && now - held.since >= (fits(data) ? REST_MS : LARGER_WITHIN_MS);
   });
   return canvasData(page);
 }
@@ -67,8 +72,8 @@ export const rested = (page) => resting("a refined picture that rests", page, ({
 
 // Like `rested`, of a picture that has the canvas's size: while panels open and close the picture still has the size before.
 export function restedAndFits(page) {
-  const fits = ({ refined, size, canvasSize }) => refined === "true" && size === canvasSize;
-  return resting("a refined picture of the canvas's size that rests", page, fits);
+  const whole = (data) => data.refined === "true" && fits(data);
+  return resting("a refined picture of the canvas's size that rests", page, whole);
 }
 
 // Runs an action that changes the scene, and waits for the refined picture of the new scene.
