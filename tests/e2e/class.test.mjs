@@ -13,7 +13,7 @@ import {
   listenForErrors,
   openTool,
   rested,
-  restedAndFits,
+  restedStill,
   screenshot,
   setNumber,
   until,
@@ -206,7 +206,7 @@ test("the teacher shares a link and a code, and keeps the presenter's key", asyn
 test("a student joins by the link and sees the same picture, but cannot change it", async () => {
   student = await visit(await viewersLink());
   await inStep();
-  for (const page of [teacher, student]) await restedAndFits(page);
+  for (const page of [teacher, student]) await restedStill(page);
   const apart = difference(await grabCanvas(teacher), await grabCanvas(student));
   assert.ok(apart < 1, `the pictures differ by ${apart}`);
   for (const page of [teacher, student]) await noteWhenShown(page);
@@ -518,11 +518,11 @@ test("a student's name is seen by the teacher", async () => {
 
 test("the teacher reloads by accident and loses nothing", async () => {
   await teacher.waitForTimeout(1200);
-  const before = await rested(teacher);
+  const before = await restedStill(teacher);
   const picture = await grabCanvas(teacher);
   await teacher.reload();
   await openTool(teacher, "look");
-  const after = await rested(teacher);
+  const after = await restedStill(teacher);
   assert.equal(after.azimuth, before.azimuth);
   const apart = difference(picture, await grabCanvas(teacher));
   assert.ok(apart < 1, `after the reload the picture differs by ${apart}`);
@@ -623,9 +623,7 @@ test("the server is killed and comes back: teacher and student have their sessio
   // The state is stored at most half a second later.
   await student.waitForTimeout(1200);
   await inStep();
-  const stillOf = (page) => until("a still", async () => (await canvasData(page)).encoding === "avif");
-  await stillOf(student);
-  const { revision } = await restedAndFits(student);
+  const { revision } = await restedStill(student);
   const [address, drawn, mark] = [student.url(), await grabCanvas(student), await markOn(student)];
 
   await server.stop("SIGKILL");
@@ -641,8 +639,7 @@ test("the server is killed and comes back: teacher and student have their sessio
   assert.equal(student.url(), address);
   await until("a picture since then", async () => Number((await canvasData(student)).revision) > Number(revision));
   await inStep();
-  await stillOf(student);
-  await restedAndFits(student);
+  await restedStill(student);
   const apart = difference(drawn, await grabCanvas(student));
   assert.ok(apart < 0.1, `after the restart the picture differs by ${apart}`);
   for (const page of [teacher, student]) {

@@ -89,8 +89,13 @@ export function cloudFile(hour) {
   ]);
 }
 
-// `run` and `valid` are times as WRF writes them, such as 2020-05-20_06:00:00.
-export function runFile(run, valid, radiusM) {
+// The middle of the runs' grid, on the border between Libya and Egypt.
+export const PLACE = { latitudeDeg: 27, longitudeDeg: 24.979 };
+const METERS_PER_DEG = 111_200;
+const PROJECTION = { MAP_PROJ: 1, TRUELAT1: 30, TRUELAT2: 60, STAND_LON: 24.979, MOAD_CEN_LAT: 27 };
+
+// `run` and `valid` are times as WRF writes them, such as 2020-05-20_06:00:00. Without a place it has no local time.
+export function runFile(run, valid, radiusM, { hasPlace = false } = {}) {
   const dimensions = [
     ["Time", 1],
     ["DateStrLen", valid.length],
@@ -101,15 +106,25 @@ export function runFile(run, valid, radiusM) {
   ];
   const all = (value) => Array(CELLS ** 3).fill(value);
   const interfaces = Array.from({ length: (CELLS + 1) * CELLS ** 2 }, (_, i) => Math.floor(i / CELLS ** 2) * SPACING_M);
-  const [full, half] = [
+  const [full, half, flat] = [
     [0, 3, 4, 5],
     [0, 2, 4, 5],
+    [0, 4, 5],
   ];
+  const latitudes = SIDE.flatMap((y) => SIDE.map(() => PLACE.latitudeDeg + y / METERS_PER_DEG));
+  const perDeg = METERS_PER_DEG * Math.cos((PLACE.latitudeDeg * Math.PI) / 180);
+  const longitudes = SIDE.flatMap(() => SIDE.map((x) => PLACE.longitudeDeg + x / perDeg));
   return classicFile(
     dimensions,
-    { TITLE: " OUTPUT FROM WRF V4.5 MODEL", SIMULATION_START_DATE: run, DX: SPACING_M, DY: SPACING_M },
+    { TITLE: " OUTPUT FROM WRF V4.5 MODEL", SIMULATION_START_DATE: run, DX: SPACING_M, DY: SPACING_M, ...(hasPlace ? PROJECTION : {}) },
     [
       ["Times", [0, 1], {}, TYPE.char, [...valid].map((letter) => letter.charCodeAt(0))],
+      ...(hasPlace
+        ? [
+            ["XLAT", flat, { units: "degree_north" }, TYPE.float, latitudes],
+            ["XLONG", flat, { units: "degree_east" }, TYPE.float, longitudes],
+          ]
+        : []),
       ["PHB", full, { units: "m2 s-2" }, TYPE.float, interfaces.map((height) => 9.81 * height)],
       ["PH", full, { units: "m2 s-2" }, TYPE.float, interfaces.map(() => 0)],
       ["PB", half, { units: "Pa" }, TYPE.float, all(60_000)],

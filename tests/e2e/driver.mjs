@@ -54,15 +54,16 @@ export async function until(what, holds, timeoutMs = PICTURE_TIMEOUT_MS) {
 
 const fits = ({ size, canvasSize }) => size === canvasSize;
 
-// Waits until `holds` has held without a break for one frame on the canvas: for REST_MS, or LARGER_WITHIN_MS if the
-// frame is smaller than the canvas.
+// Waits until `holds` has held without a break: for REST_MS for one frame on the canvas, or for LARGER_WITHIN_MS for
+// frames of one size that are smaller than the canvas.
 async function resting(what, page, holds) {
-  let held = { sequence: undefined, since: 0 };
+  let held = { name: undefined, since: 0 };
   await until(what, async () => {
     const data = await canvasData(page);
     const now = Date.now();
     const good = holds(data);
-    if (!good || data.sequence !== held.sequence) held = { sequence: data.sequence, since: now };
+    const name = fits(data) ? data.sequence : data.size;
+    if (!good || name !== held.name) held = { name, since: now };
     return good && now - held.since >= (fits(data) ? REST_MS : LARGER_WITHIN_MS);
   });
   return canvasData(page);
@@ -74,6 +75,12 @@ export const rested = (page) => resting("a refined picture that rests", page, ({
 export function restedAndFits(page) {
   const whole = (data) => data.refined === "true" && fits(data);
   return resting("a refined picture of the canvas's size that rests", page, whole);
+}
+
+// Like `restedAndFits`, once the still has come that replaces the frame's JPEG, from which it differs by about a level.
+export function restedStill(page) {
+  const still = (data) => data.refined === "true" && data.encoding === "avif" && fits(data);
+  return resting("a still of the canvas's size that rests", page, still);
 }
 
 // Runs an action that changes the scene, and waits for the refined picture of the new scene.

@@ -11,7 +11,7 @@ import {
   openTool,
   PICTURE_TIMEOUT_MS,
   rested as restedOn,
-  restedAndFits,
+  restedStill,
   screenshot as screenshotOf,
   setNumber,
   until,
@@ -318,6 +318,7 @@ test("a field switched off goes, and with the last one the storm", async () => {
     // An automatic one would follow what is left of the storm.
     await setNumber(page, "exposure", 0);
   });
+  await restedStill(page);
   const whole = await grabCanvas(page);
   await tool("fields");
   const switches = page.locator("[data-testid$=-visible]");
@@ -342,6 +343,7 @@ test("a field switched off goes, and with the last one the storm", async () => {
   await changing(async () => {
     for (const name of names) await page.getByTestId(name).check();
   });
+  await restedStill(page);
   const again = difference(whole, await grabCanvas(page));
   assert.ok(again < 1, `with all fields again the picture differs by ${again}`);
 });
@@ -409,7 +411,7 @@ test("the reference refines the picture while it rests, and begins again when it
 test("metaballs draw the storm, and the page says what they leave out", async () => {
   await unfoldSettings();
   const choice = page.getByTestId("technique-choice");
-  await restedAndFits(page);
+  await restedStill(page);
   const before = await grabCanvas(page);
   assert.equal(await page.getByTestId("metaball-count").count(), 0);
   await changing(() => choice.selectOption({ label: "Metaballs" }));
@@ -483,7 +485,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await tool("look");
   await changing(() => chooseQuality("Fast"));
   assert.equal(await page.getByTestId("not-shown").count(), 0);
-  await restedAndFits(page);
+  await restedStill(page);
   const changeBack = difference(before, await grabCanvas(page));
   assert.ok(changeBack < 1, `the light volume is back, but for ${changeBack} levels`);
   await foldSettings();
@@ -501,6 +503,7 @@ test("a cumulus as a surface, and the parts of its light", async () => {
   assert.match(await page.getByTestId("not-shown").innerText(), /snow/);
   await changing(() => page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" }));
   await changing(() => setNumber(page, "exposure", 0)); // the same for all parts
+  await restedStill(page);
   const whole = await grabCanvas(page);
   await screenshot("10-cumulus");
   assert.ok(spread(whole).deviation > 8, "the picture is nearly uniform");
@@ -519,6 +522,7 @@ test("a cumulus as a surface, and the parts of its light", async () => {
     last = part;
   }
   await changing(() => page.getByTestId("cumulus-component").selectOption({ label: "All" }));
+  await restedStill(page);
   assert.ok(difference(whole, await grabCanvas(page)) < 1, "the whole is back");
   await changing(async () => {
     await exposeAutomatically(page);

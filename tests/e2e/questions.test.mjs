@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { PNG } from "pngjs";
-import { runFile } from "./cloud_file.mjs";
+import { PLACE, runFile } from "./cloud_file.mjs";
 import {
   canvasData,
   changing,
@@ -17,10 +17,11 @@ import {
   openTool,
   PICTURE_TIMEOUT_MS,
   rested,
+  restedStill,
   screenshot,
   until,
 } from "./driver.mjs";
-import { difference, grabCanvas, greyShare } from "./pictures.mjs";
+import { boxMean, difference, grabCanvas, greyShare } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 // Wide enough for the run in the bar.
@@ -66,10 +67,11 @@ after(async () => {
 });
 
 // A page of somebody else: nothing in its storage.
-async function visit(url) {
+async function visit(url, prepare = async () => undefined) {
   const context = await browser.newContext({ viewport: VIEWPORT, permissions: ["clipboard-read", "clipboard-write"] });
   const opened = await context.newPage();
   listenForErrors(opened, complaints);
+  await prepare(opened);
   await opened.goto(url);
   await rested(opened);
   return opened;
@@ -158,7 +160,7 @@ test("what changed between the last two runs, by keys alone", async () => {
 
 // A fresh page at the link shows what this page shows.
 async function assertSameView(link) {
-  const here = await rested(page);
+  const here = await restedStill(page);
   const colleague = await visit(link);
   try {
     const same = ["camera", "azimuth", "distance", "time"];
@@ -166,7 +168,7 @@ async function assertSameView(link) {
       const there = await canvasData(colleague);
       return same.every((name) => there[name] === here[name]);
     });
-    await rested(colleague);
+    await restedStill(colleague);
     assert.equal(await colleague.getByTestId("run").innerText(), await text("run"));
     assert.equal(await colleague.getByTestId("top-time").innerText(), await text("top-time"));
     const apart = difference(await grabCanvas(page), await grabCanvas(colleague));
@@ -216,7 +218,7 @@ test("a link to a view outlives the session that it was made in", async () => {
   await page.getByTestId("keep-link").click();
   const link = await copied();
   await page.keyboard.press("Escape");
-  const here = await rested(page);
+  const here = await restedStill(page);
   const picture = await grabCanvas(page);
   await openPanel(page, "share");
   await page.getByTestId("end-session").click();
@@ -225,12 +227,95 @@ test("a link to a view outlives the session that it was made in", async () => {
   const context = await browser.newContext({ viewport: VIEWPORT });
   const colleague = await context.newPage();
   await colleague.goto(link);
-  const there = await rested(colleague);
+  const there = await restedStill(colleague);
   assert.deepEqual([there.azimuth, there.distance, there.time], [here.azimuth, here.distance, here.time]);
   assert.ok(difference(picture, await grabCanvas(colleague)) < 1, "the pictures differ");
   await context.close();
 });
 
+// A server with a run that has a place.
+async function withPlace(look, prepare) {
+  const data = mkdtempSync(join(tmpdir(), "thunderhead-place-"));
+  const [began, valid] = ["2020-05-20_00:00:00", "2020-05-20_08:00:00"];
+  writeFileSync(join(data, `wrfout_d01_${valid}`), runFile(began, valid, RUNS[1].radiusM, { hasPlace: true }));
+  const other = await startServer({ httpPort: await freePort(), grpcPort: await freePort(), data });
+  try {
+    const opened = await visit(other.url, prepare);
+    await look(opened);
+    await opened.context().close();
+  } finally {
+    await other.stop();
+    rmSync(data, { recursive: true, force: true });
+  }
+}
+
+test("a run with a place: local time, borders on the map, latitude and longitude under the probe", async () => {
+  await withPlace(async (opened) => {
+    await openTool(opened, "map");
+    const border = opened.locator("[data-testid=map-lines] .map-countries");
+    await border.waitFor({ state: "attached" });
+    // The border runs from south to north through the middle of the map.
+    const middle = () =>
+      border.evaluate((path) => {
+        const [line, map] = [path, path.ownerSVGElement].map((each) => each.getBoundingClientRect());
+        return { right: (line.x + line.width / 2 - map.x) / map.width, high: line.height / map.height };
+      });
+    const { right, high } = await middle();
+    assert.ok(Math.abs(right - 0.5) < 0.1, `the border is at ${right} of the map's width`);
+    assert.ok(high > 0.5, `the border is as high as ${high} of the map`);
+    await screenshot("questions-place", opened);
+    assert.match(await opened.getByTestId("top-time").innerText(), /08:00Z/);
+    assert.match(await opened.getByTestId("local-time").innerText(), /10:00/);
+    await openTool(opened, "probe");
+    await opened.getByTestId("probe-middle").click();
+    const place = opened.getByTestId("probe-place");
+    await place.waitFor();
+    const [, latitude, longitude] = /([\d.]+)° N ([\d.]+)° E/.exec(await place.innerText());
+    assert.ok(Math.abs(Number(latitude) - PLACE.latitudeDeg) < 0.05, `it is at ${latitude}° N`);
+    assert.ok(Math.abs(Number(longitude) - PLACE.longitudeDeg) < 0.05, `it is at ${longitude}° E`);
+  });
+});
+
+test("at night the page says why the picture is dark, and shows the storm by day", async () => {
+  await withPlace(async (opened) => {
+    const brightness = async () => {
+      await rested(opened);
+      return boxMean(await grabCanvas(opened), [0.3, 0.2, 0.7, 0.8]);
+    };
+    const night = opened.getByTestId("night");
+    assert.ok((await brightness()) > 30, "it is day at 10:00");
+    assert.equal(await night.count(), 0);
+    await openTool(opened, "light");
+    await changing(() => opened.getByTestId("day-clock").fill("01:30"), opened);
+    await night.waitFor();
+    assert.match(await night.innerText(), /It is night at the storm: the sun is 4\d° below the horizon/);
+    assert.ok((await brightness()) < 5, "nights are dark");
+    await screenshot("questions-night", opened);
+    await changing(() => opened.getByTestId("show-by-day").click(), opened);
+    await night.waitFor({ state: "detached" });
+    assert.ok((await brightness()) > 30, "it is shown by day");
+    await screenshot("questions-by-day", opened);
+  });
+});
+
 test("no error reached the browser's console", () => {
   assert.deepEqual(complaints, []);
+});
+
+test("a part of the page that is gone from the server is told", async () => {
+  const isGone = (opened) =>
+    opened.route(/uPlot|map_lines|every_setting/, (route) => route.fulfill({ status: 404 }));
+  await withPlace(async (opened) => {
+    const notices = opened.getByTestId("notices");
+    const isTold = (words) => until(words, async () => (await notices.innerText()).includes(words));
+    await openTool(opened, "map");
+    await isTold("The map's coasts and borders could not be loaded. Reload the page");
+    await openTool(opened, "probe");
+    await opened.getByTestId("probe-middle").click();
+    await isTold("The chart could not be loaded");
+    assert.match(await opened.getByTestId("probe-found").innerText(), /above sea/, "the table has what the chart shows");
+    await openPanel(opened, "drawer");
+    await isTold("Every setting could not be loaded");
+    await screenshot("questions-parts-gone", opened);
+  }, isGone);
 });

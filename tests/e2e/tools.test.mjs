@@ -18,6 +18,7 @@ import {
   PICTURE_TIMEOUT_MS,
   rested,
   restedAndFits,
+  restedStill,
   screenshot,
   setNumber,
   until,
@@ -318,8 +319,8 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
       const [there, here] = await Promise.all([canvasData(fresh), canvasData(page)]);
       return there.azimuth === here.azimuth && there.distance === here.distance && there.refined === "true";
     });
-    await restedAndFits(fresh);
-    await restedAndFits(page);
+    await restedStill(fresh);
+    await restedStill(page);
     const apart = difference(await grabCanvas(page), await grabCanvas(fresh));
     assert.ok(apart < 1, `the pictures differ by ${apart}`);
   } finally {
@@ -392,6 +393,67 @@ test("a reload while a movie is made goes on with it, and the next does not make
   page.removeAllListeners("download");
 });
 
+// A place of the window at these shares of a canvas's width and height.
+async function placeOn(canvas, right, down) {
+  const { x, y, width, height } = await canvas.boundingBox();
+  return [x + right * width, y + down * height];
+}
+
+// The probe over B asks for B's time: the same as that of A once A shows it.
+async function assertProbesB(compared) {
+  const found = async (canvas) => {
+    const before = await page.getByTestId("probe-found").allInnerTexts();
+    await page.mouse.click(...(await placeOn(canvas, 0.76, 0.5)));
+    await until("the probe", async () => {
+      const now = await page.getByTestId("probe-found").allInnerTexts();
+      return now.length > 0 && now[0] !== before[0];
+    });
+    return (await text("probe-found")).replace(/From the first click: .*/, "").replace(/\s+/g, " ");
+  };
+  const canvas = page.getByTestId("storm-canvas");
+  await openTool(page, "probe");
+  await restedAndFits(page);
+  await until("B's picture beside the tool", async () => compared.evaluate(({ dataset }) => dataset.refined === "true"));
+  const ofA = await found(canvas);
+  assert.equal(await page.getByTestId("probe-picture").count(), 0);
+  const ofB = await found(compared);
+  assert.match(ofB, /^B · /);
+  assert.notEqual(ofB, `B · ${ofA}`);
+  await screenshot("tools-compare-probe", page);
+  const shown = await page.getByTestId("time").inputValue();
+  await page.getByTestId("time").fill("0");
+  await until("A's time", async () => (await canvasData(page)).time === "0");
+  await restedAndFits(page);
+  assert.equal(`B · ${await found(canvas)}`, ofB);
+  await page.getByTestId("time").fill(shown);
+  await until("A's time again", async () => (await canvasData(page)).time === shown);
+  await openTool(page, undefined);
+}
+
+// Others see A alone.
+async function assertPenOverBDrawsOnA(compared) {
+  await openTool(page, "marks");
+  await page.getByTestId("tool-pen").click();
+  await restedAndFits(page);
+  const marks = page.getByTestId("mark");
+  const before = await marks.count();
+  await page.mouse.move(...(await placeOn(compared, 0.4, 0.5)));
+  await page.mouse.down();
+  await page.mouse.move(...(await placeOn(compared, 0.6, 0.5)), { steps: 6 });
+  await page.mouse.up();
+  await until("the mark", async () => (await marks.count()) === before + 1);
+  const canvas = page.getByTestId("storm-canvas");
+  const [[left], [right]] = [await placeOn(canvas, 0.4, 0.5), await placeOn(canvas, 0.6, 0.5)];
+  const corners = (await marks.last().evaluate(({ dataset }) => dataset.corners)).split(" ");
+  const xs = corners.map((corner) => Number(corner.split(",")[0]));
+  assert.ok(Math.abs(Math.min(...xs) - left) < 3, `the line begins at ${Math.min(...xs)}, not at ${left}`);
+  assert.ok(Math.abs(Math.max(...xs) - right) < 3, `the line ends at ${Math.max(...xs)}, not at ${right}`);
+  await page.getByTestId("clear-marks").click();
+  await until("no mark more", async () => (await marks.count()) === before);
+  await key("Escape");
+  await openTool(page, undefined);
+}
+
 test("two times are compared with one camera", async () => {
   await openPanel(page, "compare");
   await page.getByTestId("compare-time").selectOption("0");
@@ -420,6 +482,11 @@ test("two times are compared with one camera", async () => {
   await openPanel(page, "compare");
   await page.getByTestId("compare-layout").getByText("Side by side").click();
   await until("side by side", async () => (await compared.boundingBox()).x > 400);
+  await key("Escape");
+  await until("B's picture beside", refined);
+  await assertProbesB(compared);
+  await assertPenOverBDrawsOnA(compared);
+  await openPanel(page, "compare");
   await page.getByTestId("compare-end").click();
   await page.keyboard.press("Escape");
   assert.equal(await compared.count(), 0);

@@ -3,6 +3,9 @@ import type { ProbeRayResponse, RayPlace } from "../gen/thunderhead/v1/probe_pb"
 import type { WorldRay } from "./projection";
 
 export interface Probed {
+  // The picture that was clicked on: B is the one that is compared with A.
+  readonly picture: "A" | "B";
+  readonly stormId: string;
   readonly ray: WorldRay;
   readonly found: ProbeRayResponse;
 }

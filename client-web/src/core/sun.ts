@@ -5,6 +5,14 @@ export interface SunDirection {
   readonly elevationDeg: number;
 }
 
+// The end of civil twilight: lower, and pictures are nearly black.
+export const NIGHT_BELOW_DEG = -6;
+
+// A sun that lights what the camera sees: behind the left shoulder of who stands in this direction from the storm.
+export function daylight(standingAzimuthDeg: number): SunDirection {
+  return { azimuthDeg: (standingAzimuthDeg + 45) % 360, elevationDeg: 35 };
+}
+
 // The disc ends this far below the horizon, so that twilight can be dragged too.
 export const DOME_LOWEST_DEG = -18;
 

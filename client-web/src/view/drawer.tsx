@@ -2,6 +2,7 @@
 import type { ComponentType } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { Page } from "./page";
+import { withPart } from "./part";
 import { focusRail } from "./tool_rail";
 
 // Loaded when it opens first.
@@ -26,8 +27,13 @@ export function ExpertDrawer({ page }: { page: Page }) {
   }, [open]);
   useEffect(() => {
     if (!open) return;
-    void import("./every_setting").then(({ EverySetting }) => setSettings(() => EverySetting));
-  }, [open]);
+    withPart(
+      page.state,
+      "Every setting",
+      () => import("./every_setting"),
+      ({ EverySetting }) => setSettings(() => EverySetting),
+    );
+  }, [open, page]);
   return (
     <aside
       id="drawer"

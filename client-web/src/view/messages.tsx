@@ -1,7 +1,11 @@
 // Messages: the connection, requests for control, notices, the end of the session.
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
+import { standingAzimuthDeg } from "../core/camera";
+import { withSun } from "../core/scene";
 import type { PageState } from "../core/state";
+import { daylight, NIGHT_BELOW_DEG } from "../core/sun";
+import { Sun_Source } from "../gen/thunderhead/v1/scene_pb";
 import type { Page } from "./page";
 import { Asking } from "./people";
 import { SignIn } from "./sign_in";
@@ -16,6 +20,7 @@ export function Messages({ page }: { page: Page }) {
       <SignIn page={page} />
       <SessionEnded page={page} />
       <Asking page={page} />
+      <Night state={state} />
       <Notices state={state} />
     </div>
   );
@@ -62,6 +67,29 @@ function SessionEnded({ page }: { page: Page }) {
         Open a new session with this scene
       </button>
     </section>
+  );
+}
+
+// Why the picture is dark, and the way to one by daylight.
+function Night({ state }: { state: PageState }) {
+  if (state.frame.value === undefined) return null;
+  const { elevationDeg } = state.sunDirection.value;
+  if (elevationDeg >= NIGHT_BELOW_DEG) return null;
+  const standing = standingAzimuthDeg(state.pose.value);
+  const byHand = { ...daylight(standing ?? 0), source: Sun_Source.BY_HAND };
+  return (
+    <div class="banner night" role="status" data-testid="night">
+      <p>It is night at the storm: the sun is {Math.round(-elevationDeg)}° below the horizon.</p>
+      {state.session.editBlock.value === undefined && (
+        <button
+          type="button"
+          data-testid="show-by-day"
+          onClick={() => state.edit((scene) => withSun(scene, byHand))}
+        >
+          Show it by day
+        </button>
+      )}
+    </div>
   );
 }
 

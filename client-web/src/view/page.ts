@@ -17,7 +17,6 @@ import { RevisionLedger } from "../core/revision_ledger";
 import { withCamera, withStorm, withTime } from "../core/scene";
 import type { Tool } from "../core/session_state";
 import { PageState } from "../core/state";
-import type { StrokePoint } from "../core/stroke";
 import type { PanelName, ToolName } from "../core/tools";
 import { lengthUnits } from "../core/units";
 import { ServerCalls } from "../transport/server_calls";
@@ -140,7 +139,7 @@ export class Page {
       clicked: (place) => {
         if (state.tool.peek() === "probe") void this.probing.at(place);
       },
-      doubleClicked: (place) => void this.#turnAround(place),
+      doubleClicked: (place) => void this.#turnAround(() => this.probing.seenAt(place)),
       acknowledge: (sequence, ownView, lost) => this.#client.acknowledge(sequence, ownView, lost),
       shown: (frame, now) => this.#life.shown(frame, now),
       paced: () => this.#life.adoptOpenCamera(),
@@ -177,6 +176,13 @@ export class Page {
     });
     this.comparing = new Comparing(this.calls, openInteract, state, {
       move: (motion) => this.move(motion),
+      tool: () => this.marking.tool(),
+      clicked: (point, picture) => {
+        if (state.tool.peek() === "probe") void this.probing.through(point, picture);
+      },
+      doubleClicked: (point, picture) =>
+        void this.#turnAround(() => this.probing.seenThrough(point, picture)),
+      changed: () => this.probing.forgetB(),
       onNextPaint,
       later,
     });
@@ -413,9 +419,11 @@ export class Page {
   }
 
   // The camera then turns around the place seen there.
-  async #turnAround(place: StrokePoint): Promise<void> {
+  async #turnAround(
+    findSeen: () => Promise<readonly [number, number, number] | undefined>,
+  ): Promise<void> {
     try {
-      const seen = await this.probing.seenAt(place);
+      const seen = await findSeen();
       if (seen !== undefined) this.viewpoint.turnAround(seen);
     } catch {
       this.notes.say("target", "The place could not be looked up");

@@ -2,14 +2,23 @@
 // first.
 import { ConnectError } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
-import { cameraOfPose } from "../core/camera";
+import { cameraOfPose, type Pose } from "../core/camera";
 import { picturePointAt } from "../core/picture_box";
-import { type PicturePoint, rayAt, type WorldRay } from "../core/projection";
+import { type PicturePoint, type Projection, rayAt, type WorldRay } from "../core/projection";
 import type { PageState } from "../core/state";
 import type { StrokePoint } from "../core/stroke";
 import type { ProbeRayResponse } from "../gen/thunderhead/v1/probe_pb";
+import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { ServerCalls } from "../transport/server_calls";
 import { rayMessage } from "./rays";
+
+// A picture on the screen, and what it shows.
+export interface SeenPicture {
+  readonly name: "A" | "B";
+  readonly scene: Scene;
+  readonly pose: Pose | undefined;
+  readonly projection: Projection;
+}
 
 export class Probing {
   readonly #calls: ServerCalls;
@@ -32,24 +41,23 @@ export class Probing {
   }
 
   // Probes at a place of the window, in CSS pixels.
-  async at({ left, top }: StrokePoint): Promise<void> {
-    const box = this.#state.pictureBox.peek();
-    const point = box === undefined ? undefined : picturePointAt(box, left, top);
+  async at(place: StrokePoint): Promise<void> {
+    const point = this.#pointAt(place);
     if (point !== undefined) await this.through(point);
   }
 
   // Probes along the ray through a point of the picture.
-  async through(point: PicturePoint): Promise<void> {
-    const projection = this.#state.frame.peek()?.projection;
-    if (projection === undefined) return;
-    const ray = rayAt(projection, point);
+  async through(point: PicturePoint, picture = this.#pictureA()): Promise<void> {
+    if (picture === undefined) return;
+    const ray = rayAt(picture.projection, point);
     this.#asked += 1;
     const asked = this.#asked;
     this.#state.probing.value = true;
     try {
-      const found = await this.#ask(ray);
+      const found = await this.#ask(picture, ray);
       if (asked !== this.#asked) return;
-      this.#state.probes.value = [...this.#state.probes.peek(), { ray, found }].slice(-2);
+      const probed = { picture: picture.name, stormId: picture.scene.stormId, ray, found };
+      this.#state.probes.value = [...this.#state.probes.peek(), probed].slice(-2);
       this.#state.probeProblem.value = undefined;
     } catch (error) {
       if (asked !== this.#asked) return;
@@ -62,11 +70,17 @@ export class Probing {
 
   // The place of what is seen there; undefined for the sky.
   async seenAt(place: StrokePoint): Promise<readonly [number, number, number] | undefined> {
-    const box = this.#state.pictureBox.peek();
-    const projection = this.#state.frame.peek()?.projection;
-    const point = box === undefined ? undefined : picturePointAt(box, place.left, place.top);
-    if (point === undefined || projection === undefined) return undefined;
-    const { seenPlace } = await this.#ask(rayAt(projection, point), 0);
+    const point = this.#pointAt(place);
+    return point === undefined ? undefined : this.seenThrough(point);
+  }
+
+  // The same through a point of the picture.
+  async seenThrough(
+    point: PicturePoint,
+    picture = this.#pictureA(),
+  ): Promise<readonly [number, number, number] | undefined> {
+    if (picture === undefined) return undefined;
+    const { seenPlace } = await this.#ask(picture, rayAt(picture.projection, point), 0);
     const at = seenPlace?.position;
     return at === undefined ? undefined : [at.xM, at.yM, at.zM];
   }
@@ -78,10 +92,27 @@ export class Probing {
     this.#state.probeProblem.value = undefined;
   }
 
-  #ask(ray: WorldRay, samples?: number): Promise<ProbeRayResponse> {
+  // Picture B shows something else now.
+  forgetB(): void {
+    const left = this.#state.probes.peek().filter(({ picture }) => picture === "A");
+    if (left.length < this.#state.probes.peek().length) this.#state.probes.value = left;
+  }
+
+  #pointAt({ left, top }: StrokePoint): PicturePoint | undefined {
+    const box = this.#state.pictureBox.peek();
+    return box === undefined ? undefined : picturePointAt(box, left, top);
+  }
+
+  #pictureA(): SeenPicture | undefined {
+    const projection = this.#state.frame.peek()?.projection;
+    if (projection === undefined) return undefined;
     const pose = this.#state.viewPose.peek();
+    return { name: "A", scene: this.#state.scene.peek(), pose, projection };
+  }
+
+  #ask({ scene, pose }: SeenPicture, ray: WorldRay, samples?: number): Promise<ProbeRayResponse> {
     return this.#calls.probeRay({
-      subject: { case: "scene", value: this.#state.scene.peek() },
+      subject: { case: "scene", value: scene },
       camera: pose === undefined ? undefined : cameraOfPose(pose),
       through: { case: "ray", value: rayMessage(ray) },
       samples,

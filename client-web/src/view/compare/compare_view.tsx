@@ -18,7 +18,7 @@ export function CompareView({ page }: { page: Page }) {
   const swipes = choice.layout === "swipe";
   const share = page.comparing.swipe.value;
   const clip = swipes ? { clipPath: `inset(0 0 0 ${(100 * share).toFixed(2)}%)` } : {};
-  const edge = swipes ? 100 * share : 50;
+  const edge = swipes ? `${100 * share}%` : "calc(var(--from) + var(--beside))";
   const names = namesOf(page);
   return (
     <>
@@ -31,12 +31,12 @@ export function CompareView({ page }: { page: Page }) {
         aria-label={`To compare: ${names.b}`}
       />
       {/* Each name in its half. */}
-      <div class="half" style={{ clipPath: `inset(0 ${100 - edge}% 0 0)` }}>
+      <div class="half" style={{ clipPath: `inset(0 calc(100% - ${edge}) 0 0)` }}>
         <p class="compared-name a" data-testid="name-a">
           A · {names.a}
         </p>
       </div>
-      <div class="half" style={{ clipPath: `inset(0 0 0 ${edge}%)` }}>
+      <div class="half" style={{ clipPath: `inset(0 0 0 ${edge})` }}>
         <p class="compared-name b" data-testid="name-b">
           B · {names.b}
         </p>

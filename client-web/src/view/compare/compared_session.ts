@@ -62,6 +62,10 @@ export class ComparedSession implements SessionListener {
     });
   }
 
+  get scene(): Scene {
+    return this.#scene;
+  }
+
   // Opens the session, with this scene.
   start(scene: Scene): void {
     this.#scene = scene;

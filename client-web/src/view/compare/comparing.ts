@@ -1,10 +1,14 @@
 // Compares: holds what B is, runs its session while there is a B, and keeps its scene beside A's.
 import { ConnectError } from "@connectrpc/connect";
 import { computed, effect, signal, untracked } from "@preact/signals-core";
-import { cameraOfPose, type Pose } from "../../core/camera";
+import { cameraOfPose, type Pose, poseOfCamera } from "../../core/camera";
 import { type ComparisonChoice, comparedScene, type TimeOfB, timeOfB } from "../../core/comparison";
+import type { PictureTool } from "../../core/marking";
 import type { Later } from "../../core/newest";
+import { pictureBox, picturePointAt, placeInBox } from "../../core/picture_box";
+import { type PicturePoint, projectionOf } from "../../core/projection";
 import type { PageState } from "../../core/state";
+import type { StrokePoint } from "../../core/stroke";
 import type { Frame } from "../../gen/thunderhead/v1/frame_pb";
 import type { Scene } from "../../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../../gen/thunderhead/v1/storm_pb";
@@ -12,10 +16,18 @@ import type { ServerCalls } from "../../transport/server_calls";
 import type { OpenInteract } from "../../transport/session_client";
 import type { CanvasPainter } from "../canvas_painter";
 import { attachPointer } from "../pointer";
+import type { SeenPicture } from "../probing";
 import { ComparedSession } from "./compared_session";
 
 export interface ComparingSteps {
   move(motion: (pose: Pose) => Pose): void;
+  // The tool in the hand, which takes places over A.
+  tool(): PictureTool | undefined;
+  // A click, or two at once, on B.
+  clicked(point: PicturePoint, picture: SeenPicture): void;
+  doubleClicked(point: PicturePoint, picture: SeenPicture): void;
+  // B is to show something else.
+  changed(): void;
   onNextPaint(callback: () => void): () => void;
   later: Later;
 }
@@ -64,6 +76,10 @@ export class Comparing {
         const stormId = this.choice.value?.stormId;
         untracked(() => void this.#describe(stormId));
       }),
+      effect(() => {
+        void [this.choice.value?.stormId, this.choice.value?.timeIndex];
+        untracked(() => this.#steps.changed());
+      }),
     ];
   }
 
@@ -88,9 +104,10 @@ export class Comparing {
     let painter: CanvasPainter | undefined = this.#session?.attach(canvas);
     const detachPointer = attachPointer(canvas, {
       move: (motion) => this.#steps.move(motion),
-      tool: () => undefined,
-      clicked: () => undefined,
-      doubleClicked: () => undefined,
+      tool: () => this.#toolOverA(),
+      clicked: (place) => this.#onB(place, (point, seen) => this.#steps.clicked(point, seen)),
+      doubleClicked: (place) =>
+        this.#onB(place, (point, seen) => this.#steps.doubleClicked(point, seen)),
     });
     const measure = () => {
       const ratio = window.devicePixelRatio;
@@ -134,6 +151,42 @@ export class Comparing {
       storm: this.#state.storm.value,
       other: this.other.value,
     });
+  }
+
+  // What is drawn or pointed at on B goes to the same place of A, which is the picture that others see.
+  #toolOverA(): PictureTool | undefined {
+    const tool = this.#steps.tool();
+    if (tool === undefined) return undefined;
+    const overA = (use: (place: StrokePoint) => void) => (place: StrokePoint) => {
+      const [point, box] = [this.#pointAt(place), this.#state.pictureBox.peek()];
+      if (point !== undefined && box !== undefined) use(placeInBox(box, point));
+    };
+    return {
+      hover: overA((place) => tool.hover(place)),
+      press: overA((place) => tool.press(place)),
+      drag: overA((place) => tool.drag(place)),
+      release: () => tool.release(),
+      cancel: () => tool.cancel(),
+      leave: () => tool.leave(),
+    };
+  }
+
+  #onB(place: StrokePoint, use: (point: PicturePoint, picture: SeenPicture) => void): void {
+    const point = this.#pointAt(place);
+    const frame = this.frame.peek();
+    const scene = this.#session?.scene;
+    const projection = frame === undefined ? undefined : projectionOf(frame.view);
+    if (point === undefined || scene === undefined || projection === undefined) return;
+    use(point, { name: "B", scene, pose: poseOfCamera(scene.camera), projection });
+  }
+
+  // The point of B's picture at a place of the window.
+  #pointAt({ left, top }: StrokePoint): PicturePoint | undefined {
+    const [canvas, frame] = [this.#canvas, this.frame.peek()];
+    if (canvas === undefined || frame === undefined) return undefined;
+    const { left: x, top: y, width, height } = canvas.getBoundingClientRect();
+    const box = pictureBox({ width, height }, { width: frame.widthPx, height: frame.heightPx });
+    return picturePointAt(box, left - x, top - y);
   }
 
   #show(scene: Scene | undefined): void {

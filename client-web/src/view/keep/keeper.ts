@@ -161,7 +161,9 @@ export class Keeper {
     count: number,
     progress: (share: number) => void,
   ): Promise<void> {
-    const { startMovie } = await import("./movie_file");
+    const { startMovie } = await import("./movie_file").catch(() => {
+      throw new Error("the page's part that writes it could not be loaded; reload the page");
+    });
     const movie = await startMovie(draft);
     try {
       let done = 0;

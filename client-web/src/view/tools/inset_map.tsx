@@ -5,6 +5,7 @@ import { type Extent, extentOf, placeOnMap, standOf, worldOfMap } from "../../co
 import type { PageState } from "../../core/state";
 import { formatLength, roundLength } from "../../core/units";
 import type { GetStormMapResponse } from "../../gen/thunderhead/v1/probe_pb";
+import { withPart } from "../part";
 import type { MapLines } from "./map_lines";
 
 export interface MapSteps {
@@ -23,7 +24,7 @@ export function InsetMap({ state, steps }: { state: PageState; steps: MapSteps }
   const map = state.stormMap.value;
   const stand = standOf(state.viewPose.value);
   const extent = extentOf(domainOf(map, state), stand?.placeM);
-  const lines = useLines(map, extent);
+  const lines = useLines(state, map, extent);
   const [cursor, setCursor] = useState<{ right: number; down: number } | undefined>(undefined);
   const pointer = usePointer(extent, steps);
   const key = (event: KeyboardEvent) => {
@@ -89,7 +90,11 @@ function domainOf(map: GetStormMapResponse | undefined, state: PageState): Exten
   };
 }
 
-function useLines(map: GetStormMapResponse | undefined, extent: Extent): MapLines | undefined {
+function useLines(
+  state: PageState,
+  map: GetStormMapResponse | undefined,
+  extent: Extent,
+): MapLines | undefined {
   const [lines, setLines] = useState<MapLines | undefined>(undefined);
   const { westM, eastM, southM, northM } = extent;
   const middle = map?.middle;
@@ -101,17 +106,20 @@ function useLines(map: GetStormMapResponse | undefined, extent: Extent): MapLine
     }
     let wanted = true;
     const { latitudeDeg, longitudeDeg } = middle;
-    void import("./map_lines").then(async ({ mapLines }) => {
-      const found = await mapLines(
-        { projection, latitudeDeg, longitudeDeg },
-        { westM, eastM, southM, northM },
-      );
-      if (wanted) setLines(found);
-    });
+    withPart(
+      state,
+      "The map's coasts and borders",
+      async () =>
+        (await import("./map_lines")).mapLines(
+          { projection, latitudeDeg, longitudeDeg },
+          { westM, eastM, southM, northM },
+        ),
+      (found) => wanted && setLines(found),
+    );
     return () => {
       wanted = false;
     };
-  }, [projection, middle, westM, eastM, southM, northM]);
+  }, [state, projection, middle, westM, eastM, southM, northM]);
   return lines;
 }
 

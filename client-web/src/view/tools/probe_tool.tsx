@@ -1,7 +1,7 @@
 // The probe: a click on the picture asks the server for the place, and the values of every field along the ray.
 
 import { nameOfHydrometeor } from "../../core/names";
-import { displacementBetween, placeInWords, readable } from "../../core/probe";
+import { displacementBetween, type Probed, placeInWords, readable } from "../../core/probe";
 import type { PageState } from "../../core/state";
 import { compassPoint } from "../../core/sun";
 import { formatLength, formatNumber } from "../../core/units";
@@ -45,20 +45,23 @@ export function ProbeTool({ page }: { page: Page }) {
           {state.probeProblem.value}
         </p>
       )}
-      <div aria-live="polite">
-        {last !== undefined && <Found state={state} found={last.found} />}
-      </div>
+      <div aria-live="polite">{last !== undefined && <Found state={state} last={last} />}</div>
       <Cores page={page} />
     </>
   );
 }
 
-function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) {
+function Found({ state, last }: { state: PageState; last: Probed }) {
+  const { found } = last;
   const [first, second] = state.probes.value;
-  const displacement = displacementBetween(first?.found.seenPlace, second?.found.seenPlace);
+  const displacement =
+    first?.stormId === second?.stormId
+      ? displacementBetween(first?.found.seenPlace, second?.found.seenPlace)
+      : undefined;
   return (
     <section aria-label="Found" data-testid="probe-found">
       <p class="found">
+        {last.picture === "B" && <span data-testid="probe-picture">B · </span>}
         <strong>{seenInWords(found)}</strong>
         {found.seenPlace !== undefined && <Where place={found.seenPlace} />}
       </p>
@@ -85,7 +88,7 @@ function Found({ state, found }: { state: PageState; found: ProbeRayResponse }) 
           ))}
         </tbody>
       </table>
-      {found.distancesM.length > 1 && <RayChart found={found} />}
+      {found.distancesM.length > 1 && <RayChart state={state} found={found} />}
       <p class="quiet" data-testid="probe-depth">
         Optical depth {formatNumber(found.opticalDepth)}
         {found.firstCloud !== undefined &&

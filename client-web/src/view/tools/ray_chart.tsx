@@ -2,8 +2,10 @@
 import { useEffect, useRef } from "preact/hooks";
 import { nameOfHydrometeor } from "../../core/names";
 import { readable } from "../../core/probe";
+import type { PageState } from "../../core/state";
 import { formatNumber, lengthUnits } from "../../core/units";
 import type { FieldAlongRay, ProbeRayResponse } from "../../gen/thunderhead/v1/probe_pb";
+import { withPart } from "../part";
 import { colorOfField } from "./field_colors";
 
 const HEIGHT_PX = 170;
@@ -16,13 +18,16 @@ function unitOfFields(fields: readonly FieldAlongRay[]): string {
   return [...new Set(fields.map(({ units }) => readable(units).symbol))].join(", ");
 }
 
-export function RayChart({ found }: { found: ProbeRayResponse }) {
+export function RayChart({ state, found }: { state: PageState; found: ProbeRayResponse }) {
   const place = useRef<HTMLDivElement>(null);
   const nautical = lengthUnits.value === "aviation";
   useEffect(() => {
     let chart: { destroy(): void } | undefined;
     let wanted = true;
-    void Promise.all([import("uplot"), import("uplot/dist/uPlot.min.css")]).then(
+    withPart(
+      state,
+      "The chart",
+      () => Promise.all([import("uplot"), import("uplot/dist/uPlot.min.css")]),
       ([{ default: UPlot }]) => {
         if (!wanted || place.current === null) return;
         const fields = found.fields.filter(({ values }) => values.length > 0);
@@ -84,7 +89,7 @@ export function RayChart({ found }: { found: ProbeRayResponse }) {
       wanted = false;
       chart?.destroy();
     };
-  }, [found, nautical]);
+  }, [state, found, nautical]);
   return (
     <div
       ref={place}
