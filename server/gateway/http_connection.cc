@@ -158,7 +158,9 @@ net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const st
   bool keep = false;
   if (path == "/healthz") {
     keep = co_await SendText(request, http::status::ok, "ok\n");
-  } else if (const std::optional<StaticFile> file = site_.files.Find(path); file.has_value()) {
+  } else if (const std::optional<StaticFile> file =
+                 site_.files.Find(path, View(request[http::field::accept_encoding]));
+             file.has_value()) {
     keep = co_await SendFile(request, *file);
   } else if (const std::optional<KeptFile> kept =
                  site_.options.find_kept_file ? site_.options.find_kept_file(path) : std::nullopt;
@@ -312,6 +314,7 @@ net::awaitable<bool> HttpConnection::SendFile(const Request& request, const Stat
   http::response<http::empty_body> header(http::status::ok, request.version());
   header.set(http::field::etag, file.entity_tag);
   header.set(http::field::cache_control, file.cache_control);
+  if (file.varies) header.set(http::field::vary, "Accept-Encoding");
   bool keep = false;
   if (MatchesEntityTag(View(request[http::field::if_none_match]), file.entity_tag)) {
     header.result(http::status::not_modified);
@@ -327,6 +330,9 @@ net::awaitable<bool> HttpConnection::SendFile(const Request& request, const Stat
     co_return keep;
   }
   header.set(http::field::content_type, file.content_type);
+  if (!file.content_encoding.empty()) {
+    header.set(http::field::content_encoding, file.content_encoding);
+  }
   header.content_length(body.size());
   if (request.method() == http::verb::head) {
     keep = co_await Send(request, header);
