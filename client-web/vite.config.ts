@@ -1,4 +1,5 @@
 import { defineConfig } from "vitest/config";
+import { precompress } from "./scripts/precompress";
 
 // A running server for `npm run dev` to pass calls on to.
 const server = process.env.THUNDERHEAD_URL ?? "http://127.0.0.1:8080";
@@ -6,6 +7,7 @@ const server = process.env.THUNDERHEAD_URL ?? "http://127.0.0.1:8080";
 export default defineConfig({
   // Relative addresses, so that the page also works below a path behind a proxy.
   base: "./",
+  plugins: [precompress()],
   build: { outDir: "dist", emptyOutDir: true, target: "es2022" },
   server: {
     proxy: {

@@ -21,6 +21,8 @@ struct Act {
   std::string role;      // empty: likewise
   std::string peer;
   std::string name;  // of the call, or of what was asked for within one
+  // Refused by the gateway before there was a call.
+  bool before_call = false;
 };
 
 class Audit {
@@ -28,7 +30,8 @@ class Audit {
   using Clock = std::chrono::system_clock;
 
   // Refusals in one second beyond these are counted, not written: a flood must not fill the disk.
-  // The count is in the next line of a refusal. What was allowed is always written.
+  // The count is in the next line of a refusal. Those before a call are limited by themselves, so
+  // that a flood of connections does not hide who tries tokens. What was allowed is always written.
   static constexpr int kMaxRefusalsPerSecond = 50;
 
   // `write` takes one line without its end, from any thread, one at a time.
@@ -39,11 +42,20 @@ class Audit {
   void Write(const Act& act, const absl::Status& status, Clock::time_point now = Clock::now());
 
  private:
+  // How many refusals have been written lately.
+  struct Rate {
+    std::chrono::sys_seconds second{};
+    int refusals = 0;  // in it
+    std::uint64_t left_out = 0;
+  };
+
+  // False if one more at `now` is too many.
+  static bool Takes(Rate& rate, Clock::time_point now);
+
   std::mutex mutex_;
   const std::function<void(const std::string&)> write_;
-  std::chrono::sys_seconds second_{};
-  int refusals_ = 0;  // in it
-  std::uint64_t left_out_ = 0;
+  Rate calls_;
+  Rate before_calls_;
 };
 
 }  // namespace thunderhead::access

@@ -114,4 +114,9 @@ absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view metho
   return status;
 }
 
+void Door::ReportBeforeCall(const std::string& peer, std::string_view act,
+                            const absl::Status& refusal) {
+  audit_->Write({"", "", peer, std::string(act), /*before_call=*/true}, refusal);
+}
+
 }  // namespace thunderhead::access

@@ -53,6 +53,9 @@ class Door {
   absl::StatusOr<std::shared_ptr<const Caller>> Admit(std::string_view method, CallKind kind,
                                                       Credentials credentials);
 
+  // A refusal of the gateway before there was a call, for the audit.
+  void ReportBeforeCall(const std::string& peer, std::string_view act, const absl::Status& refusal);
+
   // A token of this process' own, with which it calls itself as an operator.
   const std::string& OwnToken() const { return own_token_; }
   const QuotaLimits& limits() const { return quotas_.limits(); }

@@ -22,11 +22,13 @@
 #include "app/operation.h"
 #include "app/serve_flags.h"
 #include "app/state_folder.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "gateway/gateway.h"
 #include "gateway/tls_contexts.h"
 #include "session/gl_frame_source.h"
 #include "spdlog/spdlog.h"
+#include "telemetry/metrics.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::app {
@@ -179,6 +181,10 @@ absl::Status Serve(ServeFlags flags) {
   }
   gateway_options.find_kept_file = [&server](std::string_view path) {
     return FindResult(*server, path);
+  };
+  gateway_options.on_refusal = [&door](const gateway::GatewayRefusal& refusal) {
+    telemetry::Counted().refusals.Of(base::DetailsOf(refusal.why).reason).Add();
+    door->ReportBeforeCall(refusal.peer, refusal.act, refusal.why);
   };
   const std::shared_ptr<grpc::Channel> channel = server->LocalChannel();
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gateway::Gateway> gateway,

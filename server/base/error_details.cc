@@ -15,6 +15,7 @@ constexpr char kReason[] = "thunderhead/reason";
 constexpr char kField[] = "thunderhead/field";
 constexpr char kDescription[] = "thunderhead/description";
 constexpr char kRetryAfterMs[] = "thunderhead/retry_after_ms";
+constexpr char kPermanent[] = "thunderhead/permanent";
 constexpr char kMetadata[] = "thunderhead/metadata/";  // and the key
 
 // How long a process needs to end and another to start.
@@ -45,6 +46,7 @@ absl::Status WithDetails(absl::Status status, const ErrorDetails& details) {
   if (details.retry_after.has_value()) {
     AddPayload(status, kRetryAfterMs, absl::StrCat(details.retry_after->count()));
   }
+  if (details.permanent) AddPayload(status, kPermanent, "true");
   return status;
 }
 
@@ -61,6 +63,7 @@ ErrorDetails DetailsOf(const absl::Status& status) {
   if (absl::SimpleAtoi(PayloadOf(status, kRetryAfterMs), &retry_after_ms)) {
     details.retry_after = std::chrono::milliseconds(retry_after_ms);
   }
+  details.permanent = status.GetPayload(kPermanent).has_value();
   return details;
 }
 

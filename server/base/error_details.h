@@ -20,6 +20,7 @@ struct ErrorDetails {
   std::string description = {};  // of what is wrong with the field; absent: the status' message
   std::map<std::string, std::string> metadata = {};  // e.g. "maximum" of "0.1" and "unit" of "m"
   std::optional<std::chrono::milliseconds> retry_after = {};
+  bool permanent = false;  // the same request will be refused again, so that a retry does not help
 };
 
 // `status` with those details that it does not have yet: who found the error knows it best. OK

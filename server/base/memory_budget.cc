@@ -205,7 +205,7 @@ absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes, std::string
     return WithDetails(absl::ResourceExhaustedError(absl::StrCat(
                            needs, ", and the server has ", InWords(limit),
                            " for all; ask for less, or give it more with ", options_.flag)),
-                       {.reason = kTooLarge, .metadata = std::move(metadata)});
+                       {.reason = kTooLarge, .metadata = std::move(metadata), .permanent = true});
   }
   std::string uses;
   std::size_t total = 0;

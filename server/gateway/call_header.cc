@@ -19,6 +19,17 @@ constexpr absl::Duration kLongestTimeout = absl::Hours(24 * 365);
 
 }  // namespace
 
+std::string ClientOf(const boost::beast::http::request<boost::beast::http::string_body>& request,
+                     const std::string& peer, const base::TrustedProxies& proxies) {
+  std::string forwarded_for;
+  const auto [first, last] = request.equal_range("x-forwarded-for");
+  for (auto line = first; line != last; ++line) {
+    absl::StrAppend(&forwarded_for, forwarded_for.empty() ? "" : ",",
+                    absl::string_view(line->value().data(), line->value().size()));
+  }
+  return proxies.ClientOf(peer, forwarded_for);
+}
+
 absl::StatusOr<UpstreamRequest> TranslateHeader(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
     const std::string& peer, const base::TrustedProxies& proxies) {
@@ -29,13 +40,7 @@ absl::StatusOr<UpstreamRequest> TranslateHeader(
     THUNDERHEAD_RETURN_IF_ERROR(
         AddRequestHeader(View(field.name_string()), View(field.value()), upstream.metadata));
   }
-  std::string forwarded_for;
-  const auto [first, last] = request.equal_range("x-forwarded-for");
-  for (auto line = first; line != last; ++line) {
-    absl::StrAppend(&forwarded_for, forwarded_for.empty() ? "" : ",",
-                    absl::string_view(line->value().data(), line->value().size()));
-  }
-  upstream.metadata.emplace_back("x-forwarded-for", proxies.ClientOf(peer, forwarded_for));
+  upstream.metadata.emplace_back("x-forwarded-for", ClientOf(request, peer, proxies));
   const auto [begin, end] = request.equal_range(boost::beast::http::field::sec_websocket_protocol);
   for (auto field = begin; field != end; ++field) {
     // Browsers cannot set a WebSocket's other headers.

@@ -14,9 +14,13 @@
 
 namespace thunderhead::gateway {
 
+// For whom `request` is: `peer`, the client's address, or the client that `peer` names by
+// x-forwarded-for if it is one of `proxies`.
+std::string ClientOf(const boost::beast::http::request<boost::beast::http::string_body>& request,
+                     const std::string& peer, const base::TrustedProxies& proxies);
+
 // Method, metadata and deadline of the call that `request` asks for; no message. The service is
-// told that it is for `peer`, the client's address, by x-forwarded-for; or for the client that
-// `peer` names there, if it is one of `proxies`.
+// told for whom it is by x-forwarded-for.
 absl::StatusOr<UpstreamRequest> TranslateHeader(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
     const std::string& peer, const base::TrustedProxies& proxies);

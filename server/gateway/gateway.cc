@@ -18,6 +18,7 @@
 #include "gateway/client_link.h"
 #include "gateway/http_connection.h"
 #include "gateway/open_links.h"
+#include "gateway/refusals.h"
 #include "gateway/site.h"
 #include "gateway/tls_contexts.h"
 #include "spdlog/spdlog.h"
@@ -118,7 +119,10 @@ class Gateway::Listener {
     auto tls = tls_.has_value() ? tls_->Current() : nullptr;
     auto link = std::make_shared<ClientLink>(std::move(socket), std::move(tls),
                                              site_.options.write_stall_timeout);
-    if (!links_.MakeRoom(*link)) return;
+    if (!links_.MakeRoom(*link)) {
+      TellOfRefusal(site_.options, link->Peer(), "Connect", TooManyConnections());
+      return;
+    }
     links_.Add(link);
     net::co_spawn(io_, ServeConnection(link, site_),
                   [this, link](const std::exception_ptr&) { links_.Remove(link); });

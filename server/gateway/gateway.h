@@ -26,6 +26,13 @@ struct KeptFile {
   std::string entity_tag;  // another one for other contents; without quotes
 };
 
+// A connection or request that broke a rule or a limit of the gateway, and so became no call.
+struct GatewayRefusal {
+  std::string peer;  // for whom it was, with X-Forwarded-For of trusted proxies
+  std::string act;   // "Connect", "Request", "Preflight", "WebSocket" or "Message"
+  absl::Status why;  // with a reason for programs; repeats nothing that the client sent
+};
+
 struct GatewayOptions {
   // An IP address or "localhost".
   std::string address = "127.0.0.1";
@@ -41,6 +48,9 @@ struct GatewayOptions {
   std::string page_directory;
   // Finds what the page's folder does not have; empty: nothing more. Must not block.
   std::function<std::optional<KeptFile>(std::string_view path)> find_kept_file;
+  // Told of each refusal, on the gateway's thread; empty: nobody is. Must not block. A path where
+  // there is nothing, a wrong method and a malformed request are mistakes, not refusals.
+  std::function<void(const GatewayRefusal&)> on_refusal;
   // Origins of other pages that may call, for example "http://localhost:5173". The page served here
   // needs none.
   std::vector<std::string> allowed_origins;

@@ -24,6 +24,7 @@
 #include "gateway/call_header.h"
 #include "gateway/grpc_web_exchange.h"
 #include "gateway/grpc_web_protocol.h"
+#include "gateway/refusals.h"
 #include "gateway/text_view.h"
 #include "gateway/websocket_exchange.h"
 #include "gateway/websocket_upgrade.h"
@@ -78,6 +79,10 @@ class HttpConnection {
   template <typename Body>
   net::awaitable<bool> Send(const Request& request, http::response<Body>& response);
   net::awaitable<error_code> ReadBody(Parser& parser);
+  void Tell(const Request& request, const char* act, const absl::Status& refusal) {
+    TellOfRefusal(site_.options, ClientOf(request, link_.Peer(), site_.options.trusted_proxies),
+                  act, refusal);
+  }
 
   ClientLink& link_;
   Site& site_;
@@ -129,6 +134,7 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
   const std::string path(target.substr(0, target.find('?')));
   bool keep = false;
   if (!site_.policy.AllowsHost(host)) {
+    Tell(request, "Request", HostNotAllowed());
     keep = co_await SendText(request, http::status::forbidden,
                              absl::StrCat("This server does not answer to '", std::string(host),
                                           "'. Open it under a name that it knows, such as "
@@ -158,7 +164,9 @@ net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const st
   bool keep = false;
   if (path == "/healthz") {
     keep = co_await SendText(request, http::status::ok, "ok\n");
-  } else if (const std::optional<StaticFile> file = site_.files.Find(path); file.has_value()) {
+  } else if (const std::optional<StaticFile> file =
+                 site_.files.Find(path, View(request[http::field::accept_encoding]));
+             file.has_value()) {
     keep = co_await SendFile(request, *file);
   } else if (const std::optional<KeptFile> kept =
                  site_.options.find_kept_file ? site_.options.find_kept_file(path) : std::nullopt;
@@ -179,6 +187,7 @@ net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const st
 net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
   bool keep = false;
   if (const auto refusal = FindUpgradeRefusal(request, site_.policy); refusal.has_value()) {
+    if (refusal->status == http::status::forbidden) Tell(request, "WebSocket", OriginNotAllowed());
     keep = co_await SendText(request, refusal->status, refusal->text);
     co_return keep;
   }
@@ -226,6 +235,7 @@ net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::strin
 net::awaitable<bool> HttpConnection::AnswerOptions(const Request& request) {
   const std::string_view origin = View(request[http::field::origin]);
   if (!origin.empty() && !site_.policy.AllowsOrigin(origin)) {
+    Tell(request, "Preflight", OriginNotAllowed());
     const std::string text =
         absl::StrCat("Pages of ", std::string(origin), " may not call this server; start it with ",
                      "--allow-origin ", std::string(origin), " to allow that.\n");
@@ -281,6 +291,7 @@ net::awaitable<error_code> HttpConnection::ReadBody(Parser& parser) {
 }
 
 net::awaitable<bool> HttpConnection::RefuseLargeCall(const Request& request) {
+  Tell(request, "Message", MessageTooLarge());
   const absl::Status status = absl::ResourceExhaustedError(
       absl::StrCat("the request message is larger than the ", site_.options.max_message_bytes,
                    " bytes that this server accepts"));
@@ -301,6 +312,7 @@ net::awaitable<bool> HttpConnection::AnswerBadHeader(error_code error) {
   Request request;
   request.version(11);
   request.keep_alive(false);
+  if (too_large) Tell(request, "Request", HeaderTooLarge());
   const bool keep = co_await SendText(
       request,
       too_large ? http::status::request_header_fields_too_large : http::status::bad_request,
@@ -312,6 +324,7 @@ net::awaitable<bool> HttpConnection::SendFile(const Request& request, const Stat
   http::response<http::empty_body> header(http::status::ok, request.version());
   header.set(http::field::etag, file.entity_tag);
   header.set(http::field::cache_control, file.cache_control);
+  if (file.varies) header.set(http::field::vary, "Accept-Encoding");
   bool keep = false;
   if (MatchesEntityTag(View(request[http::field::if_none_match]), file.entity_tag)) {
     header.result(http::status::not_modified);
@@ -327,6 +340,9 @@ net::awaitable<bool> HttpConnection::SendFile(const Request& request, const Stat
     co_return keep;
   }
   header.set(http::field::content_type, file.content_type);
+  if (!file.content_encoding.empty()) {
+    header.set(http::field::content_encoding, file.content_encoding);
+  }
   header.content_length(body.size());
   if (request.method() == http::verb::head) {
     keep = co_await Send(request, header);

@@ -77,7 +77,8 @@ void HttpPolicy::Decorate(std::string_view origin, http::fields& response) const
   response.set("Content-Security-Policy", kContentSecurityPolicy);
   response.set("Referrer-Policy", "no-referrer");
   if (allowed_origins_.empty()) return;
-  response.set(http::field::vary, "Origin");
+  const std::string varies = response[http::field::vary].to_string();
+  response.set(http::field::vary, varies.empty() ? "Origin" : varies + ", Origin");
   if (!AllowsOrigin(origin)) return;
   response.set(http::field::access_control_allow_origin, BeastView(origin));
   // Metadata may have any name; without credentials the asterisk matches all.

@@ -7,11 +7,14 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
@@ -97,6 +100,34 @@ bool IsInside(const fs::path& path, const fs::path& root) {
   return end_of_root == root.end() && rest != path.end();
 }
 
+std::optional<struct stat> RegularFile(const fs::path& path) {
+  struct stat information = {};
+  if (::stat(path.c_str(), &information) != 0 || !S_ISREG(information.st_mode)) return std::nullopt;
+  return information;
+}
+
+std::string EntityTag(const struct stat& information, std::string_view suffix) {
+  return absl::StrCat("\"", absl::Hex(information.st_size), "-",
+                      absl::Hex(information.st_mtim.tv_sec), "-",
+                      absl::Hex(information.st_mtim.tv_nsec), std::string(suffix), "\"");
+}
+
+bool IsOlder(const struct stat& a, const struct stat& b) {
+  return std::tie(a.st_mtim.tv_sec, a.st_mtim.tv_nsec) <
+         std::tie(b.st_mtim.tv_sec, b.st_mtim.tv_nsec);
+}
+
+// The weight of "gzip;q=0.5"; 0 if it is malformed.
+double WeightOf(absl::string_view parameters) {
+  for (absl::string_view parameter : absl::StrSplit(parameters, ';')) {
+    parameter = absl::StripAsciiWhitespace(parameter);
+    if (!absl::ConsumePrefix(&parameter, "q=") && !absl::ConsumePrefix(&parameter, "Q=")) continue;
+    double weight = 0.0;
+    return absl::SimpleAtod(parameter, &weight) && weight >= 0.0 ? weight : 0.0;
+  }
+  return 1.0;
+}
+
 }  // namespace
 
 absl::StatusOr<StaticFiles> StaticFiles::Open(const std::string& directory) {
@@ -116,7 +147,8 @@ absl::StatusOr<StaticFiles> StaticFiles::Open(const std::string& directory) {
   return files;
 }
 
-std::optional<StaticFile> StaticFiles::Find(std::string_view url_path) const {
+std::optional<StaticFile> StaticFiles::Find(std::string_view url_path,
+                                            std::string_view accept_encoding) const {
   if (root_.empty()) return std::nullopt;
   const std::optional<fs::path> relative = RelativePath(url_path);
   if (!relative.has_value()) return std::nullopt;
@@ -124,20 +156,50 @@ std::optional<StaticFile> StaticFiles::Find(std::string_view url_path) const {
   fs::path path = fs::canonical(root_ / *relative, error);
   // Symbolic links may point inside the page's directory but not out of it.
   if (error || !IsInside(path, root_)) return std::nullopt;
-  struct stat information = {};
-  if (::stat(path.c_str(), &information) != 0 || !S_ISREG(information.st_mode)) return std::nullopt;
+  const std::optional<struct stat> plain = RegularFile(path);
+  if (!plain.has_value()) return std::nullopt;
 
   StaticFile file;
   file.content_type = ContentType(path);
-  file.entity_tag =
-      absl::StrCat("\"", absl::Hex(information.st_size), "-", absl::Hex(information.st_mtim.tv_sec),
-                   "-", absl::Hex(information.st_mtim.tv_nsec), "\"");
+  file.entity_tag = EntityTag(*plain, "");
   // The names of assets contain a hash of their content, so browsers need to revalidate only the
   // others.
   const bool is_hashed = *relative->begin() == "assets";
   file.cache_control = is_hashed ? "public, max-age=31536000, immutable" : "no-cache";
+  // A gzip file older than its original is of another content.
+  const fs::path compressed = fs::canonical(fs::path(path) += ".gz", error);
+  const std::optional<struct stat> gzip =
+      !error && IsInside(compressed, root_) ? RegularFile(compressed) : std::nullopt;
+  file.varies = gzip.has_value() && !IsOlder(*gzip, *plain);
+  if (file.varies && PrefersGzip(accept_encoding)) {
+    file.content_encoding = "gzip";
+    file.entity_tag = EntityTag(*gzip, "-gzip");
+    path = compressed;
+  }
   file.path = std::move(path);
   return file;
+}
+
+bool PrefersGzip(std::string_view accept_encoding) {
+  std::optional<double> gzip;
+  std::optional<double> any;
+  double plain = 0.0;  // unless named, it is the last choice
+  for (const absl::string_view choice :
+       absl::StrSplit(absl::string_view(accept_encoding.data(), accept_encoding.size()), ',')) {
+    const std::pair<absl::string_view, absl::string_view> parts =
+        absl::StrSplit(choice, absl::MaxSplits(';', 1));
+    const absl::string_view coding = absl::StripAsciiWhitespace(parts.first);
+    const double weight = WeightOf(parts.second);
+    if (absl::EqualsIgnoreCase(coding, "gzip") || absl::EqualsIgnoreCase(coding, "x-gzip")) {
+      gzip = weight;
+    } else if (absl::EqualsIgnoreCase(coding, "identity")) {
+      plain = weight;
+    } else if (coding == "*") {
+      any = weight;
+    }
+  }
+  const double weight = gzip.value_or(any.value_or(0.0));
+  return weight > 0.0 && weight >= plain;
 }
 
 bool MatchesEntityTag(std::string_view candidates, std::string_view entity_tag) {

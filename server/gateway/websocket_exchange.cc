@@ -11,6 +11,7 @@
 
 #include "gateway/call_header.h"
 #include "gateway/message_slices.h"
+#include "gateway/refusals.h"
 #include "gateway/websocket_protocol.h"
 #include "grpcpp/support/slice.h"
 #include "spdlog/spdlog.h"
@@ -42,6 +43,7 @@ WebSocketExchange::WebSocketExchange(Site& site, std::shared_ptr<ClientLink> lin
 
 net::awaitable<void> WebSocketExchange::Run(const Request& request,
                                             const UpstreamRequest& upstream) {
+  client_ = ClientOf(request, link_->Peer(), site_.options.trusted_proxies);
   const bool accepted = co_await Accept(request);
   if (!accepted) co_return;
   const UpstreamCall::Lease call =
@@ -182,10 +184,17 @@ net::awaitable<bool> WebSocketExchange::ReadStart() {
     error_code error;
     const size_t bytes = co_await socket_.async_read_some(
         BufferOf(kind_), net::redirect_error(net::use_awaitable, error));
-    if (error) co_return false;
+    if (error) co_return EndsReading(error);
     has_kind_ = bytes > 0;
   } while (!has_kind_ && !socket_.is_message_done());
   co_return true;
+}
+
+bool WebSocketExchange::EndsReading(error_code error) const {
+  if (error == websocket::error::message_too_big) {
+    TellOfRefusal(site_.options, client_, "Message", MessageTooLarge());
+  }
+  return false;
 }
 
 net::awaitable<bool> WebSocketExchange::ForwardMessage() {
@@ -193,7 +202,7 @@ net::awaitable<bool> WebSocketExchange::ForwardMessage() {
   if (!socket_.is_message_done()) {
     error_code error;
     co_await socket_.async_read(payload, net::redirect_error(net::use_awaitable, error));
-    if (error) co_return false;
+    if (error) co_return EndsReading(error);
   }
   const grpc::Slice slice =
       payload.size() == 0 ? grpc::Slice() : grpc::Slice(payload.cdata().data(), payload.size());

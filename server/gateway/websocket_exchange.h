@@ -15,6 +15,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "gateway/awaitable.h"
 #include "gateway/change_signal.h"
@@ -55,6 +56,8 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   // False if the connection has ended.
   boost::asio::awaitable<bool> ReadStart();
   boost::asio::awaitable<bool> ForwardMessage();
+  // False; tells of a message that is too large.
+  bool EndsReading(boost::system::error_code error) const;
 
   boost::asio::awaitable<void> Watch();
   void Judge(PeerLiveness& liveness);
@@ -73,6 +76,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   boost::beast::websocket::stream<ClientStream&, /*deflateSupported=*/false> socket_;
   boost::asio::steady_timer watch_timer_;
   std::shared_ptr<UpstreamCall> call_;
+  std::string client_;
 
   // The WebSocket message that is being received.
   bool has_kind_ = false;

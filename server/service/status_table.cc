@@ -137,7 +137,8 @@ grpc::Status ToGrpcStatus(const absl::Status& status) {
   // Clients that read the details expect code and message there too.
   all.set_message(message);
   all.add_details()->PackFrom(ErrorInfoOf(details, row));
-  const milliseconds retry_after = details.retry_after.value_or(row.retry_after);
+  const milliseconds retry_after =
+      details.permanent ? milliseconds::zero() : details.retry_after.value_or(row.retry_after);
   if (retry_after > milliseconds::zero()) all.add_details()->PackFrom(RetryInfoOf(retry_after));
   if (row.wire == grpc::StatusCode::INVALID_ARGUMENT) {
     all.add_details()->PackFrom(BadRequestOf(details, message));

@@ -113,7 +113,8 @@ absl::Status Lane::Ended() const {
           absl::StrCat("drawing took more than the ", std::lround(1e-3 * limits_.max_ms),
                        " s that the server gives one picture; ask for fewer pixels or slices")),
       {.reason = "PICTURE_TOO_COSTLY",
-       .metadata = {{"maximum", absl::StrCat(1e-3 * limits_.max_ms)}, {"unit", "s"}}});
+       .metadata = {{"maximum", absl::StrCat(1e-3 * limits_.max_ms)}, {"unit", "s"}},
+       .permanent = true});
 }
 
 double Lane::WorkedMs() const {

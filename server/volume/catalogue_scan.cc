@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "base/file_stamp.h"
+#include "base/slow_calls.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::volume {
 
 std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& path) {
+  const base::SlowCall call(path);
   const std::optional<base::FileStamp> found = base::StampOf(path);
   if (!found.has_value()) return std::nullopt;
   return Stamp{found->inode ^ (found->device << 48U), static_cast<std::uint64_t>(found->size_bytes),

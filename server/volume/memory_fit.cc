@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "base/error_details.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -38,11 +39,13 @@ absl::StatusOr<std::size_t> CountThatFits(const std::string& what,
   }
   if (size <= static_cast<double>(most)) return count;
   constexpr double kGiB = 1 << 30;
-  return absl::ResourceExhaustedError(
-      absl::StrCat(what, " has ", absl::StrJoin(lengths, " x "), " values",
-                   absl::StrFormat(" (%.4g GiB), more than the %.4g GiB that can be held here",
-                                   size / kGiB, static_cast<double>(most) / kGiB),
-                   "; cut a smaller domain"));
+  return base::WithDetails(
+      absl::ResourceExhaustedError(
+          absl::StrCat(what, " has ", absl::StrJoin(lengths, " x "), " values",
+                       absl::StrFormat(" (%.4g GiB), more than the %.4g GiB that can be held here",
+                                       size / kGiB, static_cast<double>(most) / kGiB),
+                       "; cut a smaller domain")),
+      {.permanent = true});
 }
 
 }  // namespace thunderhead::volume

@@ -11,6 +11,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "base/slow_calls.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 #include "volume/run_start.h"
@@ -84,6 +85,7 @@ struct Folder {
 };
 
 absl::StatusOr<Folder> List(const fs::path& path) {
+  const base::SlowCall call(path.string());
   Folder folder;
   std::error_code error;
   fs::directory_iterator entries(path, error);
@@ -265,6 +267,7 @@ void LogNotes(const std::vector<CataloguedStorm>& storms) {
 }
 
 absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormFormats& formats) {
+  const base::SlowCall call(path);
   try {
     return formats.Describe(path);
   } catch (const std::bad_alloc&) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/str_join.h"
+#include "base/slow_calls.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 #include "volume/cached_storm_store.h"
@@ -22,7 +23,11 @@ namespace {
 absl::Status CheckPaths(const std::vector<std::string>& paths, const StormFormats& formats) {
   for (const std::string& path : paths) {
     std::error_code error;
-    if (std::filesystem::is_directory(path, error)) continue;
+    const auto is_folder = [&] {
+      const base::SlowCall call(path);
+      return std::filesystem::is_directory(path, error);
+    };
+    if (is_folder()) continue;
     THUNDERHEAD_RETURN_IF_ERROR(DescribeFile(path, formats).status());
   }
   return absl::OkStatus();

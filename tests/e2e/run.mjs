@@ -27,6 +27,7 @@ const files = [
   "video.test.mjs",
   "operation.test.mjs",
   "deploy.test.mjs",
+  "alerts.test.mjs",
   "catalogue.test.mjs",
   "sign_in.test.mjs",
 ];

@@ -89,6 +89,44 @@ TEST_F(HttpTest, UnchangedFilesAreNotSentAgain) {
   EXPECT_EQ(client.Ask("GET", "/", {{"If-None-Match", "\"old\""}}).result(), http::status::ok);
 }
 
+TEST_F(HttpTest, SendsTheGzipFileToWhoAcceptsIt) {
+  std::ofstream(folder_.File("index.html.gz")) << "packed";
+  options_.allowed_origins = {"http://localhost:5173"};
+  RawClient client(Site().Port());
+  const Response plain = client.Ask("GET", "/");
+  const Response packed = client.Ask("GET", "/", {{"Accept-Encoding", "gzip, deflate, br"}});
+  EXPECT_EQ(plain.body(), "<html>storm</html>");
+  EXPECT_EQ(Header(plain, "Content-Encoding"), "");
+  EXPECT_EQ(packed.body(), "packed");
+  EXPECT_EQ(Header(packed, "Content-Encoding"), "gzip");
+  EXPECT_EQ(Header(packed, "Content-Length"), "6");
+  EXPECT_EQ(Header(packed, "Content-Type"), "text/html; charset=utf-8");
+  EXPECT_EQ(Header(packed, "Cache-Control"), "no-cache");
+  for (const Response& response : {plain, packed}) {
+    EXPECT_EQ(Header(response, "Vary"), "Accept-Encoding, Origin");
+  }
+  EXPECT_NE(Header(plain, "ETag"), Header(packed, "ETag"));
+  EXPECT_EQ(client.Ask("GET", "/", {{"Accept-Encoding", "gzip;q=0"}}).body(), plain.body());
+
+  const Response head = client.Ask("HEAD", "/", {{"Accept-Encoding", "gzip"}});
+  EXPECT_EQ(Header(head, "Content-Length"), "6");
+  EXPECT_EQ(Header(head, "Content-Encoding"), "gzip");
+}
+
+TEST_F(HttpTest, EachEncodingIsRevalidatedByItsOwnTag) {
+  std::ofstream(folder_.File("index.html.gz")) << "packed";
+  RawClient client(Site().Port());
+  const std::string plain = Header(client.Ask("GET", "/"), "ETag");
+  const Response same =
+      client.Ask("GET", "/", {{"Accept-Encoding", "identity"}, {"If-None-Match", plain}});
+  EXPECT_EQ(same.result(), http::status::not_modified);
+  EXPECT_EQ(Header(same, "Vary"), "Accept-Encoding");
+  const Response other =
+      client.Ask("GET", "/", {{"Accept-Encoding", "gzip"}, {"If-None-Match", plain}});
+  EXPECT_EQ(other.result(), http::status::ok);
+  EXPECT_EQ(other.body(), "packed");
+}
+
 TEST_F(HttpTest, HealthIsTold) {
   const Response health = Ask("GET", "/healthz");
   EXPECT_EQ(health.result(), http::status::ok);

@@ -36,8 +36,9 @@ class StaticFilesTest : public ::testing::Test {
     fs::create_symlink("favicon.svg", root_ / "alias.svg");
   }
 
-  std::optional<StaticFile> Find(const std::string& path) const {
-    return StaticFiles::Open(root_.string())->Find(path);
+  std::optional<StaticFile> Find(const std::string& path,
+                                 const std::string& accept_encoding = "") const {
+    return StaticFiles::Open(root_.string())->Find(path, accept_encoding);
   }
 
   testing::TemporaryFolder folder_;
@@ -86,6 +87,44 @@ TEST_F(StaticFilesTest, EntityTagFollowsTheFile) {
   EXPECT_NE(before, Find("/favicon.svg")->entity_tag);
 }
 
+TEST_F(StaticFilesTest, FilesWithAGzipFileBesideThemHaveTwoEncodings) {
+  const fs::path script = root_ / "assets/index-Ab12.js";
+  Write(fs::path(script) += ".gz", "packed");
+  const StaticFile plain = Find("/assets/index-Ab12.js").value();
+  const StaticFile packed = Find("/assets/index-Ab12.js", "gzip, deflate, br").value();
+  EXPECT_EQ(plain.path, fs::canonical(script));
+  EXPECT_EQ(plain.content_encoding, "");
+  EXPECT_EQ(packed.path, fs::canonical(script) += ".gz");
+  EXPECT_EQ(packed.content_encoding, "gzip");
+  EXPECT_TRUE(plain.varies);
+  EXPECT_TRUE(packed.varies);
+  EXPECT_EQ(packed.content_type, plain.content_type);
+  EXPECT_EQ(packed.cache_control, plain.cache_control);
+  EXPECT_NE(packed.entity_tag, plain.entity_tag);
+
+  const StaticFile alone = Find("/favicon.svg", "gzip").value();
+  EXPECT_EQ(alone.content_encoding, "");
+  EXPECT_FALSE(alone.varies);
+}
+
+TEST_F(StaticFilesTest, AGzipFileOfAnotherContentIsNotSent) {
+  const fs::path icon = root_ / "favicon.svg";
+  const fs::path packed = fs::path(icon) += ".gz";
+  Write(packed, "packed");
+  fs::last_write_time(packed, fs::last_write_time(icon) - std::chrono::milliseconds(1));
+  EXPECT_EQ(Find("/favicon.svg", "gzip")->content_encoding, "");
+  EXPECT_FALSE(Find("/favicon.svg", "gzip")->varies);
+  fs::last_write_time(packed, fs::last_write_time(icon));
+  EXPECT_EQ(Find("/favicon.svg", "gzip")->content_encoding, "gzip");
+}
+
+TEST_F(StaticFilesTest, AGzipFileNeverLeadsOutOfThePage) {
+  fs::create_symlink(folder_.Path() / "secret.txt", root_ / "favicon.svg.gz");
+  fs::create_directory(root_ / "index.html.gz");
+  EXPECT_EQ(Find("/favicon.svg", "gzip")->content_encoding, "");
+  EXPECT_EQ(Find("/", "gzip")->content_encoding, "");
+}
+
 TEST_F(StaticFilesTest, OpenWantsAPage) {
   const absl::Status missing = StaticFiles::Open((root_ / "no").string()).status();
   EXPECT_EQ(missing.code(), absl::StatusCode::kNotFound);
@@ -96,6 +135,20 @@ TEST_F(StaticFilesTest, OpenWantsAPage) {
   ASSERT_TRUE(StaticFiles::Open("").ok());
   EXPECT_FALSE(StaticFiles::Open("")->Find("/").has_value());
   EXPECT_FALSE(StaticFiles::Open("")->Find("/etc/passwd").has_value());
+}
+
+TEST(AcceptEncoding, GzipMustBeAcceptedAndNotRankedBelowThePlainFile) {
+  for (const char* accepted :
+       {"gzip", "GZIP", "x-gzip", "gzip, deflate, br, zstd", "br;q=1.0, gzip;q=0.5", "*",
+        "gzip;q=0.001", "deflate , gzip ; q=0.3", "gzip, *;q=0", "identity;q=0.5, gzip;q=1",
+        "gzip;q=1, identity;q=1", "identity;q=0, *"}) {
+    EXPECT_TRUE(PrefersGzip(accepted)) << accepted;
+  }
+  for (const char* refused :
+       {"", "identity", "br", "deflate, br", "gzip;q=0", "gzip; q=0.0", "gzip;Q=0", "*;q=0",
+        "gzip;q=0, *", "identity, gzip;q=0.5", "gzip;q=x", "gzip;q=-1", "gzippy", ",", ";q=1"}) {
+    EXPECT_FALSE(PrefersGzip(refused)) << refused;
+  }
 }
 
 TEST(EntityTag, MatchesAnyOfTheCandidates) {

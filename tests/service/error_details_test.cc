@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/error_details.h"
+#include "base/memory_budget.h"
 #include "clouds/presets.h"
 #include "gmock/gmock.h"
 #include "google/protobuf/util/json_util.h"
@@ -312,6 +313,21 @@ TEST(ErrorDetailsTest, NoMoreCloudsThanTheMaximum) {
   ExpectRefusal(full, grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CLOUDS");
   EXPECT_EQ(Decode(full).metadata.at("maximum"), "64");
   EXPECT_EQ(Decode(full).retry_s, 60.0);
+}
+
+TEST(StatusTableTest, WhatWouldBeRefusedAgainHasNoTimeToTryAgain) {
+  const absl::Status refused = absl::ResourceExhaustedError("why");
+  EXPECT_EQ(Decode(service::ToGrpcStatus(base::WithDetails(refused, {.reason = "A"}))).retry_s,
+            30.0);
+  const auto permanent = Decode(service::ToGrpcStatus(
+      base::WithDetails(refused, {.reason = "STORM_UNREADABLE", .permanent = true})));
+  EXPECT_LT(permanent.retry_s, 0.0);
+  EXPECT_EQ(permanent.reason, "STORM_UNREADABLE");
+  // A picture that does not fit in the whole budget.
+  const auto budget = base::MemoryBudget::Make({.bytes = 1000});
+  const absl::Status too_large =
+      budget->Reserve(base::MemoryUse::kDrawing, 2000, "a picture").status();
+  EXPECT_LT(Decode(service::ToGrpcStatus(too_large)).retry_s, 0.0);
 }
 
 TEST(StatusTableTest, EveryRefusalHasDetails) {

@@ -274,6 +274,34 @@ TEST(AuditTest, AFloodOfRefusalsIsCounted) {
   EXPECT_THAT(lines.back(), HasSubstr("left_out=950"));
 }
 
+TEST(AuditTest, AFloodBeforeCallsHidesNoRefusedCall) {
+  std::vector<std::string> lines;
+  Audit audit([&](const std::string& line) { lines.push_back(line); });
+  const auto now = Audit::Clock::time_point(seconds(1'700'000'000));
+  const absl::Status refused = absl::ResourceExhaustedError("");
+  for (int i = 0; i < 1000; ++i) audit.Write({"", "", "", "Connect", true}, refused, now);
+  EXPECT_EQ(lines.size(), 50U);
+  audit.Write({"", "", "", "CreateSession"}, absl::UnauthenticatedError(""), now);
+  ASSERT_EQ(lines.size(), 51U);
+  EXPECT_THAT(lines.back(), HasSubstr("act=CreateSession"));
+  EXPECT_THAT(lines.back(), Not(HasSubstr("left_out")));
+  audit.Write({"", "", "", "Connect", true}, refused, now + seconds(1));
+  EXPECT_THAT(lines.back(), HasSubstr("left_out=950"));
+}
+
+TEST(DoorTest, WhatTheGatewayRefusesIsWrittenWithoutAnIdentity) {
+  std::vector<std::string> lines;
+  SecretFile file(LineOf("anna", "viewer", "one"));
+  Door door(*TrustTokens(file.Path()),
+            std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
+  door.ReportBeforeCall("192.0.2.7:1", "Request",
+                        base::WithDetails(absl::PermissionDeniedError("evil.example"),
+                                          {.reason = "HOST_NOT_ALLOWED"}));
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_THAT(lines[0], HasSubstr("identity=\"\" role=none peer=\"192.0.2.7:1\" act=Request "
+                                  "verdict=refused reason=\"HOST_NOT_ALLOWED\""));
+}
+
 TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
   SecretFile file(LineOf("anna", "viewer", "one"));
   Door door(*TrustTokens(file.Path()), std::make_shared<Audit>([](const std::string&) {}), {});

@@ -85,6 +85,7 @@ TEST(MemoryBudgetTest, WhatNeverFitsIsNotToBeTriedAgain) {
   EXPECT_EQ(DetailsOf(refused).reason, "TOO_LARGE_FOR_MEMORY");
   EXPECT_TRUE(IsTooLargeForMemory(refused));
   EXPECT_FALSE(DetailsOf(refused).retry_after.has_value());
+  EXPECT_TRUE(DetailsOf(refused).permanent);
   EXPECT_EQ(kept.Left(), 2U) << "nothing is dropped for it";
 }
 

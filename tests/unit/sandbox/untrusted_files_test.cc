@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "sandbox/messages.h"
 #include "telemetry/metrics.h"
 #include "tests/support/synthetic_cf.h"
@@ -243,6 +244,7 @@ TEST_F(UntrustedFilesTest, AReaderHasItsMemory) {
   const absl::Status status = Files()->Describe(Bad("memory")).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted) << status;
   EXPECT_THAT(std::string(status.message()), HasSubstr("256 MiB, by --sandbox-memory"));
+  EXPECT_TRUE(base::DetailsOf(status).permanent) << "the same file needs as much again";
   EXPECT_FALSE(IsReaderFailure(status));
 }
 

@@ -183,6 +183,7 @@ TEST_F(StormMemory, CellsWhoseNumberOverflowsAreRefusedBeforeAnythingIsAllocated
   EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
   EXPECT_THAT(std::string(refused.message()),
               HasSubstr("has 2000000000 x 2000000000 x 2000000000 values"));
+  EXPECT_TRUE(base::DetailsOf(refused).permanent);
 }
 
 TEST_F(StormMemory, ATimeBeyondTheBudgetIsRefusedBeforeItIsRead) {

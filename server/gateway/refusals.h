@@ -1,0 +1,20 @@
+// What the gateway refuses by its own rules and limits, for those who look into it.
+#pragma once
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "gateway/gateway.h"
+
+namespace thunderhead::gateway {
+
+absl::Status HostNotAllowed();
+absl::Status OriginNotAllowed();
+absl::Status HeaderTooLarge();
+absl::Status MessageTooLarge();
+absl::Status TooManyConnections();
+
+void TellOfRefusal(const GatewayOptions& options, const std::string& peer, const char* act,
+                   const absl::Status& why);
+
+}  // namespace thunderhead::gateway

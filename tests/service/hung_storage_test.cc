@@ -1,0 +1,191 @@
+// The program on a storage that hangs: hanging_storage.cc lets no file be opened for which it is
+// told so.
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <regex>
+#include <string>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/gateway/raw_client.h"
+#include "tests/service/interacting.h"
+#include "tests/service/running_program.h"
+#include "tests/support/synthetic_wrf.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+using ::testing::HasSubstr;
+using Response = v1::InteractResponse;
+using Stub = v1::ThunderheadService::Stub;
+
+// Software GL on a machine that others use too.
+constexpr seconds kStartPatience{120};
+
+void WriteStorm(const std::string& path) {
+  SyntheticWrf storm;
+  storm.nx = 16;
+  storm.ny = 16;
+  storm.mixing_ratios["QCLOUD"] = [](const WrfCell& cell) { return cell.level < 4 ? 1e-3 : 0.0; };
+  WriteWrf(storm, path);
+}
+
+void HangAt(const std::string& path) { std::ofstream(path + ".hangs"); }
+
+v1::Scene SceneOf(const std::string& storm) {
+  v1::Scene scene;
+  scene.set_storm_id(storm);
+  scene.mutable_output()->set_width_px(64);
+  scene.mutable_output()->set_height_px(36);
+  return scene;
+}
+
+class HungStorageTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer wants to be the first library of the program";
+#endif
+  }
+
+  void Start(const std::string& data) {
+    setenv("LD_PRELOAD", HANGING_STORAGE, 1);
+    program_ = std::make_unique<RunningProgram>(
+        PROGRAM,
+        std::vector<std::string>{"serve", "--device", "software", "--data", data, "--http",
+                                 "127.0.0.1:0", "--grpc", "127.0.0.1:0", "--metrics", "127.0.0.1:0",
+                                 "--state", "none", "--rescan-seconds", "0", "--read-deadline", "1",
+                                 "--drain-seconds", "2"},
+        out_, err_);
+    unsetenv("LD_PRELOAD");
+  }
+
+  static std::string Contents(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  // The first group of `pattern` in what the program has written to `path`; empty if that does not
+  // come.
+  std::string Await(const std::string& path, const std::string& pattern, seconds patience) {
+    const auto until = steady_clock::now() + patience;
+    const std::regex wanted(pattern);
+    std::smatch found;
+    while (true) {
+      const std::string text = Contents(path);
+      if (std::regex_search(text, found, wanted)) return found[1];
+      if (steady_clock::now() > until || !program_->Runs()) return "";
+      std::this_thread::sleep_for(milliseconds(20));
+    }
+  }
+
+  void AwaitReady() {
+    const std::string grpc = Await(out_, "is ready at .*\\(gRPC ([0-9.:]+)\\)", kStartPatience);
+    ASSERT_NE(grpc, "") << Contents(err_);
+    http_port_ = PortIn(Await(out_, "is ready at http://[0-9.]+:([0-9]+)/", kStartPatience));
+    stub_ = v1::ThunderheadService::NewStub(
+        grpc::CreateChannel(grpc, grpc::InsecureChannelCredentials()));
+  }
+  void AwaitOperatorsPort() {
+    operators_port_ = PortIn(Await(err_, "operators at http://[0-9.]+:([0-9]+)/", kStartPatience));
+    ASSERT_NE(operators_port_, 0) << Contents(err_);
+  }
+
+  static std::uint16_t PortIn(const std::string& text) {
+    return text.empty() ? 0 : static_cast<std::uint16_t>(std::stoi(text));
+  }
+  static int CodeOf(std::uint16_t port, const std::string& path) {
+    return gateway::test::RawClient(port).Ask("GET", path).result_int();
+  }
+
+  grpc::Status Draw(const std::string& storm) {
+    v1::RenderImageRequest request;
+    *request.mutable_scene() = SceneOf(storm);
+    v1::RenderImageResponse response;
+    return Call(*stub_, &Stub::RenderImage, request, &response);
+  }
+
+  // The exit code after SIGTERM; -1 if the program does not end within the patience.
+  int CodeAfterSigterm(seconds patience) {
+    program_->Signal(SIGTERM);
+    const auto until = steady_clock::now() + patience;
+    while (program_->Runs() && steady_clock::now() < until) {
+      std::this_thread::sleep_for(milliseconds(20));
+    }
+    return program_->Runs() ? -1 : program_->Wait().code;
+  }
+
+  const TemporaryFolder folder_;
+  const std::string out_ = folder_.File("out");
+  const std::string err_ = folder_.File("err");
+  std::uint16_t http_port_ = 0;
+  std::uint16_t operators_port_ = 0;
+  std::unique_ptr<Stub> stub_;
+  std::unique_ptr<RunningProgram> program_;
+};
+
+TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
+  fs::create_directory(folder_.File("data"));
+  const std::string far = folder_.File("data/tower.nc");
+  // The first of them is drawn, and so read, as the program starts.
+  WriteStorm(folder_.File("data/anvil.nc"));
+  WriteStorm(far);
+  Start(folder_.File("data"));
+  AwaitReady();
+  AwaitOperatorsPort();
+  ASSERT_FALSE(HasFatalFailure());
+  ASSERT_TRUE(Draw("anvil").ok());
+  HangAt(far);
+
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = SceneOf("tower");
+  v1::CreateSessionResponse created;
+  // Whether the session opens or not, it must be answered.
+  Call(*stub_, &Stub::CreateSession, request, &created);
+  const grpc::Status late = Draw("tower");
+  EXPECT_EQ(late.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << late.error_message();
+  EXPECT_THAT(late.error_message(), HasSubstr("tower.nc"));
+  EXPECT_EQ(ReasonOf(late), "STORAGE_HANGS");
+
+  EXPECT_EQ(CodeOf(http_port_, "/healthz"), 200);
+  EXPECT_EQ(CodeOf(operators_port_, "/healthz"), 200);
+  EXPECT_EQ(CodeOf(operators_port_, "/readyz"), 200);
+  EXPECT_TRUE(Draw("anvil").ok());
+  *request.mutable_scene() = SceneOf("anvil");
+  ASSERT_TRUE(Call(*stub_, &Stub::CreateSession, request, &created).ok());
+  {
+    Interacting viewer(*stub_, created.viewer_key());
+    EXPECT_TRUE(viewer.AwaitFrame(created.scene_revision()));
+  }
+  EXPECT_EQ(CodeAfterSigterm(seconds(30)), 0) << Contents(err_);
+}
+
+TEST_F(HungStorageTest, AStartThatHangsSaysWhereAndEndsWhenItIsTold) {
+  const std::string storm = folder_.File("storm.nc");
+  WriteStorm(storm);
+  HangAt(storm);
+  Start(storm);
+  AwaitOperatorsPort();
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_EQ(CodeOf(operators_port_, "/healthz"), 200);
+  EXPECT_EQ(CodeOf(operators_port_, "/readyz"), 503);
+  EXPECT_EQ(
+      Await(err_, "(storm\\.nc): has not answered for 1[0-9]\\.[0-9] s; its storage", seconds(60)),
+      "storm.nc")
+      << Contents(err_);
+  EXPECT_EQ(CodeAfterSigterm(seconds(10)), 0) << Contents(err_);
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
