@@ -1,6 +1,7 @@
 // Mouse, touch and keys as camera motions, from SDL's own events.
 #include <cmath>
 
+#include "desktop/field_colors.h"
 #include "desktop/history.h"
 #include "desktop/keyboard.h"
 #include "desktop/kiosk.h"
@@ -202,6 +203,38 @@ TEST(Texts, AreThePages) {
   EXPECT_EQ(CompassPoint(22.0), "NNE");
   EXPECT_EQ(DescribePose(OrbitPose{{}, 200.0, 4.0, 61'000.0, 35.0}),
             "Seen from SSW (200°), 4° high, 61 km away");
+}
+
+TEST(FieldColors, ComeBackFromTheScreen) {
+  v1::Color color;
+  color.set_red(0.5F);
+  color.set_green(0.002F);
+  color.set_blue(1.0F);
+  const ScreenColor shown = ScreenColorOf(color);
+  EXPECT_NEAR(shown[0], 188.0 / 255.0, 0.002);
+  EXPECT_NEAR(shown[1], 0.02584, 1e-4);
+  const v1::Color back = LinearColorOf(shown);
+  EXPECT_NEAR(back.red(), 0.5, 1e-5);
+  EXPECT_NEAR(back.green(), 0.002, 1e-6);
+  EXPECT_NEAR(back.blue(), 1.0, 1e-6);
+}
+
+TEST(FieldColors, AreShownWhereTheTechniqueAndTheSceneDoSo) {
+  v1::GetServerInfoResponse server;
+  v1::TechniqueDescription& technique = *server.add_techniques();
+  technique.set_name("light_volume");
+  technique.set_shows_field_optics(true);
+  v1::Scene scene;
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
+  scene.mutable_rendering()->mutable_light_volume();
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
+  scene.mutable_rendering()->mutable_light_volume()->set_false_colors(true);
+  EXPECT_TRUE(DrawsFalseColors(scene, server));
+  technique.set_shows_field_optics(false);
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
+  scene.mutable_rendering()->mutable_other()->set_name("light_volume");
+  technique.set_shows_field_optics(true);
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
 }
 
 TEST(KioskView, IsLaidOverTheSceneWithoutDoublingItsLists) {
