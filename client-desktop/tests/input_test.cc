@@ -137,10 +137,18 @@ struct Keys {
     actions.step_time = [this](int by) { stepped += by; };
   }
   bool Press(SDL_Keycode key, Uint16 modifiers = 0, const KeyFocus& focus = {}) {
+    return Press(SDL_SCANCODE_UNKNOWN, key, modifiers, focus);
+  }
+  bool Press(SDL_Scancode place, SDL_Keycode key, Uint16 modifiers = 0,
+             const KeyFocus& focus = {}) {
     SDL_KeyboardEvent event{};
+    event.keysym.scancode = place;
     event.keysym.sym = key;
     event.keysym.mod = modifiers;
     return TakeKey(event, focus, actions);
+  }
+  bool Type(std::string_view text, Uint16 modifiers = 0, const KeyFocus& focus = {}) {
+    return TakeText(text, modifiers, focus, actions);
   }
 };
 
@@ -150,13 +158,13 @@ TEST(Keyboard, HasThePagesKeys) {
   EXPECT_NEAR(std::get<OrbitPose>(keys.pose).azimuth_deg, 183.0, 1e-9);
   keys.Press(SDLK_k);
   EXPECT_EQ(keys.choices.tool, Tool::kLook);
-  keys.Press(SDLK_4);
+  keys.Press(SDL_SCANCODE_4, SDLK_4);
   EXPECT_EQ(keys.choices.tool, Tool::kNone);
   keys.Press(SDLK_x);
   EXPECT_EQ(keys.choices.panel, Panel::kDrawer);
-  keys.Press(SDLK_SLASH, KMOD_LSHIFT);
+  keys.Type("?", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.panel, Panel::kHelp);
-  keys.Press(SDLK_PERIOD);
+  keys.Type(".");
   EXPECT_EQ(keys.stepped, 1);
   keys.Press(SDLK_z, KMOD_LCTRL);
   EXPECT_EQ(keys.undone, 1);
@@ -168,6 +176,70 @@ TEST(Keyboard, ATextUsesAllKeysAndAControlItsOwn) {
   EXPECT_EQ(keys.choices.tool, Tool::kNone);
   EXPECT_FALSE(keys.Press(SDLK_RIGHT, 0, {false, true}));
   EXPECT_TRUE(keys.Press(SDLK_k, 0, {false, true}));
+}
+
+double DistanceOf(const Keys& keys) { return std::get<OrbitPose>(keys.pose).distance_m; }
+
+// A key comes with its place, its character without shift, and then its text.
+TEST(Keyboard, OnAGermanOneDigitsAndQuestionMarkWork) {
+  Keys keys;
+  keys.Press(SDL_SCANCODE_7, SDLK_7);
+  keys.Type("7");
+  EXPECT_EQ(keys.choices.tool, Tool::kMarks);
+  // Shift and the key of the sharp s.
+  keys.Press(SDL_SCANCODE_MINUS, 0xDF, KMOD_LSHIFT);
+  keys.Type("?", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.panel, Panel::kHelp);
+  // Shift and 7.
+  keys.Press(SDL_SCANCODE_7, SDLK_7, KMOD_LSHIFT);
+  keys.Type("/", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.tool, Tool::kMarks);
+}
+
+TEST(Keyboard, OnAFrenchOneDigitsWorkWithShiftAndWithout) {
+  Keys keys;
+  keys.Press(SDL_SCANCODE_7, 0xE8);
+  keys.Type("è");
+  EXPECT_EQ(keys.choices.tool, Tool::kMarks);
+  keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_LSHIFT);
+  keys.Type("1", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.tool, Tool::kCamera);
+  // With the caps lock.
+  keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_CAPS);
+  keys.Type("1", KMOD_CAPS);
+  EXPECT_EQ(keys.choices.tool, Tool::kNone);
+  // Shift and the semicolon's key; the comma's has the question mark above.
+  keys.Press(SDL_SCANCODE_COMMA, SDLK_SEMICOLON, KMOD_LSHIFT);
+  keys.Type(".", KMOD_LSHIFT);
+  EXPECT_EQ(keys.stepped, 1);
+  keys.Press(SDL_SCANCODE_M, SDLK_COMMA, KMOD_LSHIFT);
+  keys.Type("?", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.panel, Panel::kHelp);
+  EXPECT_EQ(keys.stepped, 1);
+}
+
+TEST(Keyboard, PlusWithinTheDigitsZoomsAndOpensNoTool) {
+  Keys keys;
+  // Czech: the key of 1 without shift. Swiss: with shift.
+  keys.Press(SDL_SCANCODE_1, SDLK_PLUS);
+  keys.Type("+");
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88, 1.0);
+  keys.Press(SDL_SCANCODE_1, SDLK_1, KMOD_LSHIFT);
+  keys.Type("+", KMOD_LSHIFT);
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88 * 0.88, 1.0);
+  keys.Press(SDL_SCANCODE_KP_MINUS, SDLK_KP_MINUS);
+  keys.Type("-");
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88, 1.0);
+  EXPECT_EQ(keys.choices.tool, Tool::kNone);
+}
+
+TEST(Keyboard, TextWithControlOrInAFieldDoesNothing) {
+  Keys keys;
+  EXPECT_FALSE(keys.Type("?", 0, {true, true}));
+  EXPECT_FALSE(keys.Type("+", KMOD_LCTRL));
+  EXPECT_FALSE(keys.Type("?!"));
+  EXPECT_EQ(keys.choices.panel, Panel::kNone);
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0, 1e-6);
 }
 
 TEST(History, OneDragIsOneStep) {
