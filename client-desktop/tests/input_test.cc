@@ -1,11 +1,15 @@
 // Mouse, touch and keys as camera motions, from SDL's own events.
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "desktop/field_colors.h"
 #include "desktop/history.h"
 #include "desktop/keyboard.h"
 #include "desktop/kiosk.h"
 #include "desktop/pointer_input.h"
+#include "desktop/status_log.h"
 #include "desktop/texts.h"
 #include "gtest/gtest.h"
 
@@ -307,6 +311,35 @@ TEST(FieldColors, AreShownWhereTheTechniqueAndTheSceneDoSo) {
   scene.mutable_rendering()->mutable_other()->set_name("light_volume");
   technique.set_shows_field_optics(true);
   EXPECT_FALSE(DrawsFalseColors(scene, server));
+}
+
+std::string TextOf(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(StatusFile, StaysSmallAndKeepsWholeLines) {
+  const std::string path = ::testing::TempDir() + "status";
+  std::ofstream(path) << "of another run\n";
+  std::ofstream(path + ".1") << "of another run\n";
+  constexpr int kMaxBytes = 40;
+  RotatedFile file(path, kMaxBytes);
+  for (int i = 0; i < 100; ++i) {
+    file.Write("line " + std::to_string(i));
+    EXPECT_LE(std::filesystem::file_size(path), kMaxBytes);
+  }
+  EXPECT_EQ(TextOf(path), "line 95\nline 96\nline 97\nline 98\nline 99\n");
+  EXPECT_EQ(TextOf(path + ".1"), "line 90\nline 91\nline 92\nline 93\nline 94\n");
+  EXPECT_FALSE(std::filesystem::exists(path + ".2"));
+}
+
+TEST(StatusFile, ALineThatIsTooLongIsWrittenAlone) {
+  const std::string path = ::testing::TempDir() + "status_long";
+  RotatedFile file(path, 4);
+  file.Write("first line");
+  file.Write("second line");
+  EXPECT_EQ(TextOf(path), "second line\n");
+  EXPECT_EQ(TextOf(path + ".1"), "first line\n");
 }
 
 TEST(KioskView, IsLaidOverTheSceneWithoutDoublingItsLists) {
