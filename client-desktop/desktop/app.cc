@@ -272,7 +272,7 @@ void App::Draw() {
   window_->Draw([this] {
     stage_.Draw(texture_);
     if (flags_.kiosk) return DrawKiosk();
-    const Layout layout = Layout::Of(ui_);
+    const Layout layout = Layout::Of(ui_.width, ui_.height, ui_.scale);
     DrawTopBar(ui_, layout);
     DrawToolRail(ui_, layout);
     DrawTool(ui_, layout);

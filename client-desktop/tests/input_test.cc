@@ -8,6 +8,7 @@
 #include "desktop/history.h"
 #include "desktop/keyboard.h"
 #include "desktop/kiosk.h"
+#include "desktop/panels/panels.h"
 #include "desktop/pointer_input.h"
 #include "desktop/status_log.h"
 #include "desktop/texts.h"
@@ -124,6 +125,24 @@ TEST_F(Pointer, AToolGetsTheLeftButton) {
   EXPECT_EQ(dragged, 1);
   EXPECT_EQ(released, 1);
   EXPECT_NEAR(orbit().azimuth_deg, 180.0, 1e-9);
+}
+
+TEST_F(Pointer, AToolThatIsPutAwayOrLeftIsTold) {
+  std::vector<bool> shown;
+  const ToolSteps tool{[](ScreenPoint) {}, [](ScreenPoint) {}, [](bool) {},
+                       [&](std::optional<ScreenPoint> at) { shown.push_back(at.has_value()); }};
+  input.SetTool(&tool);
+  input.Take(Motion(600, 300, 1, 0), true);
+  input.Take(Motion(60, 300, 1, 0), false);  // over a panel
+  input.Take(Motion(600, 300, 1, 0), true);
+  SDL_Event leaves{};
+  leaves.type = SDL_WINDOWEVENT;
+  leaves.window.event = SDL_WINDOWEVENT_LEAVE;
+  input.Take(leaves, true);
+  input.Take(Motion(600, 300, 1, 0), true);
+  input.SetTool(nullptr);
+  input.Take(Motion(610, 300, 1, 0), true);
+  EXPECT_EQ(shown, (std::vector<bool>{true, false, true, false, true, false}));
 }
 
 struct Keys {
@@ -340,6 +359,16 @@ TEST(StatusFile, ALineThatIsTooLongIsWrittenAlone) {
   file.Write("second line");
   EXPECT_EQ(TextOf(path), "second line\n");
   EXPECT_EQ(TextOf(path + ".1"), "first line\n");
+}
+
+TEST(Layout, ToolAndPanelLieBesideEachOther) {
+  for (const auto& [width, scale] : {std::pair{1280.0F, 1.0F}, {800.0F, 1.0F}, {1600.0F, 2.0F}}) {
+    const Layout layout = Layout::Of(width, 0.6F * width, scale);
+    const float tool_ends = 2.0F * layout.margin + layout.rail_width + layout.tool_width;
+    EXPECT_LE(tool_ends + layout.margin, width - layout.margin - layout.panel_width() + 0.01F);
+    EXPECT_GE(layout.tool_width, 260.0F * scale);
+  }
+  EXPECT_EQ(Layout::Of(3840.0F, 2160.0F, 2.0F).tool_width, 660.0F);
 }
 
 TEST(KioskView, IsLaidOverTheSceneWithoutDoublingItsLists) {

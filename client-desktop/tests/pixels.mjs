@@ -28,7 +28,7 @@ export function accentIn(pixels, { x, y, width, height }) {
   }
   assert.ok(found.length > 100, "no button to press");
   const mean = (part) => Math.round(found.reduce((sum, each) => sum + each[part], 0) / found.length);
-  return { x: mean(0), y: mean(1) };
+  return { x: mean(0), y: mean(1), right: Math.max(...found.map(([column]) => column)) };
 }
 
 export async function eventually(what, holds) {
@@ -44,4 +44,11 @@ export function meanColor({ rgb }) {
   const sums = [0, 0, 0];
   for (let i = 0; i < rgb.length; i += 1) sums[i % 3] += rgb[i];
   return sums.map((sum) => (3 * sum) / rgb.length);
+}
+
+// How many pixels have nearly that red, green and blue.
+export function pixelsLike({ rgb }, color, tolerance = 16) {
+  let count = 0;
+  for (let i = 0; i < rgb.length; i += 3) if (color.every((value, at) => Math.abs(rgb[i + at] - value) <= tolerance)) count += 1;
+  return count;
 }

@@ -204,12 +204,3 @@ test("a browser presents, the window views, looks around and comes back", async 
     await browser.close();
   }
 });
-
-test("full screen comes and goes", async () => {
-  display.key("w");
-  await sleep(800);
-  display.screenshot("full_screen");
-  display.key("w");
-  await sleep(500);
-  assert.equal(desktop.child.exitCode, null);
-});

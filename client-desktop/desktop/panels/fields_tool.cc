@@ -63,8 +63,7 @@ void DrawField(Ui& ui, const v1::FieldDescription& field) {
       empty ? "none at this time"
             : absl::StrCat("up to ", FormatNumber(field.maximum()), " ", field.units());
   ImGui::PushFont(SmallFont());
-  ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(amount.c_str()).x -
-                  ImGui::GetStyle().WindowPadding.x);
+  SameLineAtRight(ImGui::CalcTextSize(amount.c_str()).x);
   QuietLine(amount);
   ImGui::PopFont();
   if (empty || !visible) return;
