@@ -80,7 +80,9 @@ test("rules, control and the pointer reach a viewer's page", async () => {
     const ask = page.getByTestId("ask-control");
 
     display.key("h");
-    await sleep(700);
+    // The check mark of the first rule, below two people.
+    const mark = () => pixelsLike(region(display.pixels(), { x: 884, y: 272, width: 24, height: 24 }), [255, 209, 107]);
+    await eventually("the rules are not shown", () => mark() > 20);
     display.screenshot("rules");
     // "Nobody may ask to steer", below two people.
     await display.click(895, 318);
