@@ -188,9 +188,11 @@ bool App::TakeEvent(const SDL_Event& event) {
   const ImGuiIO& io = ImGui::GetIO();
   pointer_.SetSize(window_->width(), window_->height());
   pointer_.SetTool(stage_.HandTool());
-  if (event.type == SDL_KEYDOWN) {
-    const bool controls = io.WantCaptureKeyboard && (io.NavVisible || ImGui::IsAnyItemActive());
-    return TakeKey(event.key, {io.WantTextInput, controls}, keys_);
+  const KeyFocus focus{io.WantTextInput,
+                       io.WantCaptureKeyboard && (io.NavVisible || ImGui::IsAnyItemActive())};
+  if (event.type == SDL_KEYDOWN) return TakeKey(event.key, focus, keys_);
+  if (event.type == SDL_TEXTINPUT) {
+    return TakeText(event.text.text, static_cast<Uint16>(SDL_GetModState()), focus, keys_);
   }
   const ScreenPoint at = PlaceOf(event);
   return pointer_.Take(event, !window_->IsOverPanel(at.x, at.y));
@@ -270,7 +272,7 @@ void App::Draw() {
   window_->Draw([this] {
     stage_.Draw(texture_);
     if (flags_.kiosk) return DrawKiosk();
-    const Layout layout = Layout::Of(ui_);
+    const Layout layout = Layout::Of(ui_.width, ui_.height, ui_.scale);
     DrawTopBar(ui_, layout);
     DrawToolRail(ui_, layout);
     DrawTool(ui_, layout);

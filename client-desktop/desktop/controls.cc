@@ -236,11 +236,12 @@ void Title(const char* text, const char* key) {
   if (key == nullptr) return;
   ImGui::PushFont(SmallFont());
   const std::string hint = absl::StrCat("key ", key);
-  ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(hint.c_str()).x -
-                  ImGui::GetStyle().WindowPadding.x);
+  SameLineAtRight(ImGui::CalcTextSize(hint.c_str()).x);
   ImGui::TextDisabled("%s", hint.c_str());
   ImGui::PopFont();
 }
+
+void SameLineAtRight(float width) { ImGui::SameLine(ImGui::GetContentRegionMax().x - width); }
 
 void Quiet(const std::string& text) {
   ImGui::PushFont(SmallFont());

@@ -26,6 +26,9 @@ bool TextField(const char* label, std::string& text, std::size_t most_bytes);
 bool AccentButton(const char* label);
 
 void Title(const char* text, const char* key);
+// Goes on in the line, with what is that wide at the right; beside the scroll bar where there is
+// one.
+void SameLineAtRight(float width);
 void Quiet(const std::string& text);  // wrapped, in small grey letters
 void QuietLine(const std::string& text);
 void Label(const char* text);  // above a control, small

@@ -31,7 +31,8 @@ ParsedFlags ParseFlags(int argc, char** argv) {
   app.add_option("--scale", flags.scale, "of texts and controls (default: as the monitor asks)")
       ->check(CLI::Range(0.5, 4.0));
   app.add_flag("--save-bytes", flags.saves_bytes, "takes video however fast the link is");
-  app.add_option("--status", flags.status_file, "file that gets a line of JSON a second");
+  app.add_option("--status", flags.status_file,
+                 "file that gets a line of JSON a second; at 1 MiB it becomes FILE.1");
   app.add_option("--seconds", flags.seconds, "ends after so long and prints what was shown")
       ->check(CLI::Range(1.0, 1e7));
   app.add_option("--turn", flags.turn_deg_per_s,

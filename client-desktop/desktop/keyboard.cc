@@ -1,6 +1,7 @@
 #include "desktop/keyboard.h"
 
 #include <optional>
+#include <string_view>
 
 namespace thunderhead::desktop {
 namespace {
@@ -36,33 +37,55 @@ std::optional<std::pair<int, int>> ArrowOf(SDL_Keycode key) {
   }
 }
 
-std::optional<Tool> ToolOf(SDL_Keycode key) {
+std::optional<Tool> ToolOfLetter(SDL_Keycode key) {
   switch (key) {
     case SDLK_m:
-    case SDLK_1:
       return Tool::kCamera;
     case SDLK_t:
-    case SDLK_2:
       return Tool::kTime;
     case SDLK_l:
-    case SDLK_3:
       return Tool::kLight;
     case SDLK_k:
-    case SDLK_4:
       return Tool::kLook;
     case SDLK_f:
-    case SDLK_5:
       return Tool::kFields;
     case SDLK_d:
-    case SDLK_7:
       return Tool::kMarks;
     default:
       return {};
   }
 }
 
-std::optional<Panel> PanelOf(SDL_Keycode key, bool shift) {
-  if (key == SDLK_QUESTION || (key == SDLK_SLASH && shift)) return Panel::kHelp;
+std::optional<Tool> ToolOfDigit(int digit) {
+  switch (digit) {
+    case 1:
+      return Tool::kCamera;
+    case 2:
+      return Tool::kTime;
+    case 3:
+      return Tool::kLight;
+    case 4:
+      return Tool::kLook;
+    case 5:
+      return Tool::kFields;
+    case 7:
+      return Tool::kMarks;
+    default:
+      return {};
+  }
+}
+
+// The digit at a key's place in the row above the letters; 0 for other keys. A French keyboard
+// has other characters there without shift. One that TakeText uses keeps its meaning.
+int DigitOf(const SDL_Keysym& key) {
+  constexpr std::string_view kUsed = "+=-_,.?";
+  const bool used = key.sym > 0 && key.sym < 0x80 &&
+                    kUsed.find(static_cast<char>(key.sym)) != std::string_view::npos;
+  if (used || key.scancode < SDL_SCANCODE_1 || key.scancode > SDL_SCANCODE_9) return 0;
+  return key.scancode - SDL_SCANCODE_1 + 1;
+}
+
+std::optional<Panel> PanelOf(SDL_Keycode key) {
   switch (key) {
     case SDLK_x:
       return Panel::kDrawer;
@@ -88,23 +111,6 @@ bool Edits(SDL_Keycode key, bool shift, const KeyActions& actions) {
   return true;
 }
 
-bool Zooms(const SDL_KeyboardEvent& event, const KeyActions& actions) {
-  switch (event.keysym.sym) {
-    case SDLK_PLUS:
-    case SDLK_EQUALS:
-    case SDLK_KP_PLUS:
-      actions.move([](const Pose& pose) { return client::Zoom(pose, kZoomFactor); });
-      return true;
-    case SDLK_MINUS:
-    case SDLK_UNDERSCORE:
-    case SDLK_KP_MINUS:
-      actions.move([](const Pose& pose) { return client::Zoom(pose, 1.0 / kZoomFactor); });
-      return true;
-    default:
-      return false;
-  }
-}
-
 bool Goes(SDL_Keycode key, bool controls, const KeyActions& actions) {
   switch (key) {
     case SDLK_HOME:
@@ -113,12 +119,6 @@ bool Goes(SDL_Keycode key, bool controls, const KeyActions& actions) {
     case SDLK_SPACE:
       if (!controls) actions.toggle_play();
       return !controls;
-    case SDLK_COMMA:
-      actions.step_time(-1);
-      return true;
-    case SDLK_PERIOD:
-      actions.step_time(1);
-      return true;
     case SDLK_w:
     case SDLK_F11:
       actions.full_screen();
@@ -152,14 +152,48 @@ bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyAct
     });
     return true;
   }
-  if (Zooms(event, actions) || Goes(key, focus.controls, actions)) return true;
-  if (const auto tool = ToolOf(key)) {
+  if (Goes(key, focus.controls, actions)) return true;
+  const auto letter = ToolOfLetter(key);
+  // With shift the digit comes as text, if it is one.
+  const auto tool = letter || shift ? letter : ToolOfDigit(DigitOf(event.keysym));
+  if (tool) {
     actions.toggle_tool(*tool);
     return true;
   }
-  const auto panel = PanelOf(key, shift);
+  const auto panel = PanelOf(key);
   if (panel) actions.toggle_panel(*panel);
   return panel.has_value();
+}
+
+bool TakeText(std::string_view text, Uint16 modifiers, const KeyFocus& focus,
+              const KeyActions& actions) {
+  const bool shift = (modifiers & KMOD_SHIFT) != 0;
+  if (focus.text || text.size() != 1) return false;
+  if ((modifiers & (KMOD_CTRL | KMOD_LALT | KMOD_GUI)) != 0) return false;
+  switch (text.front()) {
+    case '+':
+    case '=':
+      actions.move([](const Pose& pose) { return client::Zoom(pose, kZoomFactor); });
+      return true;
+    case '-':
+    case '_':
+      actions.move([](const Pose& pose) { return client::Zoom(pose, 1.0 / kZoomFactor); });
+      return true;
+    case ',':
+      actions.step_time(-1);
+      return true;
+    case '.':
+      actions.step_time(1);
+      return true;
+    case '?':
+      actions.toggle_panel(Panel::kHelp);
+      return true;
+    default:
+      break;
+  }
+  const auto tool = shift ? ToolOfDigit(text.front() - '0') : std::nullopt;
+  if (tool) actions.toggle_tool(*tool);
+  return tool.has_value();
 }
 
 }  // namespace thunderhead::desktop

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <functional>
+#include <string_view>
 #include <utility>
 
 #include "desktop/choices.h"
@@ -33,8 +34,12 @@ struct KeyFocus {
   bool controls = false;  // the focus is on a control: it uses arrows, space and Enter
 };
 
-// True if the key did something.
+// Letters by the keyboard's layout, digits by their place as well; true if the key did something.
 bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyActions& actions);
+// Punctuation and digits as the keyboard's layout makes them, with shift or without
+// (SDL_TEXTINPUT); true if the text did something. `modifiers` are those held now.
+bool TakeText(std::string_view text, Uint16 modifiers, const KeyFocus& focus,
+              const KeyActions& actions);
 
 inline constexpr std::array<std::pair<const char*, const char*>, 16> kKeyTexts{{
     {"Drag, arrows", "turn"},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "desktop/field_colors.h"
 #include "desktop/style.h"
 #include "thunderhead_client/projection.h"
 
@@ -15,12 +16,9 @@ namespace {
 constexpr float kNear = 3.0F;
 constexpr std::size_t kMaxCorners = 256;
 
-ImU32 ScreenColor(const v1::Color& color) {
-  const auto encode = [](float linear) {
-    return std::pow(std::clamp(linear, 0.0F, 1.0F), 1.0F / 2.2F);
-  };
-  return ImGui::GetColorU32(
-      {encode(color.red()), encode(color.green()), encode(color.blue()), 1.0F});
+ImU32 ColorOf(const v1::Color& color) {
+  const auto [red, green, blue] = ScreenColorOf(color);
+  return ImGui::GetColorU32({red, green, blue, 1.0F});
 }
 
 }  // namespace
@@ -81,7 +79,7 @@ void Stage::DrawMarks() {
   std::vector<ImVec2> line;
   for (const v1::Mark& mark : ui_.state.marks.marks()) {
     line.clear();
-    const ImU32 color = ScreenColor(mark.color());
+    const ImU32 color = ColorOf(mark.color());
     const auto draw = [&] {
       if (line.size() > 1)
         list.AddPolyline(line.data(), static_cast<int>(line.size()), color, 0, thickness);

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <string>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "desktop/texts.h"
@@ -64,8 +66,22 @@ std::int64_t ResidentBytes() {
   return resident_pages * sysconf(_SC_PAGESIZE);
 }
 
-StatusLog::StatusLog(const std::string& path) {
-  if (!path.empty()) file_.open(path, std::ios::trunc);
+RotatedFile::RotatedFile(std::string path, std::int64_t max_bytes)
+    : path_(std::move(path)), max_bytes_(max_bytes) {
+  if (!path_.empty()) file_.open(path_, std::ios::trunc);
+}
+
+void RotatedFile::Write(const std::string& line) {
+  const auto size = static_cast<std::int64_t>(line.size()) + 1;
+  if (bytes_ > 0 && bytes_ + size > max_bytes_) {
+    file_.close();
+    // Where it cannot be renamed, such as a pipe, what is there is written over.
+    std::rename(path_.c_str(), (path_ + ".1").c_str());
+    file_.open(path_, std::ios::trunc);
+    bytes_ = 0;
+  }
+  file_ << line << std::endl;
+  bytes_ += size;
 }
 
 void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_point now) {
@@ -77,28 +93,27 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
   const auto asking = std::count_if(people.begin(), people.end(),
                                     [](const v1::Person& each) { return each.asks_control(); });
   // The viewers' key, for others to join by; never the presenter's.
-  file_
-      << absl::StrFormat(
-             R"({"t_s":%.1f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
-             R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
-             R"("camera":"%s","azimuth_deg":%.2f,"refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
-             std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
-             JsonString(ui.state.reason),
-             JsonString(ui.state.problem ? ui.state.problem->message() : ""),
-             JsonString(ui.state.notice), ui.state.joined_count,
-             ui.state.Presents() ? "presenter" : "viewer", ui.state.Steers() ? "true" : "false",
-             ui.state.looks_around ? "true" : "false", ui.state.presence.people_size(), asking,
-             ui.state.viewer_key, ui.state.scene.storm_id(), ui.time_index(),
-             ui.state.scene_revision, ui.frame.scene_revision(), camera.kind, camera.azimuth_deg,
-             ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
-             ui.state.pointers.pointers_size(), view)
-      << absl::StrFormat(
-             R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"
-             R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"resident_bytes":%d})",
-             ui.encoding, ui.frame.width_px(), ui.frame.height_px(), ui.figures.frames,
-             ui.figures.frames_per_s, ui.figures.latency_ms.value_or(0.0), ui.figures.bytes_per_s,
-             ui.figures.decode_ms, ui.dropped, ResidentBytes())
-      << std::endl;
+  file_.Write(
+      absl::StrFormat(
+          R"({"t_s":%.1f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
+          R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
+          R"("camera":"%s","azimuth_deg":%.2f,"refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
+          std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
+          JsonString(ui.state.reason),
+          JsonString(ui.state.problem ? ui.state.problem->message() : ""),
+          JsonString(ui.state.notice), ui.state.joined_count,
+          ui.state.Presents() ? "presenter" : "viewer", ui.state.Steers() ? "true" : "false",
+          ui.state.looks_around ? "true" : "false", ui.state.presence.people_size(), asking,
+          ui.state.viewer_key, ui.state.scene.storm_id(), ui.time_index(), ui.state.scene_revision,
+          ui.frame.scene_revision(), camera.kind, camera.azimuth_deg,
+          ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
+          ui.state.pointers.pointers_size(), view) +
+      absl::StrFormat(
+          R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"
+          R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"resident_bytes":%d})",
+          ui.encoding, ui.frame.width_px(), ui.frame.height_px(), ui.figures.frames,
+          ui.figures.frames_per_s, ui.figures.latency_ms.value_or(0.0), ui.figures.bytes_per_s,
+          ui.figures.decode_ms, ui.dropped, ResidentBytes()));
 }
 
 }  // namespace thunderhead::desktop

@@ -1,7 +1,9 @@
 // A line of JSON a second for whoever watches the window from outside: monitoring, the soak test.
+// At kMaxBytes the file becomes FILE.1, in place of an older one, and another begins.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <fstream>
 #include <string>
 
@@ -9,15 +11,33 @@
 
 namespace thunderhead::desktop {
 
+// Lines in a file of limited size.
+class RotatedFile {
+ public:
+  // An empty path writes nothing. Begins anew what is there.
+  RotatedFile(std::string path, std::int64_t max_bytes);
+
+  bool is_open() const { return file_.is_open(); }
+  void Write(const std::string& line);
+
+ private:
+  const std::string path_;
+  const std::int64_t max_bytes_;
+  std::ofstream file_;
+  std::int64_t bytes_ = 0;
+};
+
 class StatusLog {
  public:
+  static constexpr std::int64_t kMaxBytes = 1 << 20;
+
   // An empty path writes nothing.
-  explicit StatusLog(const std::string& path);
+  explicit StatusLog(const std::string& path) : file_(path, kMaxBytes) {}
 
   void Write(const Ui& ui, int view, std::chrono::steady_clock::time_point now);
 
  private:
-  std::ofstream file_;
+  RotatedFile file_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point last_{};
 };

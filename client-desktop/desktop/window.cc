@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "desktop/style.h"
@@ -45,9 +46,11 @@ absl::StatusOr<std::unique_ptr<Window>> Window::Open(const WindowOptions& option
   SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 0);
   Uint32 flags = SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI;
   if (options.full_screen) flags |= SDL_WINDOW_FULLSCREEN_DESKTOP;
+  // Without a window manager, as on a bare wall, nothing else gives a window the display's size.
+  SDL_Rect place{SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, options.width, options.height};
+  if (options.full_screen) SDL_GetDisplayBounds(0, &place);
   SDL_Window* const window =
-      SDL_CreateWindow("Thunderhead", SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED,
-                       options.width, options.height, flags);
+      SDL_CreateWindow("Thunderhead", place.x, place.y, place.w, place.h, flags);
   if (window == nullptr) return SdlError("cannot open a window");
   const SDL_GLContext context = SDL_GL_CreateContext(window);
   if (context == nullptr) {
@@ -60,7 +63,10 @@ absl::StatusOr<std::unique_ptr<Window>> Window::Open(const WindowOptions& option
 }
 
 Window::Window(const WindowOptions& options, SDL_Window* window, SDL_GLContext context)
-    : options_(options), window_(window), context_(context) {
+    : options_(options),
+      window_(window),
+      context_(context),
+      opened_full_screen_(options.full_screen) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
   ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
@@ -137,7 +143,12 @@ bool Window::full_screen() const {
 }
 
 void Window::ToggleFullScreen() {
-  SDL_SetWindowFullscreen(window_, full_screen() ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
+  const bool leaves = full_screen();
+  SDL_SetWindowFullscreen(window_, leaves ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
+  // It was opened with the display's size.
+  if (leaves && std::exchange(opened_full_screen_, false)) {
+    SDL_SetWindowSize(window_, options_.width, options_.height);
+  }
 }
 
 bool Window::minimized() const {

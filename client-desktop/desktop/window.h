@@ -53,6 +53,7 @@ class Window {
   const WindowOptions options_;
   SDL_Window* const window_;
   const SDL_GLContext context_;
+  bool opened_full_screen_;  // and has not left it
   float scale_ = 0.0F;
   float pixels_per_unit_ = 0.0F;
 };

@@ -22,15 +22,14 @@ export function startDesktop(display, port, flags = []) {
     });
   }
   const ended = new Promise((resolve) => child.once("exit", resolve));
-  const lines = () => {
-    if (!existsSync(file)) return [];
-    return readFileSync(file, "utf8").split("\n").slice(0, -1).map((line) => JSON.parse(line));
+  const status = () => {
+    // Just after it was begun anew it is empty.
+    const line = existsSync(file) ? readFileSync(file, "utf8").split("\n").at(-2) : undefined;
+    return line === undefined ? {} : JSON.parse(line);
   };
-  const status = () => lines().at(-1) ?? {};
   return {
     child,
     ended,
-    lines,
     status,
     said: () => said,
     // Waits until its status is as wanted, and returns it.

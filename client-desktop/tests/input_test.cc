@@ -1,10 +1,16 @@
 // Mouse, touch and keys as camera motions, from SDL's own events.
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
+#include "desktop/field_colors.h"
 #include "desktop/history.h"
 #include "desktop/keyboard.h"
 #include "desktop/kiosk.h"
+#include "desktop/panels/panels.h"
 #include "desktop/pointer_input.h"
+#include "desktop/status_log.h"
 #include "desktop/texts.h"
 #include "gtest/gtest.h"
 
@@ -121,6 +127,24 @@ TEST_F(Pointer, AToolGetsTheLeftButton) {
   EXPECT_NEAR(orbit().azimuth_deg, 180.0, 1e-9);
 }
 
+TEST_F(Pointer, AToolThatIsPutAwayOrLeftIsTold) {
+  std::vector<bool> shown;
+  const ToolSteps tool{[](ScreenPoint) {}, [](ScreenPoint) {}, [](bool) {},
+                       [&](std::optional<ScreenPoint> at) { shown.push_back(at.has_value()); }};
+  input.SetTool(&tool);
+  input.Take(Motion(600, 300, 1, 0), true);
+  input.Take(Motion(60, 300, 1, 0), false);  // over a panel
+  input.Take(Motion(600, 300, 1, 0), true);
+  SDL_Event leaves{};
+  leaves.type = SDL_WINDOWEVENT;
+  leaves.window.event = SDL_WINDOWEVENT_LEAVE;
+  input.Take(leaves, true);
+  input.Take(Motion(600, 300, 1, 0), true);
+  input.SetTool(nullptr);
+  input.Take(Motion(610, 300, 1, 0), true);
+  EXPECT_EQ(shown, (std::vector<bool>{true, false, true, false, true, false}));
+}
+
 struct Keys {
   Pose pose = OrbitPose{{0.0, 0.0, 5000.0}, 180.0, 10.0, 50'000.0, 35.0};
   Choices choices;
@@ -136,10 +160,18 @@ struct Keys {
     actions.step_time = [this](int by) { stepped += by; };
   }
   bool Press(SDL_Keycode key, Uint16 modifiers = 0, const KeyFocus& focus = {}) {
+    return Press(SDL_SCANCODE_UNKNOWN, key, modifiers, focus);
+  }
+  bool Press(SDL_Scancode place, SDL_Keycode key, Uint16 modifiers = 0,
+             const KeyFocus& focus = {}) {
     SDL_KeyboardEvent event{};
+    event.keysym.scancode = place;
     event.keysym.sym = key;
     event.keysym.mod = modifiers;
     return TakeKey(event, focus, actions);
+  }
+  bool Type(std::string_view text, Uint16 modifiers = 0, const KeyFocus& focus = {}) {
+    return TakeText(text, modifiers, focus, actions);
   }
 };
 
@@ -149,13 +181,13 @@ TEST(Keyboard, HasThePagesKeys) {
   EXPECT_NEAR(std::get<OrbitPose>(keys.pose).azimuth_deg, 183.0, 1e-9);
   keys.Press(SDLK_k);
   EXPECT_EQ(keys.choices.tool, Tool::kLook);
-  keys.Press(SDLK_4);
+  keys.Press(SDL_SCANCODE_4, SDLK_4);
   EXPECT_EQ(keys.choices.tool, Tool::kNone);
   keys.Press(SDLK_x);
   EXPECT_EQ(keys.choices.panel, Panel::kDrawer);
-  keys.Press(SDLK_SLASH, KMOD_LSHIFT);
+  keys.Type("?", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.panel, Panel::kHelp);
-  keys.Press(SDLK_PERIOD);
+  keys.Type(".");
   EXPECT_EQ(keys.stepped, 1);
   keys.Press(SDLK_z, KMOD_LCTRL);
   EXPECT_EQ(keys.undone, 1);
@@ -167,6 +199,70 @@ TEST(Keyboard, ATextUsesAllKeysAndAControlItsOwn) {
   EXPECT_EQ(keys.choices.tool, Tool::kNone);
   EXPECT_FALSE(keys.Press(SDLK_RIGHT, 0, {false, true}));
   EXPECT_TRUE(keys.Press(SDLK_k, 0, {false, true}));
+}
+
+double DistanceOf(const Keys& keys) { return std::get<OrbitPose>(keys.pose).distance_m; }
+
+// A key comes with its place, its character without shift, and then its text.
+TEST(Keyboard, OnAGermanOneDigitsAndQuestionMarkWork) {
+  Keys keys;
+  keys.Press(SDL_SCANCODE_7, SDLK_7);
+  keys.Type("7");
+  EXPECT_EQ(keys.choices.tool, Tool::kMarks);
+  // Shift and the key of the sharp s.
+  keys.Press(SDL_SCANCODE_MINUS, 0xDF, KMOD_LSHIFT);
+  keys.Type("?", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.panel, Panel::kHelp);
+  // Shift and 7.
+  keys.Press(SDL_SCANCODE_7, SDLK_7, KMOD_LSHIFT);
+  keys.Type("/", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.tool, Tool::kMarks);
+}
+
+TEST(Keyboard, OnAFrenchOneDigitsWorkWithShiftAndWithout) {
+  Keys keys;
+  keys.Press(SDL_SCANCODE_7, 0xE8);
+  keys.Type("è");
+  EXPECT_EQ(keys.choices.tool, Tool::kMarks);
+  keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_LSHIFT);
+  keys.Type("1", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.tool, Tool::kCamera);
+  // With the caps lock.
+  keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_CAPS);
+  keys.Type("1", KMOD_CAPS);
+  EXPECT_EQ(keys.choices.tool, Tool::kNone);
+  // Shift and the semicolon's key; the comma's has the question mark above.
+  keys.Press(SDL_SCANCODE_COMMA, SDLK_SEMICOLON, KMOD_LSHIFT);
+  keys.Type(".", KMOD_LSHIFT);
+  EXPECT_EQ(keys.stepped, 1);
+  keys.Press(SDL_SCANCODE_M, SDLK_COMMA, KMOD_LSHIFT);
+  keys.Type("?", KMOD_LSHIFT);
+  EXPECT_EQ(keys.choices.panel, Panel::kHelp);
+  EXPECT_EQ(keys.stepped, 1);
+}
+
+TEST(Keyboard, PlusWithinTheDigitsZoomsAndOpensNoTool) {
+  Keys keys;
+  // Czech: the key of 1 without shift. Swiss: with shift.
+  keys.Press(SDL_SCANCODE_1, SDLK_PLUS);
+  keys.Type("+");
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88, 1.0);
+  keys.Press(SDL_SCANCODE_1, SDLK_1, KMOD_LSHIFT);
+  keys.Type("+", KMOD_LSHIFT);
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88 * 0.88, 1.0);
+  keys.Press(SDL_SCANCODE_KP_MINUS, SDLK_KP_MINUS);
+  keys.Type("-");
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88, 1.0);
+  EXPECT_EQ(keys.choices.tool, Tool::kNone);
+}
+
+TEST(Keyboard, TextWithControlOrInAFieldDoesNothing) {
+  Keys keys;
+  EXPECT_FALSE(keys.Type("?", 0, {true, true}));
+  EXPECT_FALSE(keys.Type("+", KMOD_LCTRL));
+  EXPECT_FALSE(keys.Type("?!"));
+  EXPECT_EQ(keys.choices.panel, Panel::kNone);
+  EXPECT_NEAR(DistanceOf(keys), 50'000.0, 1e-6);
 }
 
 TEST(History, OneDragIsOneStep) {
@@ -202,6 +298,77 @@ TEST(Texts, AreThePages) {
   EXPECT_EQ(CompassPoint(22.0), "NNE");
   EXPECT_EQ(DescribePose(OrbitPose{{}, 200.0, 4.0, 61'000.0, 35.0}),
             "Seen from SSW (200°), 4° high, 61 km away");
+}
+
+TEST(FieldColors, ComeBackFromTheScreen) {
+  v1::Color color;
+  color.set_red(0.5F);
+  color.set_green(0.002F);
+  color.set_blue(1.0F);
+  const ScreenColor shown = ScreenColorOf(color);
+  EXPECT_NEAR(shown[0], 188.0 / 255.0, 0.002);
+  EXPECT_NEAR(shown[1], 0.02584, 1e-4);
+  const v1::Color back = LinearColorOf(shown);
+  EXPECT_NEAR(back.red(), 0.5, 1e-5);
+  EXPECT_NEAR(back.green(), 0.002, 1e-6);
+  EXPECT_NEAR(back.blue(), 1.0, 1e-6);
+}
+
+TEST(FieldColors, AreShownWhereTheTechniqueAndTheSceneDoSo) {
+  v1::GetServerInfoResponse server;
+  v1::TechniqueDescription& technique = *server.add_techniques();
+  technique.set_name("light_volume");
+  technique.set_shows_field_optics(true);
+  v1::Scene scene;
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
+  scene.mutable_rendering()->mutable_light_volume();
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
+  scene.mutable_rendering()->mutable_light_volume()->set_false_colors(true);
+  EXPECT_TRUE(DrawsFalseColors(scene, server));
+  technique.set_shows_field_optics(false);
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
+  scene.mutable_rendering()->mutable_other()->set_name("light_volume");
+  technique.set_shows_field_optics(true);
+  EXPECT_FALSE(DrawsFalseColors(scene, server));
+}
+
+std::string TextOf(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(StatusFile, StaysSmallAndKeepsWholeLines) {
+  const std::string path = ::testing::TempDir() + "status";
+  std::ofstream(path) << "of another run\n";
+  std::ofstream(path + ".1") << "of another run\n";
+  constexpr int kMaxBytes = 40;
+  RotatedFile file(path, kMaxBytes);
+  for (int i = 0; i < 100; ++i) {
+    file.Write("line " + std::to_string(i));
+    EXPECT_LE(std::filesystem::file_size(path), kMaxBytes);
+  }
+  EXPECT_EQ(TextOf(path), "line 95\nline 96\nline 97\nline 98\nline 99\n");
+  EXPECT_EQ(TextOf(path + ".1"), "line 90\nline 91\nline 92\nline 93\nline 94\n");
+  EXPECT_FALSE(std::filesystem::exists(path + ".2"));
+}
+
+TEST(StatusFile, ALineThatIsTooLongIsWrittenAlone) {
+  const std::string path = ::testing::TempDir() + "status_long";
+  RotatedFile file(path, 4);
+  file.Write("first line");
+  file.Write("second line");
+  EXPECT_EQ(TextOf(path), "second line\n");
+  EXPECT_EQ(TextOf(path + ".1"), "first line\n");
+}
+
+TEST(Layout, ToolAndPanelLieBesideEachOther) {
+  for (const auto& [width, scale] : {std::pair{1280.0F, 1.0F}, {800.0F, 1.0F}, {1600.0F, 2.0F}}) {
+    const Layout layout = Layout::Of(width, 0.6F * width, scale);
+    const float tool_ends = 2.0F * layout.margin + layout.rail_width + layout.tool_width;
+    EXPECT_LE(tool_ends + layout.margin, width - layout.margin - layout.panel_width() + 0.01F);
+    EXPECT_GE(layout.tool_width, 260.0F * scale);
+  }
+  EXPECT_EQ(Layout::Of(3840.0F, 2160.0F, 2.0F).tool_width, 660.0F);
 }
 
 TEST(KioskView, IsLaidOverTheSceneWithoutDoublingItsLists) {

@@ -75,3 +75,17 @@ test("a server that has lost its sessions and its storm is shown as it is now", 
   assert.equal(back.storm, "supercell-500m");
   await kiosk.until("a view of it", (now) => now.link === "live" && now.camera !== "none");
 });
+
+test("a single view is shown once, and again in a new session", async () => {
+  await kiosk.stop();
+  kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "1", "--views", join(folder, "view_0.json")]);
+  const { revision } = await kiosk.until("the view", shows(0));
+  await sleep(4000);
+  const { revision: later, joined } = kiosk.status();
+  assert.equal(later, revision, "the view was sent again");
+  await server.stop("SIGKILL");
+  await kiosk.until("the loss", (now) => now.link !== "live");
+  server = await startServer(serverFlags);
+  const back = await kiosk.until("the view in a new session", (now) => shows(0)(now) && now.joined > joined);
+  assert.ok(Math.abs(back.azimuth_deg - 45) < 0.5, `it is seen from ${back.azimuth_deg}`);
+});

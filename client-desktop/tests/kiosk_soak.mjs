@@ -28,10 +28,13 @@ let failures = 0;
 let restarts = 0;
 try {
   await kiosk.until("the first picture", (now) => now.frames > 0);
+  const lines = []; // the status file keeps the last half hour
   const start = Date.now();
   let restartedAt = start;
   while (Date.now() - start < seconds * 1000) {
     await sleep(1000);
+    const now = kiosk.status();
+    if (now.t_s !== undefined) lines.push(now);
     if (kiosk.child.exitCode !== null) throw new Error(`the kiosk ended:\n${kiosk.said()}`);
     if (Date.now() - restartedAt < restartEvery * 1000) continue;
     restartedAt = Date.now();
@@ -44,7 +47,6 @@ try {
     const { frames } = kiosk.status();
     await kiosk.until("a new picture", (now) => now.frames > frames);
   }
-  const lines = kiosk.lines();
   const views = new Set(lines.map((line) => line.view).filter((view) => view >= 0));
   const resident = lines.map((line) => line.resident_bytes);
   const peak = (from, to) => Math.max(...resident.slice(Math.floor(from * resident.length), Math.ceil(to * resident.length)));

@@ -8,6 +8,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { canvasData, dragBetween, launchBrowser, openTool, rested, until } from "../../tests/e2e/driver.mjs";
 import { freePort, startServer } from "../../tests/e2e/server_process.mjs";
 import { rests, startDesktop } from "./desktop_process.mjs";
+import { accentIn, brightness, difference, eventually, region } from "./pixels.mjs";
 import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 1280, height: 800 };
@@ -22,13 +23,6 @@ let desktop;
 
 const azimuthOf = async (page) => Number((await canvasData(page)).azimuth);
 const apart = (a, b) => Math.abs(((a - b + 540) % 360) - 180);
-const brightness = ({ rgb }) => rgb.reduce((sum, value) => sum + value, 0) / rgb.length;
-// The share of pixels that differ clearly.
-function difference(a, b) {
-  let count = 0;
-  for (let i = 0; i < a.rgb.length; i += 3) if (Math.abs(a.rgb[i] - b.rgb[i]) > 12) count += 1;
-  return (3 * count) / a.rgb.length;
-}
 
 before(async () => {
   display = await startDisplay(SIZE.width, SIZE.height);
@@ -87,35 +81,6 @@ const RIGHT = { storms: "s", people: "h", figures: "i", settings: "x", keys: "qu
 
 // Where each side's panel has its title: over the sky, which hardly changes meanwhile.
 const TITLE = { left: { x: 110, y: 82, width: 200, height: 24 }, right: { x: 876, y: 82, width: 150, height: 24 } };
-
-function region({ width, rgb }, { x, y, width: w, height: h }) {
-  const rows = [];
-  for (let row = y; row < y + h; row += 1) rows.push(rgb.subarray(3 * (row * width + x), 3 * (row * width + x + w)));
-  return { rgb: Buffer.concat(rows) };
-}
-
-// The middle of what has the accent's colour: a button that is to be pressed.
-function accentIn(pixels, { x, y, width, height }) {
-  const found = [];
-  for (let row = y; row < y + height; row += 1) {
-    for (let column = x; column < x + width; column += 1) {
-      const at = 3 * (row * pixels.width + column);
-      const [r, g, b] = pixels.rgb.subarray(at, at + 3);
-      if (r > 245 && Math.abs(g - 209) < 12 && Math.abs(b - 107) < 16) found.push([column, row]);
-    }
-  }
-  assert.ok(found.length > 100, "no button to press");
-  const mean = (part) => Math.round(found.reduce((sum, each) => sum + each[part], 0) / found.length);
-  return { x: mean(0), y: mean(1) };
-}
-
-async function eventually(what, holds) {
-  const deadline = Date.now() + 15_000;
-  while (!holds()) {
-    assert.ok(Date.now() < deadline, what);
-    await sleep(100);
-  }
-}
 
 test("every tool and panel opens by its key and closes by Escape", async () => {
   for (const [side, panels] of Object.entries({ left: PANELS, right: RIGHT })) {
@@ -238,13 +203,4 @@ test("a browser presents, the window views, looks around and comes back", async 
   } finally {
     await browser.close();
   }
-});
-
-test("full screen comes and goes", async () => {
-  display.key("w");
-  await sleep(800);
-  display.screenshot("full_screen");
-  display.key("w");
-  await sleep(500);
-  assert.equal(desktop.child.exitCode, null);
 });

@@ -1,12 +1,12 @@
-// A row for each field of the storm: on or off, its colour, its amount, and where its particles'
-// sizes come from.
+// A row for each field of the storm: on or off, its false colour where the picture shows it, its
+// amount, and where its particles' sizes come from.
 #include <imgui.h>
 
-#include <cmath>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "desktop/controls.h"
+#include "desktop/field_colors.h"
 #include "desktop/panels/panels.h"
 #include "desktop/style.h"
 #include "desktop/texts.h"
@@ -30,13 +30,22 @@ v1::FieldParameters& MutableIn(v1::Scene& scene, v1::Hydrometeor hydrometeor) {
   return added;
 }
 
-// As the screen shows linear light.
-ImVec4 ScreenColor(const v1::Color& color) {
-  const auto encode = [](float linear) {
-    constexpr float kKnee = 0.0031308F;
-    return linear <= kKnee ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
-  };
-  return {encode(color.red()), encode(color.green()), encode(color.blue()), 1.0F};
+// A button in the field's false colour, which opens a picker.
+void DrawColor(Ui& ui, const v1::FieldDescription& field, const v1::FieldParameters& now,
+               const std::string& subject) {
+  ScreenColor color =
+      ScreenColorOf(now.has_false_color() ? now.false_color() : field.defaults().false_color());
+  const v1::Hydrometeor hydrometeor = field.hydrometeor();
+  constexpr ImGuiColorEditFlags kFlags =
+      ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoTooltip |
+      ImGuiColorEditFlags_NoOptions | ImGuiColorEditFlags_NoDragDrop;
+  if (ImGui::ColorEdit3("##color", color.data(), kFlags)) {
+    ui.Edit(subject, [=](v1::Scene& scene) {
+      *MutableIn(scene, hydrometeor).mutable_false_color() = LinearColorOf(color);
+    });
+  }
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("False colour");
+  ImGui::SameLine();
 }
 
 void DrawField(Ui& ui, const v1::FieldDescription& field) {
@@ -44,12 +53,7 @@ void DrawField(Ui& ui, const v1::FieldDescription& field) {
   const v1::FieldParameters now = ParametersIn(ui.state.scene, field);
   const std::string name = NameOf(hydrometeor);
   const std::string subject = absl::StrCat("fields.", name);
-  const v1::Color& color =
-      now.has_false_color() ? now.false_color() : field.defaults().false_color();
-  ImGui::ColorButton("##color", ScreenColor(color),
-                     ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
-                     {14.0F * ui.scale, ImGui::GetFrameHeight()});
-  ImGui::SameLine();
+  if (DrawsFalseColors(ui.state.scene, ui.storms.server)) DrawColor(ui, field, now, subject);
   bool visible = !now.has_visible() || now.visible();
   if (ImGui::Checkbox(name.c_str(), &visible)) {
     ui.Edit(subject, [=](v1::Scene& scene) { MutableIn(scene, hydrometeor).set_visible(visible); });
@@ -59,8 +63,7 @@ void DrawField(Ui& ui, const v1::FieldDescription& field) {
       empty ? "none at this time"
             : absl::StrCat("up to ", FormatNumber(field.maximum()), " ", field.units());
   ImGui::PushFont(SmallFont());
-  ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(amount.c_str()).x -
-                  ImGui::GetStyle().WindowPadding.x);
+  SameLineAtRight(ImGui::CalcTextSize(amount.c_str()).x);
   QuietLine(amount);
   ImGui::PopFont();
   if (empty || !visible) return;

@@ -4,15 +4,17 @@
 
 namespace thunderhead::desktop {
 
-Layout Layout::Of(const Ui& ui) {
+Layout Layout::Of(float width, float height, float scale) {
   Layout layout;
-  layout.margin = 12.0F * ui.scale;
-  layout.bar_height = 50.0F * ui.scale;
-  layout.rail_width = 76.0F * ui.scale;
-  layout.line_height = 74.0F * ui.scale;
-  layout.tool_width =
-      std::min(330.0F * ui.scale, ui.width - 3.0F * layout.margin - layout.rail_width);
-  layout.window = {ui.width, ui.height};
+  layout.margin = 12.0F * scale;
+  layout.bar_height = 50.0F * scale;
+  layout.rail_width = 76.0F * scale;
+  layout.line_height = 74.0F * scale;
+  // A tool and a panel fit beside each other down to a width at which controls are of use.
+  const float beside = (width - 4.0F * layout.margin - layout.rail_width) / (1.0F + kPanelPerTool);
+  const float tool_width = std::clamp(beside, 260.0F * scale, 330.0F * scale);
+  layout.tool_width = std::min(tool_width, width - 3.0F * layout.margin - layout.rail_width);
+  layout.window = {width, height};
   return layout;
 }
 

@@ -10,6 +10,8 @@ namespace thunderhead::desktop {
 
 // Measures in the window's units.
 struct Layout {
+  static constexpr float kPanelPerTool = 400.0F / 330.0F;
+
   float margin = 0.0F;
   float bar_height = 0.0F;
   float rail_width = 0.0F;
@@ -17,8 +19,8 @@ struct Layout {
   float tool_width = 0.0F;
   ImVec2 window;
 
-  static Layout Of(const Ui& ui);
-  float panel_width() const { return 400.0F / 330.0F * tool_width; }  // of one at the right
+  static Layout Of(float width, float height, float scale);
+  float panel_width() const { return kPanelPerTool * tool_width; }  // of one at the right
   // Below the bar, above the time line.
   float top() const { return 2.0F * margin + bar_height; }
   float bottom() const { return window.y - 2.0F * margin - line_height; }

@@ -32,7 +32,7 @@ void DrawPerson(Ui& ui, const v1::Person& person) {
   QuietLine(notes);
   const bool gives = (state.Steers() || state.Presents()) && !me && !steers;
   if (!gives) return;
-  ImGui::SameLine(ImGui::GetWindowWidth() - 130.0F * ui.scale);
+  SameLineAtRight(116.0F * ui.scale);
   if (ImGui::Button("Give control")) ui.session.GiveControl(person.viewer_id());
 }
 
@@ -75,8 +75,7 @@ void DrawKey(const char* label, const std::string& key) {
   const std::string shown = key.substr(0, 24) + (key.size() > 24 ? "…" : "");
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(shown.c_str());
-  ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize("Copy").x -
-                  2.0F * ImGui::GetStyle().FramePadding.x - ImGui::GetStyle().WindowPadding.x);
+  SameLineAtRight(ImGui::CalcTextSize("Copy").x + 2.0F * ImGui::GetStyle().FramePadding.x);
   if (ImGui::Button("Copy")) ImGui::SetClipboardText(key.c_str());
   ImGui::PopID();
 }

@@ -36,7 +36,8 @@ std::string LinkText(const Ui& ui) {
   return "";
 }
 
-void DrawStorm(Ui& ui) {
+// `right` is where the connection begins.
+void DrawStorm(Ui& ui, float right) {
   const auto& storm = ui.storms.storm;
   const bool known = storm.id() == ui.state.scene.storm_id() && !storm.id().empty();
   ImGui::PushFont(BoldFont());
@@ -52,8 +53,12 @@ void DrawStorm(Ui& ui) {
   ImGui::PushFont(BoldFont());
   ImGui::TextUnformatted(FormatValidTime(storm.times(index)).c_str());
   ImGui::PopFont();
-  ImGui::SameLine(0.0F, 16.0F * ui.scale);
-  QuietLine(FormatElapsed(storm.times(index).elapsed_s()));
+  const std::string elapsed = FormatElapsed(storm.times(index).elapsed_s());
+  const float gap = 16.0F * ui.scale;
+  ImGui::SameLine(0.0F, gap);
+  if (ImGui::GetCursorPosX() + ImGui::CalcTextSize(elapsed.c_str()).x + gap < right) {
+    QuietLine(elapsed);
+  }
 }
 
 ImVec4 LinkColor(client::Link link) {
@@ -87,13 +92,14 @@ void DrawTopBar(Ui& ui, const Layout& layout) {
   const ImVec2 size(layout.window.x - 2.0F * layout.margin, layout.bar_height);
   if (BeginPanel("top bar", place, size, ImGuiWindowFlags_NoScrollbar)) {
     ImGui::SetCursorPosY(0.5F * (layout.bar_height - ImGui::GetFrameHeight()));
-    DrawStorm(ui);
     const std::string people =
         ui.state.Alone() ? "People" : absl::StrCat("People ", ui.state.presence.people_size());
     const float gap = ImGui::GetStyle().ItemSpacing.x;
     const float width = WidthOf("    " + LinkText(ui)) + WidthOf(people) + WidthOf("Settings") +
                         WidthOf("?") + 3.0F * gap;
-    ImGui::SameLine(size.x - width - ImGui::GetStyle().WindowPadding.x);
+    const float right = size.x - width - ImGui::GetStyle().WindowPadding.x;
+    DrawStorm(ui, right);
+    ImGui::SameLine(right);
     DrawLink(ui);
     ImGui::SameLine();
     if (ImGui::Button("Settings")) ui.choices.Toggle(Panel::kDrawer);

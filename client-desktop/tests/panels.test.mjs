@@ -1,0 +1,187 @@
+// The window's panels, pressed by real input before the real server; a browser as the other side of a session.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+import { launchBrowser, rested, until } from "../../tests/e2e/driver.mjs";
+import { freePort, startServer } from "../../tests/e2e/server_process.mjs";
+import { rests, startDesktop } from "./desktop_process.mjs";
+import { accentIn, difference, eventually, meanColor, pixelsLike, region } from "./pixels.mjs";
+import { startDisplay } from "./xvfb.mjs";
+
+const SIZE = { width: 1280, height: 800 };
+const WINDOW = ["--width", String(SIZE.width), "--height", String(SIZE.height), "--scale", "1"];
+
+const PAGE_PATIENCE_MS = 30_000;
+
+let display;
+let server;
+let serverFlags;
+let desktop;
+
+before(async () => {
+  display = await startDisplay(SIZE.width, SIZE.height);
+  serverFlags = { httpPort: await freePort(), grpcPort: await freePort() };
+  server = await startServer(serverFlags);
+  desktop = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--name", "Wall"]);
+  await desktop.until("the first picture", rests);
+});
+
+after(async () => {
+  await desktop?.stop();
+  await server?.stop();
+  await display?.stop();
+});
+
+// Presses, and waits for the picture of the scene that this makes.
+async function change(what, press) {
+  const { revision } = desktop.status();
+  await press();
+  const { problem, notice } = await desktop.until(what, (now) => rests(now) && now.revision > revision);
+  assert.deepEqual({ problem, notice }, { problem: "", notice: "" });
+}
+
+test("false colours are picked where the picture shows them", async () => {
+  const COLOR = { x: 120, y: 124, width: 14, height: 14 }; // of the first field
+  const STORM = { x: 560, y: 330, width: 400, height: 200 };
+  const shownColor = () => meanColor(region(display.pixels(), COLOR));
+  display.key("f");
+  await sleep(500);
+  assert.ok(shownColor()[0] < 200, "a colour is offered that the picture does not show");
+  display.key("k");
+  await sleep(500);
+  await change("false colours", () => display.click(127, 230));
+  display.key("f");
+  await eventually("the default, red, is not shown", () => shownColor()[0] > 240 && shownColor()[2] < 20);
+  const before = region(display.pixels(), STORM);
+  await display.click(127, 131);
+  await sleep(500);
+  display.screenshot("picker");
+  // Blue on the picker's bar of hues.
+  await change("a blue cloud", () => display.click(438, 360));
+  display.key("Escape");
+  await sleep(500);
+  assert.ok(difference(before, region(display.pixels(), STORM)) > 0.02, "the cloud has the colour that it had");
+  display.key("f");
+  await eventually("the colour in the panel is not blue", () => shownColor()[0] < 20 && shownColor()[2] > 240);
+  display.key("Escape");
+  display.key("Escape");
+});
+
+// The bar about who steers, above the time line.
+const SESSION_BAR = { x: 300, y: 660, width: 680, height: 36 };
+
+test("rules, control and the pointer reach a viewer's page", async () => {
+  const browser = await launchBrowser();
+  try {
+    const page = await browser.newPage({ viewport: { width: 900, height: 560 } });
+    await page.goto(`${server.url.replace(/\/$/, "")}/?session=${desktop.status().viewer_key}`);
+    await rested(page);
+    await desktop.until("two people", (now) => now.people === 2);
+    const ask = page.getByTestId("ask-control");
+
+    display.key("h");
+    // The check mark of the first rule, below two people.
+    const mark = () => pixelsLike(region(display.pixels(), { x: 884, y: 272, width: 24, height: 24 }), [255, 209, 107]);
+    await eventually("the rules are not shown", () => mark() > 20);
+    display.screenshot("rules");
+    // "Nobody may ask to steer", below two people.
+    await display.click(895, 318);
+    await until("control is locked on the page", () => ask.isDisabled(), PAGE_PATIENCE_MS);
+    await display.click(895, 318);
+    await until("control is free on the page", () => ask.isEnabled(), PAGE_PATIENCE_MS);
+    display.key("Escape");
+
+    await ask.click();
+    await desktop.until("a request", (now) => now.asking === 1);
+    await sleep(1000);
+    // "No" is right of the button that gives.
+    const refused = accentIn(display.pixels(), SESSION_BAR);
+    await display.click(refused.right + 24, refused.y);
+    await desktop.until("the request refused", (now) => now.asking === 0 && now.steers);
+    await until("the page may ask again", () => ask.isEnabled(), PAGE_PATIENCE_MS);
+
+    // Unasked: who was refused must wait before asking again.
+    display.key("h");
+    await sleep(500);
+    await display.click(1186, 224);
+    await desktop.until("control given", (now) => !now.steers);
+    display.key("Escape");
+    await sleep(1000);
+    const taken = accentIn(display.pixels(), SESSION_BAR);
+    await display.click(taken.x, taken.y);
+    await desktop.until("control taken back", (now) => now.steers);
+
+    display.key("d");
+    await sleep(500);
+    // The last of three segments: the pointer.
+    await display.click(366, 128);
+    display.move(700, 300);
+    display.move(705, 310);
+    const pointers = () => page.getByTestId("pointer").count();
+    await until("the window's pointer on the page", async () => (await pointers()) === 1, PAGE_PATIENCE_MS);
+    display.key("Escape");
+    display.key("Escape");
+    await until("the pointer put away", async () => (await pointers()) === 0, PAGE_PATIENCE_MS);
+  } finally {
+    await browser.close();
+  }
+});
+
+test("a notice lies beside an open panel", async () => {
+  const PANEL = { x: 868, y: 74, width: 400, height: 400 };
+  const BESIDE = { x: 420, y: 74, width: 436, height: 120 };
+  const BAD = [255, 140, 122];
+  const notices = (area) => pixelsLike(region(display.pixels(), area), BAD);
+  display.key("h");
+  await sleep(500);
+  assert.equal(notices(BESIDE), 0);
+  await server.stop("SIGKILL");
+  await desktop.until("the loss", (now) => now.link === "lost");
+  await eventually("no notice beside the panel", () => notices(BESIDE) > 100);
+  display.screenshot("notice_beside_panel");
+  assert.equal(notices(PANEL), 0, "the notice lies over the panel");
+  display.key("Escape");
+  server = await startServer(serverFlags);
+  await desktop.until("back", (now) => now.link === "live");
+});
+
+test("at a scale of 2 panels lie beside each other, and presses hit", async () => {
+  await desktop.stop();
+  const large = await startDisplay(1600, 1000);
+  try {
+    desktop = startDesktop(large, serverFlags.grpcPort, ["--width", "1600", "--height", "1000", "--scale", "2"]);
+    await desktop.until("the first picture", rests);
+    // "Look" of the rail, then its second check box, then the storm's people.
+    await large.click(2 * 50, 2 * 245);
+    const { revision } = desktop.status();
+    await large.click(2 * 127, 2 * 230);
+    await desktop.until("false colours", (now) => rests(now) && now.revision > revision);
+    large.key("h");
+    await sleep(700);
+    large.screenshot("scale_2");
+    // The panel begins with its margin after the tool, whose right edge is the gap between them.
+    const gap = { x: 2 * (100 + 306), y: 2 * 74, width: 2 * 10, height: 2 * 200 };
+    assert.ok(pixelsLike(region(large.pixels(), gap), [255, 255, 255], 60) < 40, "text lies between the panels");
+    const { azimuth_deg } = desktop.status();
+    await large.drag({ x: 900, y: 500 }, { x: 1000, y: 500 });
+    await sleep(500);
+    assert.equal(desktop.status().azimuth_deg, azimuth_deg, "a drag over the panel turned the camera");
+  } finally {
+    await desktop.stop();
+    await large.stop();
+  }
+});
+
+// Xvfb has no window manager, so W cannot be tried here: it asks that for full screen.
+test("full screen has the display's size", async () => {
+  const small = ["--width", "800", "--height", "500", "--scale", "1"];
+  const sized = (width, height) => (now) => rests(now) && now.width_px === width && now.height_px === height;
+  desktop = startDesktop(display, serverFlags.grpcPort, [...small, "--full-screen"]);
+  await desktop.until("a picture of the display's size", sized(SIZE.width, SIZE.height));
+  const geometry = () => /Geometry: (\S+)/.exec(display.xdotool("search", "--name", "Thunderhead", "getwindowgeometry"))[1];
+  assert.equal(geometry(), `${SIZE.width}x${SIZE.height}`);
+  await desktop.stop();
+  desktop = startDesktop(display, serverFlags.grpcPort, small);
+  await desktop.until("a picture of the window's size", sized(800, 500));
+  assert.equal(geometry(), "800x500");
+});
