@@ -8,10 +8,11 @@ namespace thunderhead::accuracy {
 
 void MachineCosts::Observe(const std::string& view, const MeasuredFrame& frame) {
   const scene::Technique& technique = frame.scene.rendering.technique;
-  const bool compiles = compiled_
-                            .emplace(scene::NameOf(technique), ModeOf(technique).name,
-                                     TransportNameOf(technique), frame.traced)
-                            .second;
+  const bool compiles =
+      compiled_
+          .emplace(std::string(frame.context), scene::NameOf(technique), ModeOf(technique).name,
+                   TransportNameOf(technique), frame.traced)
+          .second;
   if (compiles) return;
   const double mega_samples = MegaSamples(frame.scene, frame.quality);
   Models& own = views_.try_emplace(view, machine_).first->second;

@@ -27,7 +27,8 @@ struct MeasuredFrame {
   FrameQuality quality;
   double total_ms = 0.0;
   const std::vector<scene::StageTime>& stages;
-  bool traced = false;  // traced paths corrected its light
+  bool traced = false;            // traced paths corrected its light
+  std::string_view context = {};  // of OpenGL, each of which compiles its own shaders
 };
 
 class MachineCosts {
@@ -35,8 +36,8 @@ class MachineCosts {
   // `tables` must outlive it.
   explicit MachineCosts(const OfferTables& tables) : tables_(tables) {}
 
-  // A frame of `view`, which names whose picture it is. The first frame of a setting counts for
-  // nothing: its time is not representative, as it includes shader compilation.
+  // A frame of `view`, which names whose picture it is. The first frame of a setting in each
+  // context counts for nothing: its time is not representative, as it includes shader compilation.
   void Observe(const std::string& view, const MeasuredFrame& frame);
 
   // The next frame of `view` if `first_dirty` is the first stage to rerun: by the frames of that
@@ -56,7 +57,7 @@ class MachineCosts {
   // One for each kind of technique: their costs have nothing in common.
   using Models = std::array<CostModel, std::variant_size_v<scene::Technique>>;
   // Names of technique, mode and transport; whether traced paths correct the light.
-  using Shaders = std::tuple<std::string, std::string_view, std::string_view, bool>;
+  using Shaders = std::tuple<std::string, std::string, std::string_view, std::string_view, bool>;
 
   void CompareWithTable(const scene::Scene& scene, double view_ms);
 

@@ -113,6 +113,17 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
   std::cout << "\n";
 }
 
+// Below it civil twilight has ended, and pictures are nearly black.
+constexpr float kNightBelow_deg = -6.0F;
+
+void TellOfNight(const v1::Scene& scene) {
+  if (scene.sun().elevation_deg() >= kNightBelow_deg) return;
+  std::cerr << absl::StrFormat(
+      "thunderhead: the picture is dark, as the sun is %.0f degrees below the horizon; a scene "
+      "whose sun has \"source\": \"SOURCE_BY_HAND\" and an elevation shows it by day\n",
+      -scene.sun().elevation_deg());
+}
+
 absl::Status ByReference(const RenderFlags& flags, const ProductFormat& format) {
   if (!flags.server.address.empty() || flags.json) {
     return absl::InvalidArgumentError(
@@ -158,6 +169,7 @@ absl::Status Render(const RenderFlags& flags) {
                                    ? CallHere(flags, request, interruption)
                                    : CallServer(flags, request, interruption));
   THUNDERHEAD_RETURN_IF_ERROR(Write(flags.output, format, response));
+  TellOfNight(response.scene());
   if (!flags.json) {
     PrintAccuracy(response);
     return absl::OkStatus();

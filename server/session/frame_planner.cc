@@ -68,8 +68,13 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
   const Clock::time_point settled_at = targets_.SettlesAt(newest);
   if (now < settled_at) return {std::nullopt, settled_at};
   const FrameQuality finest = Finest(*newest.scene, first_dirty, targets_.longest_ms);
-  if (!IsFull(finest) && finest.image_scale <= drawn_.quality.image_scale) return {};
-  return {FramePlan{finest, true}, std::nullopt};
+  if (IsFull(finest) || finest.image_scale > drawn_.quality.image_scale) {
+    return {FramePlan{finest, true}, std::nullopt};
+  }
+  if (drawn_.refined) return {};
+  // As fine as it may be. It is drawn once more all the same: a scene at rest has a refined frame,
+  // and the estimate may be of a moment at which the machine was busy.
+  return {FramePlan{{drawn_.quality.image_scale, drawn_.quality.slice_share}, true}, std::nullopt};
 }
 
 bool FramePlanner::DrawsWhole(const scene::Scene& scene) const {

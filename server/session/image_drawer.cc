@@ -229,7 +229,8 @@ void ImageDrawer::Report(const Begun& image, const accuracy::LightProgress& prog
 }
 
 absl::StatusOr<DisplayFrame> ImageDrawer::Drawn(Begun& image) {
-  source_.Learn("", *image.job.decided, FrameQuality{}, {.measured = image.error}, &*image.frame);
+  source_.Learn("images", "", *image.job.decided, FrameQuality{}, {.measured = image.error},
+                &*image.frame);
   double drawn_ms = 0.0;
   for (const StageTime& stage : image.frame->stages) drawn_ms += stage.milliseconds;
   queue_.Drew(image.job, drawn_ms);

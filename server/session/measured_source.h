@@ -39,9 +39,9 @@ class MeasuredSource {
   // Another source from now on, as the device was lost; null: nothing is drawn until there is one.
   void Replace(std::unique_ptr<FrameSource> source);
 
-  // Reports a frame that another source drew.
-  void Learn(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
-             const accuracy::Evidence& evidence, DisplayFrame* frame);
+  // Reports a frame that the source of that lane drew.
+  void Learn(std::string_view lane, const std::string& view, const scene::Scene& scene,
+             const FrameQuality& quality, const accuracy::Evidence& evidence, DisplayFrame* frame);
 
   // Forgets the costs of a view that is no longer drawn.
   void Forget(const std::string& view) { costs_.Forget(view); }
@@ -52,8 +52,12 @@ class MeasuredSource {
   const accuracy::Estimator& Estimator() const { return estimator_; }
 
  private:
+  struct Drawing {
+    double total_ms = 0.0;
+    std::string_view context = {};  // as in accuracy::MeasuredFrame
+  };
   void Report(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
-              double total_ms, accuracy::Evidence evidence, DisplayFrame* frame);
+              const Drawing& drawing, accuracy::Evidence evidence, DisplayFrame* frame);
 
   std::unique_ptr<FrameSource> source_;
   const accuracy::OfferTables tables_;

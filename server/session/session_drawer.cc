@@ -156,7 +156,7 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessi
 void SessionDrawer::Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture) {
   const NewestScene& shown = drawn.shown;
   const bool shows_light = std::holds_alternative<ShowLight>(drawn.work);
-  source_.Learn(turn.session->id(), *shown.scene, QualityOf(drawn.work),
+  source_.Learn("sessions", turn.session->id(), *shown.scene, QualityOf(drawn.work),
                 shows_light
                     ? turn.kept.view.evidence()
                     : accuracy::Evidence{.discretisation_error = picture.discretisation_error},

@@ -91,6 +91,23 @@ TEST_F(FramePlannerTest, NoFrameIsDrawnThatEverybodyWouldWaitTooLongFor) {
   EXPECT_FALSE(planner_.DrawsWhole(scene_));
 }
 
+TEST_F(FramePlannerTest, AFrameThatTookTooLongByChanceIsRefinedAllTheSame) {
+  Drag({4.0, 10.0}, 20);  // 1.2 s a full frame
+  // While it compiled, or while others used the processors.
+  Drag({4.0, 100'000.0}, 1);
+  Drag({4.0, 10.0}, 1);
+  ASSERT_FALSE(last_plan_.refined);
+  const auto plan = Ask(milliseconds(10000)).plan;
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_TRUE(plan->refined);
+  Draw({4.0, 10.0}, *plan);
+  int frames = 0;
+  while (const auto finer = Ask(milliseconds(10000)).plan) {
+    ASSERT_LT(++frames, 10) << "it must come to an end";
+    Draw({4.0, 10.0}, *finer);
+  }
+}
+
 TEST_F(FramePlannerTest, AFrameOfASecondIsDrawnWhole) {
   Drag({4.0, 10.0}, 20);  // 1.2 s a full frame
   EXPECT_TRUE(planner_.DrawsWhole(scene_));
