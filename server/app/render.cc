@@ -120,7 +120,7 @@ void TellOfNight(const v1::Scene& scene) {
   if (scene.sun().elevation_deg() >= kNightBelow_deg) return;
   std::cerr << absl::StrFormat(
       "thunderhead: the picture is dark, as the sun is %.0f degrees below the horizon; a scene "
-      "whose sun has \"source\": \"SOURCE_BY_HAND\" and an elevation shows it by day\n",
+      "with \"sun\": {\"azimuthDeg\": 245, \"elevationDeg\": 35} shows it by day\n",
       -scene.sun().elevation_deg());
 }
 

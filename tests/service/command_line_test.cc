@@ -111,6 +111,15 @@ TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ExpectError("serve --data " + kSample + " --state /proc/none", 64, "--state is '/proc/none'");
 }
 
+TEST_F(CommandLineTest, ADarkPictureSaysThatItIsNight) {
+  const std::string night = Scene(R"({"sun": {"elevationDeg": -20}})");
+  const Outcome outcome = Run(render_ + " --size 64x36 --quality fast --scene " + night);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("the sun is 20 degrees below the horizon"));
+  const std::string dusk = Scene(R"({"sun": {"elevationDeg": -5}})");
+  EXPECT_THAT(Run(render_ + " --size 64x36 --quality fast --scene " + dusk).err, IsEmpty());
+}
+
 TEST_F(CommandLineTest, InspectDescribesTheSample) {
   const Outcome outcome = Run("inspect " + kSample + " --time 1 --json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
