@@ -72,9 +72,9 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
     return {FramePlan{finest, true}, std::nullopt};
   }
   if (drawn_.refined) return {};
-  // As fine as it may be. It is drawn once more all the same: a scene at rest has a refined frame,
-  // and the estimate may be of a moment at which the machine was busy.
-  return {FramePlan{{drawn_.quality.image_scale, drawn_.quality.slice_share}, true}, std::nullopt};
+  // Hardly finer, if at all. It is drawn all the same: a scene at rest has a refined frame, and the
+  // estimate may be of a moment at which the machine was busy.
+  return {FramePlan{finest, true}, std::nullopt};
 }
 
 bool FramePlanner::DrawsWhole(const scene::Scene& scene) const {

@@ -524,8 +524,8 @@ test("the teacher reloads by accident and loses nothing", async () => {
   await openTool(teacher, "look");
   const after = await restedStill(teacher);
   assert.equal(after.azimuth, before.azimuth);
-  const apart = difference(picture, await grabCanvas(teacher));
-  assert.ok(apart < 1, `after the reload the picture differs by ${apart}`);
+  // The page sends its size again, and gets a frame more.
+  await until("the picture as before", async () => difference(picture, await grabCanvas(teacher)) < 0.5);
   assert.equal(await exposure(teacher).inputValue(), "-0.5");
   assert.equal(await marksOn(teacher), 1);
   await teacher.getByTestId("edit-block").waitFor({ state: "detached" });
@@ -639,9 +639,8 @@ test("the server is killed and comes back: teacher and student have their sessio
   assert.equal(student.url(), address);
   await until("a picture since then", async () => Number((await canvasData(student)).revision) > Number(revision));
   await inStep();
-  await restedStill(student);
-  const apart = difference(drawn, await grabCanvas(student));
-  assert.ok(apart < 0.1, `after the restart the picture differs by ${apart}`);
+  // Light is solved to a tolerance, from another start.
+  await until("the picture as before", async () => difference(drawn, await grabCanvas(student)) < 0.5);
   for (const page of [teacher, student]) {
     await until("the mark", async () => (await marksOn(page)) === 1);
     assert.deepEqual(await markOn(page), mark);
