@@ -1,4 +1,4 @@
-// What the gateway refuses by its own rules and limits, for those who look into it.
+// Refusals by the gateway's own rules and limits, as the audit and the metrics have them.
 #pragma once
 
 #include <string>

@@ -68,12 +68,10 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
   const Clock::time_point settled_at = targets_.SettlesAt(newest);
   if (now < settled_at) return {std::nullopt, settled_at};
   const FrameQuality finest = Finest(*newest.scene, first_dirty, targets_.longest_ms);
-  if (IsFull(finest) || finest.image_scale > drawn_.quality.image_scale) {
-    return {FramePlan{finest, true}, std::nullopt};
-  }
-  if (drawn_.refined) return {};
-  // Hardly finer, if at all. It is drawn all the same: a scene at rest has a refined frame, and the
-  // estimate may be of a moment at which the machine was busy.
+  const bool is_finer = IsFull(finest) || finest.image_scale > drawn_.quality.image_scale;
+  // One that is no finer is drawn all the same if there is no refined frame yet: the estimate may
+  // be of a moment at which the machine was busy.
+  if (!is_finer && drawn_.refined) return {};
   return {FramePlan{finest, true}, std::nullopt};
 }
 

@@ -30,7 +30,7 @@ absl::StatusOr<DisplayFrame> MeasuredSource::Draw(const std::string& view,
                                  return source_->Draw(scene, fields, quality);
                                }));
   last_drawn_ = LastDrawn{scene, quality};
-  Report(view, scene, quality, {stopwatch.ElapsedMs()}, evidence, &frame);
+  Report(view, {scene, quality, stopwatch.ElapsedMs(), frame.stages}, evidence, &frame);
   return frame;
 }
 
@@ -42,7 +42,7 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
                                  return source_->DrawChecked(scene, fields);
                                }));
   last_drawn_ = LastDrawn{scene, FrameQuality{}};
-  Report(view, scene, FrameQuality{}, {TotalMs(checked.frame)},
+  Report(view, {scene, FrameQuality{}, TotalMs(checked.frame), checked.frame.stages},
          {.discretisation_error = checked.discretisation_error}, &checked.frame);
   return checked;
 }
@@ -50,7 +50,7 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
 void MeasuredSource::Learn(std::string_view lane, const std::string& view,
                            const scene::Scene& scene, const FrameQuality& quality,
                            const accuracy::Evidence& evidence, DisplayFrame* frame) {
-  Report(view, scene, quality, {TotalMs(*frame), lane}, evidence, frame);
+  Report(view, {scene, quality, TotalMs(*frame), frame->stages, false, lane}, evidence, frame);
 }
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,
@@ -67,13 +67,12 @@ void MeasuredSource::Replace(std::unique_ptr<FrameSource> source) {
   source_ = std::move(source);
 }
 
-void MeasuredSource::Report(const std::string& view, const scene::Scene& scene,
-                            const FrameQuality& quality, const Drawing& drawing,
+void MeasuredSource::Report(const std::string& view, accuracy::MeasuredFrame measured,
                             accuracy::Evidence evidence, DisplayFrame* frame) {
   evidence.traced_paths = frame->modelled.traced_paths;
-  costs_.Observe(view, {scene, quality, drawing.total_ms, frame->stages, evidence.traced_paths > 0,
-                        drawing.context});
-  frame->accuracy = estimator_.Report(scene, quality, evidence);
+  measured.traced = evidence.traced_paths > 0;
+  costs_.Observe(view, measured);
+  frame->accuracy = estimator_.Report(measured.scene, measured.quality, evidence);
 }
 
 }  // namespace thunderhead::session

@@ -52,12 +52,8 @@ class MeasuredSource {
   const accuracy::Estimator& Estimator() const { return estimator_; }
 
  private:
-  struct Drawing {
-    double total_ms = 0.0;
-    std::string_view context = {};  // as in accuracy::MeasuredFrame
-  };
-  void Report(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
-              const Drawing& drawing, accuracy::Evidence evidence, DisplayFrame* frame);
+  void Report(const std::string& view, accuracy::MeasuredFrame measured,
+              accuracy::Evidence evidence, DisplayFrame* frame);
 
   std::unique_ptr<FrameSource> source_;
   const accuracy::OfferTables tables_;

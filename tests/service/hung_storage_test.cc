@@ -151,7 +151,7 @@ TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = SceneOf("tower");
   v1::CreateSessionResponse created;
-  // Whether the session opens or not, it must be answered.
+  // The call must be answered, whether a session opens or not.
   Call(*stub_, &Stub::CreateSession, request, &created);
   const grpc::Status late = Draw("tower");
   EXPECT_EQ(late.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << late.error_message();

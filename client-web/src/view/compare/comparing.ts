@@ -153,7 +153,7 @@ export class Comparing {
     });
   }
 
-  // What is drawn or pointed at on B goes to the same place of A, which is the picture that others see.
+  // Strokes and pointer places on B are passed on to the same place of A, the picture that others see.
   #toolOverA(): PictureTool | undefined {
     const tool = this.#steps.tool();
     if (tool === undefined) return undefined;
