@@ -25,8 +25,6 @@ class Target {
 }
 
 export class FakeCanvas extends Target {
-  offsetLeft = 0;
-  offsetTop = 0;
   clientWidth = 640;
   clientHeight = 360;
   width = 0;
@@ -34,6 +32,9 @@ export class FakeCanvas extends Target {
   readonly dataset: Record<string, string> = {};
   readonly classList = { add: () => undefined, remove: () => undefined };
   setPointerCapture(): void {}
+  getBoundingClientRect() {
+    return { left: 0, top: 0, width: this.clientWidth, height: this.clientHeight };
+  }
   getContext() {
     return { fillRect: () => undefined, drawImage: () => undefined };
   }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "base/srgb.h"
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/exponential.hpp"
@@ -41,11 +42,6 @@ Planes Mapped(const Planes& planes, const std::function<glm::dvec3(const glm::dv
   mapped.values.reserve(planes.values.size());
   for (const glm::dvec3& value : planes.values) mapped.values.push_back(map(value));
   return mapped;
-}
-
-double LinearOf(std::uint8_t coded) {
-  const double value = coded / 255.0;
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
 // Linear sRGB to CIE XYZ under D65, columns for red, green and blue.
@@ -212,8 +208,9 @@ std::vector<double> Features(const Planes& opponent, bool edges) {
 Planes OpponentOf(const frame::RgbImage& image) {
   Planes planes{{image.width_px, image.height_px}, {}};
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
-    planes.values.push_back(OpponentOf(glm::dvec3(
-        LinearOf(image.rgb[i]), LinearOf(image.rgb[i + 1]), LinearOf(image.rgb[i + 2]))));
+    planes.values.push_back(OpponentOf(glm::dvec3(base::LinearOfSrgbByte(image.rgb[i]),
+                                                  base::LinearOfSrgbByte(image.rgb[i + 1]),
+                                                  base::LinearOfSrgbByte(image.rgb[i + 2]))));
   }
   return planes;
 }

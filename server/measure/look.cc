@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <thread>
 
+#include "base/srgb.h"
 #include "frame/white_balance.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
@@ -25,7 +26,7 @@ constexpr double kBaseRadius = 1.0 / 3.0;
 constexpr double kBaseHeight = 1.0 / 4.0;
 constexpr double kOwnShadow = 1.0 / 8.0;
 constexpr double kHighestBase_m = 2000.0;
-constexpr double kDarkest = 0.5 / 255.0 / 12.92;  // half of the first step of sRGB
+const double kDarkest = base::LinearOfSrgb(0.5 / 255.0);  // half of the first step
 
 class Places {
  public:
@@ -121,11 +122,6 @@ LookFigures FiguresOf(const std::vector<Region>& regions, const std::vector<doub
   return figures;
 }
 
-double LinearOfSrgb(std::uint8_t byte) {
-  const double coded = byte / 255.0;
-  return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
-}
-
 }  // namespace
 
 std::vector<Region> RegionsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
@@ -161,9 +157,9 @@ LookFigures FiguresOf(const std::vector<Region>& regions, const frame::RgbImage&
   std::vector<double> luminance;
   luminance.reserve(display.rgb.size() / 3);
   for (std::size_t i = 0; i + 2 < display.rgb.size(); i += 3) {
-    const double shown = 0.2126 * LinearOfSrgb(display.rgb[i]) +
-                         0.7152 * LinearOfSrgb(display.rgb[i + 1]) +
-                         0.0722 * LinearOfSrgb(display.rgb[i + 2]);
+    const double shown = 0.2126 * base::LinearOfSrgbByte(display.rgb[i]) +
+                         0.7152 * base::LinearOfSrgbByte(display.rgb[i + 1]) +
+                         0.0722 * base::LinearOfSrgbByte(display.rgb[i + 2]);
     luminance.push_back(std::max(shown, kDarkest));
   }
   return FiguresOf(regions, luminance);

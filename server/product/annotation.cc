@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "base/srgb.h"
 #include "base/status.h"
 #include "product/cairo_surface.h"
 
@@ -60,10 +61,6 @@ void TakePixels(cairo_surface_t* surface, frame::RgbImage& image) {
   }
 }
 
-double Srgb(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
 class Pen {
  public:
   Pen(cairo_surface_t* surface, int width_px, int height_px)
@@ -105,7 +102,8 @@ class Pen {
     Ink(0.0, 0.6);
     cairo_set_line_width(context_.get(), 2.0 * kEdge * line_px_);
     cairo_stroke_preserve(context_.get());
-    cairo_set_source_rgb(context_.get(), Srgb(color.r), Srgb(color.g), Srgb(color.b));
+    cairo_set_source_rgb(context_.get(), base::SrgbOfLinear(color.r), base::SrgbOfLinear(color.g),
+                         base::SrgbOfLinear(color.b));
     cairo_fill(context_.get());
   }
 

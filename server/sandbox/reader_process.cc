@@ -229,7 +229,7 @@ absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
     case absl::StatusCode::kResourceExhausted:
       absl::StrAppend(&text, " (untrusted files have ", limits.memory_bytes >> 20,
                       " MiB, by --sandbox-memory)");
-      // That memory is for this file alone: it does not become more while others end.
+      // The limit is of this one reader, so waiting until others end does not help.
       return base::WithDetails(absl::ResourceExhaustedError(text), {.permanent = true});
     case absl::StatusCode::kInvalidArgument:
     case absl::StatusCode::kNotFound:

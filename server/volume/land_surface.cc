@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.h"
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
@@ -13,16 +14,11 @@ namespace {
 constexpr glm::vec3 kLuminance(0.2126F, 0.7152F, 0.0722F);  // ITU-R BT.709
 constexpr int kShoreCells = 2;  // how far land's colour goes on below water
 
-float Decoded(std::uint8_t byte) {
-  const float value = static_cast<float>(byte) / 255.0F;
-  return value <= 0.04045F ? value / 12.92F : std::pow((value + 0.055F) / 1.055F, 2.4F);
-}
+float Decoded(std::uint8_t byte) { return static_cast<float>(base::LinearOfSrgbByte(byte)); }
 
 std::uint8_t Encoded(float linear) {
-  const float held = std::clamp(linear, 0.0F, 1.0F);
-  const float value =
-      held <= 0.0031308F ? 12.92F * held : 1.055F * std::pow(held, 1.0F / 2.4F) - 0.055F;
-  return static_cast<std::uint8_t>(std::lround(255.0F * value));
+  const double coded = base::SrgbOfLinear(std::clamp(linear, 0.0F, 1.0F));
+  return static_cast<std::uint8_t>(std::lround(255.0 * coded));
 }
 
 float ValueOf(const std::vector<float>& values, std::size_t i) {

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "scene/technique_info.h"
 #include "scene/view.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"
+#include "tests/support/technique_infos.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::fuzz {
@@ -66,7 +66,7 @@ class FixedStore final : public volume::StormStore {
 // Aborts if a scene that was taken has a view that cannot be drawn.
 inline void TakeScene(v1::Scene scene) {
   static FixedStore store;
-  static const std::vector<scene::TechniqueInfo> techniques = scene::TechniquesOfTheSchema();
+  static const std::vector<scene::TechniqueInfo> techniques = test_support::TechniquesOfTheSchema();
   if (!service::CheckLimits(scene).ok()) return;
   if (!service::PrepareScene(store, techniques, scene).ok()) return;
   const auto fields = store.Peek("storm", 0);

@@ -7,10 +7,10 @@
 #include "gmock/gmock.h"
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
-#include "scene/technique_info.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/scene_messages.h"
 #include "service/messages/technique_messages.h"
+#include "tests/support/technique_infos.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -163,7 +163,7 @@ TEST(LimitsTest, TheLimitsThemselvesAreAllowed) {
 // default first.
 TEST(LimitsTest, TransportsOnOfferAreThoseAllowed) {
   int with_transport = 0;
-  for (const scene::TechniqueInfo& info : scene::TechniquesOfTheSchema()) {
+  for (const scene::TechniqueInfo& info : test_support::TechniquesOfTheSchema()) {
     v1::TechniqueDescription technique;
     service::ToMessage(info, technique);
     const auto* field = v1::Rendering::descriptor()->FindFieldByName(technique.name());

@@ -1,6 +1,6 @@
 // The canvas in the window: its size in physical pixels, and what happens on it.
 import type { Box } from "../core/picture_box";
-import { pictureBox } from "../core/picture_box";
+import { boxOnCanvas, type PixelSize, pixelsOf } from "./canvas_box";
 import type { PictureFlow } from "./picture_flow";
 import { attachPointer, type PointerSteps } from "./pointer";
 
@@ -17,7 +17,7 @@ export class CanvasPlace {
   readonly #flow: PictureFlow;
   readonly #steps: CanvasPlaceSteps;
   #canvas: HTMLCanvasElement | undefined;
-  #size = { widthPx: 1280, heightPx: 720 };
+  #size: PixelSize = { widthPx: 1280, heightPx: 720 };
 
   constructor(window: Window, flow: PictureFlow, steps: CanvasPlaceSteps) {
     this.#window = window;
@@ -30,18 +30,13 @@ export class CanvasPlace {
   }
 
   // In physical pixels.
-  get size(): { readonly widthPx: number; readonly heightPx: number } {
+  get size(): PixelSize {
     return this.#size;
   }
 
   // Where a picture lies in the window, in CSS pixels.
-  boxOf(picture: { readonly widthPx: number; readonly heightPx: number }): Box | undefined {
-    if (this.#canvas === undefined) return undefined;
-    const { clientWidth, clientHeight, offsetLeft, offsetTop } = this.#canvas;
-    const { widthPx: width, heightPx: height } = picture;
-    const box = pictureBox({ width: clientWidth, height: clientHeight }, { width, height });
-    // The canvas itself may lie beside an open tool.
-    return { ...box, left: offsetLeft + box.left, top: offsetTop + box.top };
+  boxOf(picture: PixelSize): Box | undefined {
+    return this.#canvas === undefined ? undefined : boxOnCanvas(this.#canvas, picture);
   }
 
   // Returns the function that detaches it.
@@ -51,11 +46,8 @@ export class CanvasPlace {
     const detachPointer = attachPointer(canvas, this.#steps);
     let resting: ReturnType<typeof setTimeout> | undefined;
     const measure = () => {
-      const ratio = this.#window.devicePixelRatio;
-      const widthPx = Math.max(1, Math.round(canvas.clientWidth * ratio));
-      const heightPx = Math.max(1, Math.round(canvas.clientHeight * ratio));
-      this.#size = { widthPx, heightPx };
-      painter.resize(widthPx, heightPx);
+      this.#size = pixelsOf(canvas, this.#window.devicePixelRatio);
+      painter.resize(this.#size.widthPx, this.#size.heightPx);
       this.#steps.resized();
     };
     const observer = new ResizeObserver(() => {

@@ -1,7 +1,11 @@
 // Parts of the page that are loaded when they are first needed.
 import type { PageState } from "../core/state";
 
-// Calls `use` with the part. If it cannot be had, says so: after an update of the server the parts of an older page are gone.
+// After an update of the server the parts of an older page are gone.
+export const couldNotBeLoaded = (what: string): string =>
+  `${what} could not be loaded. Reload the page: the server may have been updated since it was opened`;
+
+// Calls `use` with the part. Says so if it cannot be had.
 export function withPart<Part>(
   state: PageState,
   what: string,
@@ -11,7 +15,7 @@ export function withPart<Part>(
   load().then(use, () =>
     state.notify({
       subject: `part ${what}`,
-      text: `${what} could not be loaded. Reload the page: the server may have been updated since it was opened`,
+      text: couldNotBeLoaded(what),
       severity: "problem",
     }),
   );

@@ -5,7 +5,7 @@ import { cameraOfPose, type Pose, poseOfCamera } from "../../core/camera";
 import { type ComparisonChoice, comparedScene, type TimeOfB, timeOfB } from "../../core/comparison";
 import type { PictureTool } from "../../core/marking";
 import type { Later } from "../../core/newest";
-import { pictureBox, picturePointAt, placeInBox } from "../../core/picture_box";
+import { picturePointAt, placeInBox } from "../../core/picture_box";
 import { type PicturePoint, projectionOf } from "../../core/projection";
 import type { PageState } from "../../core/state";
 import type { StrokePoint } from "../../core/stroke";
@@ -14,6 +14,7 @@ import type { Scene } from "../../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../../gen/thunderhead/v1/storm_pb";
 import type { ServerCalls } from "../../transport/server_calls";
 import type { OpenInteract } from "../../transport/session_client";
+import { boxOnCanvas, pixelsOf } from "../canvas_box";
 import type { CanvasPainter } from "../canvas_painter";
 import { attachPointer } from "../pointer";
 import type { SeenPicture } from "../probing";
@@ -110,13 +111,11 @@ export class Comparing {
         this.#onB(place, (point, seen) => this.#steps.doubleClicked(point, seen)),
     });
     const measure = () => {
-      const ratio = window.devicePixelRatio;
-      const widthPx = Math.max(1, Math.round(canvas.clientWidth * ratio));
-      const heightPx = Math.max(1, Math.round(canvas.clientHeight * ratio));
-      painter?.resize(widthPx, heightPx);
-      this.#size.value = { widthPx, heightPx };
+      const size = pixelsOf(canvas, window.devicePixelRatio);
+      painter?.resize(size.widthPx, size.heightPx);
+      this.#size.value = size;
       painter ??= this.#session?.attach(canvas);
-      this.#session?.resized({ widthPx, heightPx });
+      this.#session?.resized(size);
     };
     const observer = new ResizeObserver(measure);
     observer.observe(canvas);
@@ -184,9 +183,7 @@ export class Comparing {
   #pointAt({ left, top }: StrokePoint): PicturePoint | undefined {
     const [canvas, frame] = [this.#canvas, this.frame.peek()];
     if (canvas === undefined || frame === undefined) return undefined;
-    const { left: x, top: y, width, height } = canvas.getBoundingClientRect();
-    const box = pictureBox({ width, height }, { width: frame.widthPx, height: frame.heightPx });
-    return picturePointAt(box, left - x, top - y);
+    return picturePointAt(boxOnCanvas(canvas, frame), left, top);
   }
 
   #show(scene: Scene | undefined): void {

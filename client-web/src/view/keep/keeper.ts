@@ -17,6 +17,7 @@ import { type DrawnPicture, RenderCalls } from "../../transport/render_calls";
 import { annotated, drawAnnotations } from "../annotations";
 import { drawMarks } from "../mark_drawing";
 import type { Notes } from "../notes";
+import { couldNotBeLoaded } from "../part";
 
 export interface Work {
   readonly what: string;
@@ -162,7 +163,7 @@ export class Keeper {
     progress: (share: number) => void,
   ): Promise<void> {
     const { startMovie } = await import("./movie_file").catch(() => {
-      throw new Error("the page's part that writes it could not be loaded; reload the page");
+      throw new Error(couldNotBeLoaded("The part of the page that writes movies"));
     });
     const movie = await startMovie(draft);
     try {
