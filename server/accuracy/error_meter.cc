@@ -57,6 +57,7 @@ absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
   truth.rendering.technique = scene::Reference{};
   reference::MediumOptions options;
   options.peak_cut_deg = reference::kPeakCut_deg;
+  options.similar = true;
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
                                reference::MediumOf(truth, *fields, options));
   return std::unique_ptr<ErrorMeter>(new ErrorMeter(
@@ -166,8 +167,8 @@ void ErrorMeter::Step() {
       rays.push_back(camera_.RayThrough(2.0 * x / size_px.x - 1.0, 1.0 - 2.0 * y / size_px.y));
     }
   }
-  const std::vector<glm::dvec3> radiance =
-      reference::TraceRays(*medium_, surroundings_, rays, {seed_ + batch, 1, threads_});
+  const std::vector<glm::dvec3> radiance = reference::TraceRays(
+      *medium_, surroundings_, rays, {seed_ + batch, 1, threads_, reference::kSimilarAfter});
   for (std::size_t i = 0; i < pixels; ++i) {
     const double weight = 1.0 / (ChanceOf(indices[i]) * static_cast<double>(pixels_));
     const double usual = std::max(MeanColor(drawn_.radiance[indices[i]]), kDark * mean_drawn_);

@@ -115,6 +115,7 @@ absl::StatusOr<std::unique_ptr<LightCorrector>> LightCorrector::Create(
   THUNDERHEAD_CHECK(TracesLight(scene, *fields), "nothing to be traced");
   reference::MediumOptions options;
   options.peak_cut_deg = kPeakCut_deg;
+  options.similar = true;
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
                                reference::MediumOf(ProbedScene(scene, *fields), *fields, options));
   return std::unique_ptr<LightCorrector>(new LightCorrector(
@@ -198,8 +199,8 @@ void LightCorrector::TraceProbe(const Probe& probe) {
   reference::Surroundings surroundings =
       reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded);
   surroundings.disc.reset();
-  const std::vector<glm::dvec3> traced =
-      reference::TraceRays(*medium_, surroundings, rays, {pictures_, 1, threads_});
+  const std::vector<glm::dvec3> traced = reference::TraceRays(
+      *medium_, surroundings, rays, {pictures_, 1, threads_, reference::kSimilarAfter});
   const auto value = [](const std::vector<float>& values, std::size_t first) {
     return glm::dvec3(values[first], values[first + 1], values[first + 2]);
   };
@@ -230,8 +231,8 @@ void LightCorrector::TraceGround() {
     sky_sum_ += skies.back();
   }
   const glm::dvec3 mean_sky = sky_sum_ / static_cast<double>(pass * kGroundRays);
-  const std::vector<glm::dvec3> traced =
-      reference::TraceRays(*medium_, over_ground_, rays, {kGroundSeed + pass, 1, threads_});
+  const std::vector<glm::dvec3> traced = reference::TraceRays(
+      *medium_, over_ground_, rays, {kGroundSeed + pass, 1, threads_, reference::kSimilarAfter});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Control variate: with the clear sky's known mean, rays that miss the storm add no noise.
     ground_fit_.Add({places[i], glm::dvec3(0.0), mean_sky, mean_sky + traced[i] - skies[i]});

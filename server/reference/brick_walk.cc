@@ -14,25 +14,29 @@ constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 // 1e-6 at most.
 constexpr double kMaxPeriods = 1e5;
 
-void ClipAxis(double origin, double direction, double low, double high, RayInterval* interval) {
-  if (direction == 0.0) {
+// `inverse` is one over each axis's direction.
+void ClipAxis(const Ray& ray, const glm::dvec3& inverse, int axis, const Medium& medium,
+              RayInterval* interval) {
+  const double origin = ray.origin_m[axis];
+  const double low = medium.Low_m()[axis];
+  const double high = medium.High_m()[axis];
+  if (ray.direction[axis] == 0.0) {
     if (origin < low || origin > high) interval->end_m = interval->begin_m;
     return;
   }
-  const double to_low = (low - origin) / direction;
-  const double to_high = (high - origin) / direction;
+  const double to_low = (low - origin) * inverse[axis];
+  const double to_high = (high - origin) * inverse[axis];
   interval->begin_m = std::max(interval->begin_m, std::min(to_low, to_high));
   interval->end_m = std::min(interval->end_m, std::max(to_low, to_high));
 }
 
-}  // namespace
-
-RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m) {
+RayInterval ClipBy(const Ray& ray, const glm::dvec3& inverse, const Medium& medium,
+                   double limit_m) {
   RayInterval interval{0.0, limit_m};
   const glm::dvec3& low = medium.Low_m();
   const glm::dvec3& high = medium.High_m();
   for (int axis = medium.Periodic() ? 2 : 0; axis < 3; ++axis) {
-    ClipAxis(ray.origin_m[axis], ray.direction[axis], low[axis], high[axis], &interval);
+    ClipAxis(ray, inverse, axis, medium, &interval);
   }
   if (medium.Periodic()) {
     const double period_m = std::max(high.x - low.x, high.y - low.y);
@@ -41,17 +45,22 @@ RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m) {
   return interval;
 }
 
-BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m)
-    : medium_(medium), ray_(ray) {
-  const RayInterval interval = Clip(medium, ray, limit_m);
+}  // namespace
+
+RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m) {
+  return ClipBy(ray, 1.0 / ray.direction, medium, limit_m);
+}
+
+BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m, Optics optics)
+    : medium_(medium), optics_(optics), ray_(ray), inverse_(1.0 / ray.direction) {
+  const RayInterval interval = ClipBy(ray, inverse_, medium, limit_m);
   at_m_ = interval.begin_m;
   end_m_ = interval.end_m;
   if (at_m_ >= end_m_) return;
   for (int axis = 0; axis < 3; ++axis) {
     const double direction = ray.direction[axis];
     step_[axis] = direction > 0.0 ? 1 : (direction < 0.0 ? -1 : 0);
-    delta_m_[axis] =
-        step_[axis] == 0 ? kEndless_m : medium.BrickSize_m()[axis] / std::abs(direction);
+    delta_m_[axis] = medium.BrickSize_m()[axis] * std::abs(inverse_[axis]);  // or infinite
     Enter(axis);
   }
 }
@@ -60,17 +69,19 @@ BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m)
 void BrickWalk::Enter(int axis) {
   const double low_m = medium_.Low_m()[axis];
   const double size_m = medium_.BrickSize_m()[axis];
-  const double place = (ray_.origin_m[axis] + at_m_ * ray_.direction[axis] - low_m) / size_m;
-  brick_[axis] = static_cast<int>(std::floor(place));
+  const double place =
+      (ray_.origin_m[axis] + at_m_ * ray_.direction[axis] - low_m) * medium_.BricksPerM()[axis];
   if (axis == 2 || !medium_.Periodic()) {
-    brick_[axis] = std::clamp(brick_[axis], 0, medium_.Bricks()[axis] - 1);
+    brick_[axis] = std::clamp(static_cast<int>(place), 0, medium_.Bricks()[axis] - 1);
+  } else {
+    brick_[axis] = static_cast<int>(std::floor(place));
   }
   if (step_[axis] == 0) {
     next_m_[axis] = kEndless_m;
     return;
   }
   const double face_m = low_m + (brick_[axis] + (step_[axis] > 0 ? 1 : 0)) * size_m;
-  next_m_[axis] = (face_m - ray_.origin_m[axis]) / ray_.direction[axis];
+  next_m_[axis] = (face_m - ray_.origin_m[axis]) * inverse_[axis];
 }
 
 void BrickWalk::SkipLayer() {
@@ -106,7 +117,7 @@ bool BrickWalk::Next(Stretch* stretch) {
     if (next_m_.z < next_m_[axis]) axis = 2;
     stretch->begin_m = at_m_;
     stretch->end_m = std::clamp(next_m_[axis], at_m_, end_m_);
-    stretch->majorant_per_m = medium_.Majorant_per_m(here);
+    stretch->majorant_per_m = medium_.Majorant_per_m(here, optics_);
     at_m_ = stretch->end_m;
     brick_[axis] += step_[axis];
     next_m_[axis] += delta_m_[axis];

@@ -33,7 +33,7 @@ struct Stretch {
 class BrickWalk {
  public:
   // `medium` must outlive the walk.
-  BrickWalk(const Medium& medium, const Ray& ray, double limit_m);
+  BrickWalk(const Medium& medium, const Ray& ray, double limit_m, Optics optics = Optics::kExact);
 
   // Finds the next segment in a brick that is not empty; false at the end of the ray.
   bool Next(Stretch* stretch);
@@ -44,7 +44,10 @@ class BrickWalk {
   glm::ivec3 WrappedBrick() const;
 
   const Medium& medium_;
+  Optics optics_;
   Ray ray_;
+  glm::dvec3
+      inverse_;  // one over the ray's direction; infinite along axes that it does not move along
   double at_m_;
   double end_m_;
   glm::ivec3 brick_{0};  // x and y continue beyond the lattice if periodic

@@ -60,6 +60,14 @@ absl::Status CheckBox(const MediumDescription& description) {
   return absl::OkStatus();
 }
 
+double MeanColor(const glm::dvec3& color) { return (color.x + color.y + color.z) / 3.0; }
+
+void AddTo(const std::vector<float>& values, float factor, std::vector<float>* sum) {
+  sum->resize(values.size(), 0.0F);
+  std::transform(sum->begin(), sum->end(), values.begin(), sum->begin(),
+                 [factor](float before, float value) { return before + factor * value; });
+}
+
 int FloorMod(int value, int divisor) {
   const int rest = value % divisor;
   return rest < 0 ? rest + divisor : rest;
@@ -82,20 +90,37 @@ Medium::Medium(MediumDescription description)
       linear_(description.interpolation == Interpolation::kLinear),
       periodic_(description.sides == Sides::kPeriodic),
       strides_(1, grid_.Offset(0, 1, 0), grid_.Offset(0, 0, 1)) {
-  if (description.groups.empty()) extinction_per_m_.assign(grid_.CellCount(), 0.0F);
+  if (description.groups.empty()) exact_.extinction_per_m.assign(grid_.CellCount(), 0.0F);
   const bool several = description.groups.size() > 1;
   for (ScatteringGroup& group : description.groups) {
-    const double mean = (group.albedo.x + group.albedo.y + group.albedo.z) / 3.0;
-    groups_.push_back({group.albedo, mean, std::move(group.phase)});
-    if (extinction_per_m_.empty()) {
-      extinction_per_m_ = group.extinction_per_m;
-    } else {
-      std::transform(extinction_per_m_.begin(), extinction_per_m_.end(),
-                     group.extinction_per_m.begin(), extinction_per_m_.begin(), std::plus<>());
-    }
+    const double mean = MeanColor(group.albedo);
+    exact_.groups.push_back({1.0, group.albedo, mean, std::move(group.phase)});
+    AddTo(group.extinction_per_m, 1.0F, &exact_.extinction_per_m);
     if (several) group_extinctions_per_m_.push_back(std::move(group.extinction_per_m));
   }
-  BuildMajorants();
+  BuildBricks();
+  BuildMajorants(&exact_);
+  FindEmptyLayers();
+  if (description.similar) AddSimilar();
+}
+
+void Medium::AddSimilar() {
+  for (std::size_t i = 0; i < exact_.groups.size(); ++i) {
+    const GroupOptics& exact = exact_.groups[i];
+    const double asymmetry = exact.phase->Asymmetry();
+    const double forward = asymmetry > 0.0 ? asymmetry * asymmetry : 0.0;
+    const double rest = asymmetry > 0.0 ? asymmetry / (1.0 + asymmetry) : asymmetry;
+    GroupOptics similar;
+    similar.share = 1.0 - exact.choice_albedo * forward;
+    similar.albedo = glm::min(exact.albedo * ((1.0 - forward) / similar.share), 1.0);
+    similar.choice_albedo = MeanColor(similar.albedo);
+    similar.phase = std::make_shared<const SampledPhase>(SampledPhase::HenyeyGreenstein(rest));
+    similar_.groups.push_back(similar);
+    AddTo(group_extinctions_per_m_.empty() ? exact_.extinction_per_m : group_extinctions_per_m_[i],
+          static_cast<float>(similar.share), &similar_.extinction_per_m);
+  }
+  if (similar_.groups.empty()) similar_.extinction_per_m = exact_.extinction_per_m;
+  BuildMajorants(&similar_);
 }
 
 int Medium::CellIndex(int axis, int cell) const {
@@ -118,44 +143,58 @@ Medium::CellRange Medium::CellsOfBrick(int axis, int brick) const {
   return {static_cast<int>(std::floor(low - kSlack)), static_cast<int>(std::floor(high + kSlack))};
 }
 
-double Medium::LargestIn(const CellRange& x, const CellRange& y, const CellRange& z) const {
+double Medium::LargestIn(const Lattice& lattice, const CellRange& x, const CellRange& y,
+                         const CellRange& z) const {
   float largest = 0.0F;
   for (int k = z.first; k <= z.last; ++k) {
     for (int j = y.first; j <= y.last; ++j) {
       for (int i = x.first; i <= x.last; ++i) {
         const std::size_t offset = grid_.Offset(CellIndex(0, i), CellIndex(1, j), CellIndex(2, k));
-        largest = std::max(largest, extinction_per_m_[offset]);
+        largest = std::max(largest, lattice.extinction_per_m[offset]);
       }
     }
   }
   return largest;
 }
 
-void Medium::BuildMajorants() {
+void Medium::BuildBricks() {
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = (high_m_[axis] - low_m_[axis]) / grid_.spacing_m[axis];
     bricks_[axis] = std::max(static_cast<int>(std::ceil(cells / kBrickCells - 1e-6)), 1);
     brick_size_m_[axis] = (high_m_[axis] - low_m_[axis]) / bricks_[axis];
+    bricks_per_m_[axis] = 1.0 / brick_size_m_[axis];
+    cells_per_m_[axis] = 1.0 / grid_.spacing_m[axis];
   }
-  majorants_.reserve(static_cast<std::size_t>(bricks_.x) * static_cast<std::size_t>(bricks_.y) *
-                     static_cast<std::size_t>(bricks_.z));
+}
+
+void Medium::BuildMajorants(Lattice* lattice) const {
+  lattice->majorants_per_m.reserve(static_cast<std::size_t>(bricks_.x) *
+                                   static_cast<std::size_t>(bricks_.y) *
+                                   static_cast<std::size_t>(bricks_.z));
   for (int z = 0; z < bricks_.z; ++z) {
     const CellRange cells_z = CellsOfBrick(2, z);
-    double largest = 0.0;
     for (int y = 0; y < bricks_.y; ++y) {
       const CellRange cells_y = CellsOfBrick(1, y);
       for (int x = 0; x < bricks_.x; ++x) {
-        const double majorant = LargestIn(CellsOfBrick(0, x), cells_y, cells_z) * kMajorantMargin;
-        majorants_.push_back(majorant);
-        largest = std::max(largest, majorant);
+        lattice->majorants_per_m.push_back(static_cast<float>(
+            LargestIn(*lattice, CellsOfBrick(0, x), cells_y, cells_z) * kMajorantMargin));
       }
     }
-    empty_layers_.push_back(largest > 0.0 ? 0 : 1);
+  }
+}
+
+void Medium::FindEmptyLayers() {
+  const std::size_t bricks = BrickOffset({0, 0, 1});
+  for (auto first = exact_.majorants_per_m.begin(); first != exact_.majorants_per_m.end();
+       first += static_cast<std::ptrdiff_t>(bricks)) {
+    const auto empty = [](float majorant) { return majorant <= 0.0F; };
+    empty_layers_.push_back(
+        std::all_of(first, first + static_cast<std::ptrdiff_t>(bricks), empty) ? 1 : 0);
   }
 }
 
 Medium::Place Medium::PlaceOf(const glm::dvec3& point_m) const {
-  glm::dvec3 cell = (point_m - grid_.low_corner_m) / grid_.spacing_m;
+  glm::dvec3 cell = (point_m - grid_.low_corner_m) * cells_per_m_;
   if (periodic_) {
     cell.x -= std::floor(cell.x / grid_.cells.x) * grid_.cells.x;
     cell.y -= std::floor(cell.y / grid_.cells.y) * grid_.cells.y;
@@ -168,27 +207,29 @@ Medium::Place Medium::PlaceOf(const glm::dvec3& point_m) const {
     place.count = 1;
     return place;
   }
-  const glm::dvec3 from_centre = cell - 0.5;
-  const glm::dvec3 floor = glm::floor(from_centre);
-  const glm::dvec3 share = from_centre - floor;
-  const glm::ivec3 low(floor);
-  std::array<std::array<std::size_t, 2>, 3> offsets;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int step = 0; step < 2; ++step) {
-      offsets[static_cast<std::size_t>(axis)][static_cast<std::size_t>(step)] =
-          static_cast<std::size_t>(CellIndex(axis, low[axis] + step)) * strides_[axis];
-    }
-  }
+  const Between x = BetweenCells(0, cell.x);
+  const Between y = BetweenCells(1, cell.y);
+  const Between z = BetweenCells(2, cell.z);
   for (std::size_t corner = 0; corner < 8; ++corner) {
-    const std::size_t x = corner & 1U;
-    const std::size_t y = (corner >> 1U) & 1U;
-    const std::size_t z = corner >> 2U;
-    place.offsets[corner] = offsets[0][x] + offsets[1][y] + offsets[2][z];
-    place.shares[corner] = (x != 0 ? share.x : 1.0 - share.x) * (y != 0 ? share.y : 1.0 - share.y) *
-                           (z != 0 ? share.z : 1.0 - share.z);
+    const std::size_t i = corner & 1U;
+    const std::size_t j = (corner >> 1U) & 1U;
+    const std::size_t k = corner >> 2U;
+    place.offsets[corner] = x.offsets[i] + y.offsets[j] + z.offsets[k];
+    place.shares[corner] = x.shares[i] * y.shares[j] * z.shares[k];
   }
   place.count = 8;
   return place;
+}
+
+Medium::Between Medium::BetweenCells(int axis, double cell) const {
+  // Points of the box lie at most half a cell below the first centre, so truncation rounds down.
+  const double above = cell + 0.5;
+  const int high = static_cast<int>(above);
+  const double share = above - high;
+  const std::size_t stride = strides_[axis];
+  return {{static_cast<std::size_t>(CellIndex(axis, high - 1)) * stride,
+           static_cast<std::size_t>(CellIndex(axis, high)) * stride},
+          {1.0 - share, share}};
 }
 
 double Medium::Weigh(const std::vector<float>& values, const Place& place) {
@@ -199,27 +240,29 @@ double Medium::Weigh(const std::vector<float>& values, const Place& place) {
   return sum;
 }
 
-double Medium::Extinction_per_m(const glm::dvec3& point_m) const {
-  return Weigh(extinction_per_m_, PlaceOf(point_m));
+double Medium::Extinction_per_m(const glm::dvec3& point_m, Optics optics) const {
+  return Weigh(Of(optics).extinction_per_m, PlaceOf(point_m));
 }
 
-Scattering Medium::ScatteringAt(const glm::dvec3& point_m, double u) const {
-  if (groups_.size() == 1) return {groups_[0].phase.get(), groups_[0].albedo};
+Scattering Medium::ScatteringAt(const glm::dvec3& point_m, double u, Optics optics) const {
+  const std::vector<GroupOptics>& groups = Of(optics).groups;
+  if (groups.size() == 1) return {groups[0].phase.get(), groups[0].albedo};
   const Place place = PlaceOf(point_m);
   double extinction = 0.0;
   double scattering = 0.0;
-  for (std::size_t i = 0; i < groups_.size(); ++i) {
-    const double value = Weigh(group_extinctions_per_m_[i], place);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const double value = Weigh(group_extinctions_per_m_[i], place) * groups[i].share;
     extinction += value;
-    scattering += value * groups_[i].choice_albedo;
+    scattering += value * groups[i].choice_albedo;
   }
   if (scattering <= 0.0) return {};
   double left = u * scattering;
   const GroupOptics* chosen = nullptr;
-  for (std::size_t i = 0; i < groups_.size() && (chosen == nullptr || left > 0.0); ++i) {
-    const double share = Weigh(group_extinctions_per_m_[i], place) * groups_[i].choice_albedo;
+  for (std::size_t i = 0; i < groups.size() && (chosen == nullptr || left > 0.0); ++i) {
+    const double share =
+        Weigh(group_extinctions_per_m_[i], place) * groups[i].share * groups[i].choice_albedo;
     if (share <= 0.0) continue;
-    chosen = &groups_[i];
+    chosen = &groups[i];
     left -= share;
   }
   THUNDERHEAD_CHECK(chosen != nullptr, "a point that scatters has a group that does");

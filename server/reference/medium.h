@@ -23,6 +23,13 @@ enum class Interpolation { kLinear, kConstant };
 // Beyond the sides of the box: empty space, or periodic copies of the box.
 enum class Sides { kOpen, kPeriodic };
 
+// The medium itself, or one to which light that has been scattered a few times is nearly the same,
+// by the scaling of delta-Eddington (Joseph, Wiscombe and Weinman 1976): of the light that a group
+// of asymmetry g scatters, a share of g^2 counts as not scattered, and the rest is scattered by
+// Henyey and Greenstein's function of g / (1 + g). Sunlight reaches deeper there, and paths are
+// shorter.
+enum class Optics { kExact, kSimilar };
+
 // Fields with the same optics.
 struct ScatteringGroup {
   std::vector<float> extinction_per_m;  // grid.CellCount() values, x fastest
@@ -39,6 +46,7 @@ struct MediumDescription {
   Interpolation interpolation = Interpolation::kLinear;
   Sides sides = Sides::kOpen;
   std::vector<ScatteringGroup> groups;  // may be none: empty space
+  bool similar = false;                 // whether Optics::kSimilar is asked for
 };
 
 // A collision with a particle of a randomly chosen group, with the weight that makes the choice
@@ -58,17 +66,22 @@ class Medium {
   bool Periodic() const { return periodic_; }
 
   // Total extinction at a point of the box; if periodic, of the box's range of heights.
-  double Extinction_per_m(const glm::dvec3& point_m) const;
+  double Extinction_per_m(const glm::dvec3& point_m, Optics optics = Optics::kExact) const;
 
   // The group of a collision at `point_m`, chosen by `u` (uniform over (0, 1)) with a probability
   // in proportion to its scattering.
-  Scattering ScatteringAt(const glm::dvec3& point_m, double u) const;
+  Scattering ScatteringAt(const glm::dvec3& point_m, double u,
+                          Optics optics = Optics::kExact) const;
 
   // The lattice of bricks that fills the box; a brick's majorant bounds extinction in it.
   const glm::ivec3& Bricks() const { return bricks_; }
   const glm::dvec3& BrickSize_m() const { return brick_size_m_; }
+  const glm::dvec3& BricksPerM() const { return bricks_per_m_; }
   // `brick` lies in the lattice.
-  double Majorant_per_m(const glm::ivec3& brick) const { return majorants_[BrickOffset(brick)]; }
+  double Majorant_per_m(const glm::ivec3& brick, Optics optics = Optics::kExact) const {
+    return Of(optics).majorants_per_m[BrickOffset(brick)];
+  }
+  bool HasSimilar() const { return !similar_.extinction_per_m.empty(); }
   // True if all bricks of this height are empty.
   bool EmptyLayer(int z) const { return empty_layers_[static_cast<std::size_t>(z)] != 0; }
 
@@ -79,10 +92,22 @@ class Medium {
     std::array<double, 8> shares;
     int count = 0;
   };
+  // The two cells along an axis.
+  struct Between {
+    std::array<std::size_t, 2> offsets;
+    std::array<double, 2> shares;
+  };
+  // Of a group.
   struct GroupOptics {
+    double share = 1.0;  // of the group's extinction
     glm::dvec3 albedo;
     double choice_albedo;  // mean over colours
     std::shared_ptr<const SampledPhase> phase;
+  };
+  struct Lattice {
+    std::vector<GroupOptics> groups;
+    std::vector<float> extinction_per_m;  // total
+    std::vector<float> majorants_per_m;   // of bricks
   };
   struct CellRange {
     int first = 0;
@@ -90,11 +115,17 @@ class Medium {
   };
 
   explicit Medium(MediumDescription description);
-  void BuildMajorants();
+  const Lattice& Of(Optics optics) const { return optics == Optics::kExact ? exact_ : similar_; }
+  void AddSimilar();
+  void BuildBricks();
+  void FindEmptyLayers();
+  void BuildMajorants(Lattice* lattice) const;
   CellRange CellsOfBrick(int axis, int brick) const;
   int CellIndex(int axis, int cell) const;
-  double LargestIn(const CellRange& x, const CellRange& y, const CellRange& z) const;
+  double LargestIn(const Lattice& lattice, const CellRange& x, const CellRange& y,
+                   const CellRange& z) const;
   Place PlaceOf(const glm::dvec3& point_m) const;
+  Between BetweenCells(int axis, double cell) const;
   static double Weigh(const std::vector<float>& values, const Place& place);
   std::size_t BrickOffset(const glm::ivec3& brick) const {
     return (static_cast<std::size_t>(brick.z) * static_cast<std::size_t>(bricks_.y) +
@@ -108,13 +139,14 @@ class Medium {
   glm::dvec3 high_m_;
   bool linear_;
   bool periodic_;
-  glm::vec<3, std::size_t> strides_;  // between neighbours along each axis
-  std::vector<GroupOptics> groups_;
+  glm::vec<3, std::size_t> strides_;                         // between neighbours along each axis
   std::vector<std::vector<float>> group_extinctions_per_m_;  // empty with a single group
-  std::vector<float> extinction_per_m_;                      // total
+  Lattice exact_;
+  Lattice similar_;  // empty unless asked for
   glm::ivec3 bricks_{0};
   glm::dvec3 brick_size_m_{0.0};
-  std::vector<double> majorants_;
+  glm::dvec3 bricks_per_m_{0.0};
+  glm::dvec3 cells_per_m_{0.0};
   std::vector<char> empty_layers_;
 };
 

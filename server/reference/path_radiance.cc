@@ -37,12 +37,12 @@ double Largest(const glm::dvec3& color) { return std::max({color.x, color.y, col
 class Path {
  public:
   Path(const Medium& medium, const Surroundings& surroundings, const Ray& ray, RandomStream* random,
-       int max_scatterings)
+       const PathOptions& options)
       : medium_(medium),
         surroundings_(surroundings),
         ray_(ray),
         random_(random),
-        max_scatterings_(max_scatterings),
+        options_(options),
         hero_(static_cast<std::size_t>(3.0 * random->Uniform())) {}
 
   glm::dvec3 Follow() {
@@ -58,7 +58,8 @@ class Path {
   // One free flight and the event at its end; false when the path ends.
   bool Advance() {
     const double ground_m = GroundDistance_m();
-    const std::optional<double> collision_m = SampleCollision(medium_, ray_, ground_m, random_);
+    const std::optional<double> collision_m =
+        SampleCollision(medium_, ray_, ground_m, random_, optics_);
     if (collision_m.has_value()) {
       if (seen_from_eye_) met_medium_ = true;
       ShadeAir(*collision_m);
@@ -132,7 +133,7 @@ class Path {
     const Ray upward{point_m, SampleUpward(random_)};
     const std::optional<double> collision_m = SampleCollision(medium_, upward, kNoEnd_m, random_);
     if (!collision_m.has_value()) return;
-    Path path(medium_, surroundings_, upward, random_, max_scatterings_);
+    Path path(medium_, surroundings_, upward, random_, options_);
     const glm::dvec3 from_storm = path.FollowFrom(*collision_m);
     radiance_ -= weight / kAirPathShare * (light.of_sky - light.per_radiance * from_storm);
   }
@@ -168,11 +169,15 @@ class Path {
   }
 
   bool Scatter(const glm::dvec3& point_m) {
-    const Scattering scattering = medium_.ScatteringAt(point_m, random_->Uniform());
+    const Scattering scattering = medium_.ScatteringAt(point_m, random_->Uniform(), optics_);
     if (scattering.phase == nullptr) return false;
-    if (max_scatterings_ > 0 && collisions_ >= max_scatterings_) return false;
+    if (options_.max_scatterings > 0 && collisions_ >= options_.max_scatterings) return false;
     throughput_ *= scattering.weight;
     if (!Survive() || !GoOnAtLength()) return false;
+    // From here on all light counts as light of the similar medium, this collision's sunlight, too.
+    if (options_.similar_after > 0 && collisions_ >= options_.similar_after) {
+      optics_ = Optics::kSimilar;
+    }
     ScatterLight(*scattering.phase, point_m,
                  {surroundings_.towards_sun, surroundings_.SunAt(point_m.z)});
     for (const DirectionalLight& light : surroundings_.lights) {
@@ -267,7 +272,7 @@ class Path {
     const glm::dvec3 unshadowed = Carried() * reflected * light.irradiance;
     if (Largest(unshadowed) <= 0.0) return;
     const Ray ray{point_m, light.towards};
-    radiance_ += unshadowed * EstimateTransmittance(medium_, ray, kNoEnd_m, random_);
+    radiance_ += unshadowed * EstimateTransmittance(medium_, ray, kNoEnd_m, random_, optics_);
   }
 
   bool GoOnAtLength() {
@@ -289,9 +294,10 @@ class Path {
   const Surroundings& surroundings_;
   Ray ray_;
   RandomStream* random_;
-  int max_scatterings_;
+  const PathOptions& options_;
   bool seen_from_eye_ = true;
   bool met_medium_ = false;
+  Optics optics_ = Optics::kExact;
   int collisions_ = 0;
   int next_roulette_ = kLongPath;
   std::size_t hero_;  // the colour whose phase functions are sampled
@@ -304,8 +310,8 @@ class Path {
 }  // namespace
 
 PathEstimate EstimateRadiance(const Medium& medium, const Surroundings& surroundings,
-                              const Ray& ray, RandomStream* random, int max_scatterings) {
-  Path path(medium, surroundings, ray, random, max_scatterings);
+                              const Ray& ray, RandomStream* random, const PathOptions& options) {
+  Path path(medium, surroundings, ray, random, options);
   const glm::dvec3 radiance = path.Follow();
   return {radiance, path.MetMedium()};
 }

@@ -1,6 +1,7 @@
 // The radiance along a ray by one random path: null-collision free flights, sunlight by ratio
 // tracking at every collision, sky and ground where the path meets them, Russian roulette.
-// Unbiased: its mean is the solution of the radiative transfer equation; nothing is clamped.
+// Unbiased, unless it goes on in a similar medium: its mean is the solution of the radiative
+// transfer equation; nothing is clamped.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -15,9 +16,17 @@ struct PathEstimate {
   bool met_medium = false;  // before anything else
 };
 
-// One estimate of the radiance that arrives at `ray`'s origin from its direction. Light scattered
-// by the medium more than `max_scatterings` times is left out; 0 means no limit.
+struct PathOptions {
+  // Light scattered by the medium more often is left out; 0: no limit.
+  int max_scatterings = 0;
+  // After so many scatterings a path goes on in Optics::kSimilar, which the medium must have; 0:
+  // never. What it then finds is biased.
+  int similar_after = 0;
+};
+
+// One estimate of the radiance that arrives at `ray`'s origin from its direction.
 PathEstimate EstimateRadiance(const Medium& medium, const Surroundings& surroundings,
-                              const Ray& ray, RandomStream* random, int max_scatterings = 0);
+                              const Ray& ray, RandomStream* random,
+                              const PathOptions& options = {});
 
 }  // namespace thunderhead::reference

@@ -74,7 +74,7 @@ void PathTracer::RefinePixel(int x, int y, int until_samples) {
     const double right = 2.0 * (x + random.Uniform()) / size_px_.x - 1.0;
     const double up = 1.0 - 2.0 * (y + random.Uniform()) / size_px_.y;
     pixel.Add(EstimateRadiance(*medium_, surroundings_, camera_.RayThrough(right, up), &random,
-                               options_.max_scatterings));
+                               {.max_scatterings = options_.max_scatterings}));
   }
 }
 

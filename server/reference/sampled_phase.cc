@@ -125,6 +125,19 @@ glm::dvec3 SampledPhase::Value(double mu) const {
           Interpolate(values_[2], interval, share)};
 }
 
+double SampledPhase::Asymmetry() const {
+  if (x_.empty()) return asymmetry_;
+  const std::size_t colors = colored_ ? 3 : 1;
+  double mean = 0.0;
+  for (std::size_t color = 0; color < colors; ++color) {
+    for (std::size_t i = 0; i < kIntervals; ++i) {
+      const double share = cumulative_[color][i + 1] - cumulative_[color][i];
+      mean += share * (1.0 - 0.5 * (x_[i] + x_[i + 1]));
+    }
+  }
+  return mean / static_cast<double>(colors);
+}
+
 std::size_t SampledPhase::IntervalOf(double u, std::size_t color) const {
   const std::vector<double>& cumulative = cumulative_[color];
   std::size_t interval =

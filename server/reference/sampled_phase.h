@@ -39,6 +39,9 @@ class SampledPhase {
   // The phase function; its mean over the sphere is 1.
   glm::dvec3 Value(double mu) const;
 
+  // The mean cosine of the scattering angle, over colours if they differ.
+  double Asymmetry() const;
+
   // Inverse of the cumulative distribution of the scattering angle of `color` (0 to 2) at `u`,
   // uniform over (0, 1).
   PhaseSample Sample(double u, std::size_t color) const;

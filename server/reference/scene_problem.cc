@@ -266,8 +266,10 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
 }  // namespace
 
 std::size_t MediumBytes(const volume::HydrometeorFields& fields) {
-  constexpr std::size_t kBytesPerCell = 12;
-  return kBytesPerCell * fields.grid.CellCount() * fields.fields.size();
+  // Each field's extinction; in all, and its bound, of the medium and the similar one.
+  constexpr std::size_t kOfField = sizeof(float);
+  constexpr std::size_t kOfAll = 4 * sizeof(float);
+  return fields.grid.CellCount() * (kOfField * fields.fields.size() + kOfAll);
 }
 
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,
@@ -288,6 +290,7 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   description.high_m = box.high_m;
   description.interpolation = options.interpolation;
   description.sides = options.sides;
+  description.similar = options.similar;
   const int finer = options.detail_voxels_per_cell;
   std::vector<Values> detailed;
   if (finer > 0) {

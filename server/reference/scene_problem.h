@@ -28,6 +28,7 @@ struct MediumOptions {
   // Voxels along a cell's edge on which the light volume's turbulent detail is added
   // (scene/detailed_medium.h), with open sides and linear interpolation alone; 0: without detail.
   int detail_voxels_per_cell = 0;
+  bool similar = false;  // MediumDescription::similar
 };
 
 // The scene's visible fields. With open sides the box is the smallest that holds all condensate,

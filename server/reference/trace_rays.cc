@@ -15,13 +15,14 @@ constexpr std::size_t kRaysInPiece = 64;
 std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surroundings,
                                   const std::vector<Ray>& rays, const TraceRaysOptions& options) {
   std::vector<glm::dvec3> radiance(rays.size(), glm::dvec3(0.0));
+  const PathOptions of_path{.similar_after = options.similar_after};
   const std::size_t pieces = (rays.size() + kRaysInPiece - 1) / kRaysInPiece;
   ParallelFor(options.threads, static_cast<int>(pieces), [&](int piece) {
     const std::size_t first = static_cast<std::size_t>(piece) * kRaysInPiece;
     for (std::size_t i = first; i < std::min(first + kRaysInPiece, rays.size()); ++i) {
       for (int path = 0; path < options.paths_per_ray; ++path) {
         RandomStream random(options.seed, i, static_cast<std::uint32_t>(path));
-        radiance[i] += EstimateRadiance(medium, surroundings, rays[i], &random).radiance;
+        radiance[i] += EstimateRadiance(medium, surroundings, rays[i], &random, of_path).radiance;
       }
       radiance[i] /= static_cast<double>(options.paths_per_ray);
     }

@@ -14,8 +14,8 @@ constexpr double kRouletteTransmittance = 0.1;
 }  // namespace
 
 std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, double limit_m,
-                                      RandomStream* random) {
-  BrickWalk walk(medium, ray, limit_m);
+                                      RandomStream* random, Optics optics) {
+  BrickWalk walk(medium, ray, limit_m, optics);
   double depth = random->Exponential();  // remaining optical depth of the majorant
   Stretch stretch;
   while (walk.Next(&stretch)) {
@@ -27,7 +27,8 @@ std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, doub
         break;
       }
       at_m += depth / stretch.majorant_per_m;
-      if (random->Uniform() * stretch.majorant_per_m < medium.Extinction_per_m(ray.At(at_m))) {
+      if (random->Uniform() * stretch.majorant_per_m <
+          medium.Extinction_per_m(ray.At(at_m), optics)) {
         return at_m;
       }
       depth = random->Exponential();
@@ -37,8 +38,8 @@ std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, doub
 }
 
 double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_m,
-                             RandomStream* random) {
-  BrickWalk walk(medium, ray, limit_m);
+                             RandomStream* random, Optics optics) {
+  BrickWalk walk(medium, ray, limit_m, optics);
   double transmittance = 1.0;
   double depth = random->Exponential();
   Stretch stretch;
@@ -51,7 +52,7 @@ double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_
         break;
       }
       at_m += depth / stretch.majorant_per_m;
-      const double share = medium.Extinction_per_m(ray.At(at_m)) / stretch.majorant_per_m;
+      const double share = medium.Extinction_per_m(ray.At(at_m), optics) / stretch.majorant_per_m;
       transmittance *= std::max(1.0 - share, 0.0);
       if (transmittance < kRouletteTransmittance) {
         if (random->Uniform() * kRouletteTransmittance >= transmittance) return 0.0;

@@ -14,12 +14,12 @@ namespace thunderhead::reference {
 // The distance to the first real collision along `ray`, or nothing if there is none within
 // `limit_m` (may be infinite).
 std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, double limit_m,
-                                      RandomStream* random);
+                                      RandomStream* random, Optics optics = Optics::kExact);
 
 // An unbiased estimate, at least 0, of the transmittance along `ray` up to `limit_m`. Below 0.1 it
 // continues by Russian roulette.
 double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_m,
-                             RandomStream* random);
+                             RandomStream* random, Optics optics = Optics::kExact);
 
 // The unit vector at an angle of cosine `mu` from `direction`, turned about it by `azimuth_rad`.
 glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad);

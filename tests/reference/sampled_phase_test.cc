@@ -50,6 +50,7 @@ TEST_P(FormulaTest, SamplesHaveTheMeanCosine) {
   const SampledPhase phase = SampledPhase::Of(GetParam());
   EXPECT_NEAR(MeanOverSamples(phase, [](const PhaseSample& sample) { return sample.mu; }),
               physics::MeanCosine(GetParam()), 2e-6);
+  EXPECT_NEAR(phase.Asymmetry(), physics::MeanCosine(GetParam()), 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formulas, FormulaTest,
