@@ -67,7 +67,7 @@ BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m, Optic
 
 // Finds the brick and its far face along `axis` at `at_m_`.
 void BrickWalk::Enter(int axis) {
-  const double low_m = medium_.Low_m()[axis];
+  const double low_m = medium_.BrickLow_m()[axis];
   const double size_m = medium_.BrickSize_m()[axis];
   const double place =
       (ray_.origin_m[axis] + at_m_ * ray_.direction[axis] - low_m) * medium_.BricksPerM()[axis];
@@ -118,6 +118,7 @@ bool BrickWalk::Next(Stretch* stretch) {
     stretch->begin_m = at_m_;
     stretch->end_m = std::clamp(next_m_[axis], at_m_, end_m_);
     stretch->majorant_per_m = medium_.Majorant_per_m(here, optics_);
+    stretch->brick = brick_;
     at_m_ = stretch->end_m;
     brick_[axis] += step_[axis];
     next_m_[axis] += delta_m_[axis];

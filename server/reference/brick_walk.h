@@ -28,6 +28,7 @@ struct Stretch {
   double begin_m = 0.0;
   double end_m = 0.0;
   double majorant_per_m = 0.0;
+  glm::ivec3 brick{0};  // x and y continue beyond the lattice if periodic
 };
 
 class BrickWalk {

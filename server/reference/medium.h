@@ -68,6 +68,11 @@ class Medium {
   // Total extinction at a point of the box; if periodic, of the box's range of heights.
   double Extinction_per_m(const glm::dvec3& point_m, Optics optics = Optics::kExact) const;
 
+  // The mean extinction between two points of `brick`, which beyond a periodic medium's sides goes
+  // on counting.
+  double MeanExtinction_per_m(const glm::ivec3& brick, const glm::dvec3& from_m,
+                              const glm::dvec3& to_m, Optics optics = Optics::kExact) const;
+
   // The group of a collision at `point_m`, chosen by `u` (uniform over (0, 1)) with a probability
   // in proportion to its scattering.
   Scattering ScatteringAt(const glm::dvec3& point_m, double u,
@@ -75,8 +80,9 @@ class Medium {
 
   // The lattice of bricks that fills the box; a brick's majorant bounds extinction in it.
   const glm::ivec3& Bricks() const { return bricks_; }
-  const glm::dvec3& BrickSize_m() const { return brick_size_m_; }
-  const glm::dvec3& BricksPerM() const { return bricks_per_m_; }
+  const glm::dvec3& BrickLow_m() const { return brick_low_m_; }  // the first one's lower corner
+  const glm::dvec3& BrickSize_m() const { return grid_.spacing_m; }
+  const glm::dvec3& BricksPerM() const { return cells_per_m_; }
   // `brick` lies in the lattice.
   double Majorant_per_m(const glm::ivec3& brick, Optics optics = Optics::kExact) const {
     return Of(optics).majorants_per_m[BrickOffset(brick)];
@@ -144,8 +150,8 @@ class Medium {
   Lattice exact_;
   Lattice similar_;  // empty unless asked for
   glm::ivec3 bricks_{0};
-  glm::dvec3 brick_size_m_{0.0};
-  glm::dvec3 bricks_per_m_{0.0};
+  glm::ivec3 first_cell_{0};  // of the first brick
+  glm::dvec3 brick_low_m_{0.0};
   glm::dvec3 cells_per_m_{0.0};
   std::vector<char> empty_layers_;
 };

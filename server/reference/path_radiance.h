@@ -1,7 +1,7 @@
-// The radiance along a ray by one random path: null-collision free flights, sunlight by ratio
-// tracking at every collision, sky and ground where the path meets them, Russian roulette.
-// Unbiased, unless it goes on in a similar medium: its mean is the solution of the radiative
-// transfer equation; nothing is clamped.
+// The radiance along a ray by one random path: null-collision free flights, sunlight at every
+// collision, sky and ground where the path meets them, Russian roulette. Unbiased, unless it goes
+// on in a similar medium: its mean is the solution of the radiative transfer equation; nothing is
+// clamped.
 #pragma once
 
 #include "glm/vec3.hpp"

