@@ -13,7 +13,9 @@ namespace thunderhead::desktop {
 ParsedFlags ParseFlags(int argc, char** argv) {
   CLI::App app("Shows the storms of a Thunderhead server in a window.");
   Flags flags;
-  app.add_option("server", flags.access.address, "HOST:PORT of the server's gRPC port")->required();
+  flags.access.address = "localhost:50051";  // a server of this machine with its own default port
+  app.add_option("server", flags.access.address, "HOST:PORT of the server's gRPC port")
+      ->capture_default_str();
   app.add_option("--key", flags.key, "key of the session to join; without it a session is opened");
   app.add_option("--name", flags.name, "name that others in the session see");
   app.add_option("--storm", flags.storm, "id of the storm to begin with (default: the first)");
