@@ -14,7 +14,7 @@
 namespace thunderhead::accuracy {
 
 // A ray with its drawn radiance and an estimate of the true one. The estimate may be noisy, even
-// negative, but must be unbiased.
+// negative, but hardly biased.
 struct CorrectedRay {
   glm::dvec3 place{0.0};  // where the ray's factor is looked up, 0 to 1 along each side of a box
   glm::dvec3 direction{0.0};  // unit vector, or zero where factors do not depend on it

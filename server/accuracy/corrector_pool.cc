@@ -93,7 +93,7 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
   if (kept == nullptr) {
     THUNDERHEAD_RETURN_IF_ERROR(MakeRoom());
     THUNDERHEAD_ASSIGN_OR_RETURN(base::MemoryReservation reserved,
-                                 Reserve(reference::MediumBytes(*fields)));
+                                 Reserve(reference::MediumBytes(*fields, true)));
     THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<LightCorrector> corrector,
                                  LightCorrector::Create(scene, fields, programs_, 0));
     kept = &kept_.emplace_back();

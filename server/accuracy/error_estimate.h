@@ -35,7 +35,7 @@ struct MeasuredError {
 // light, which is given back evenly. The last multiple clamps nothing.
 inline constexpr std::array<double, 8> kClamps = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 60.0, 1e300};
 
-// Independent, unbiased estimates of the true radiance of one pixel.
+// Independent estimates, hardly biased, of the true radiance of one pixel.
 class PixelTruth {
  public:
   struct Sums {

@@ -54,7 +54,8 @@ absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     int threads, std::uint64_t seed) {
   // As the reference shows it: each field with its own phase function.
   scene::Scene truth = scene;
-  truth.rendering.technique = scene::Reference{};
+  truth.rendering.technique =
+      scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
   reference::MediumOptions options;
   options.peak_cut_deg = reference::kPeakCut_deg;
   options.similar = true;

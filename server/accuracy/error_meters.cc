@@ -78,7 +78,7 @@ absl::StatusOr<ErrorMeters::Kept*> ErrorMeters::For(const scene::Scene& measured
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       base::MemoryReservation reserved,
-      memory_->Reserve(base::MemoryUse::kTracing, reference::MediumBytes(*fields),
+      memory_->Reserve(base::MemoryUse::kTracing, reference::MediumBytes(*fields, true),
                        "measuring a picture's error", base::MemoryBudget::Urgency::kAhead));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<ErrorMeter> meter,
                                ErrorMeter::Create(measured, fields, 0));

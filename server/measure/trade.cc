@@ -131,7 +131,8 @@ void MarkPareto(std::vector<TradeRow>* rows) {
 }
 
 scene::Scene TrueScene(scene::Scene scene) {
-  scene.rendering.technique = scene::Reference{};
+  scene.rendering.technique =
+      scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
   return scene;
 }
 

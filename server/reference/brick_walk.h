@@ -47,8 +47,8 @@ class BrickWalk {
   const Medium& medium_;
   Optics optics_;
   Ray ray_;
-  glm::dvec3
-      inverse_;  // one over the ray's direction; infinite along axes that it does not move along
+  // One over the ray's direction; infinite along axes that it does not move along.
+  glm::dvec3 inverse_;
   double at_m_;
   double end_m_;
   glm::ivec3 brick_{0};  // x and y continue beyond the lattice if periodic

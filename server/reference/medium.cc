@@ -71,6 +71,12 @@ int FloorMod(int value, int divisor) {
 
 }  // namespace
 
+DeltaScaled ScaleForward(const glm::dvec3& albedo, double forward_share) {
+  const double largest = std::max({albedo.x, albedo.y, albedo.z});
+  const double extinction = 1.0 - largest * forward_share;
+  return {extinction, glm::min(albedo * ((1.0 - forward_share) / extinction), 1.0)};
+}
+
 absl::StatusOr<std::shared_ptr<const Medium>> Medium::Create(MediumDescription description) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckBox(description));
   for (const ScatteringGroup& group : description.groups) {
@@ -107,8 +113,9 @@ void Medium::AddSimilar() {
     const double forward = asymmetry > 0.0 ? asymmetry * asymmetry : 0.0;
     const double rest = asymmetry > 0.0 ? asymmetry / (1.0 + asymmetry) : asymmetry;
     GroupOptics similar;
-    similar.share = 1.0 - exact.choice_albedo * forward;
-    similar.albedo = glm::min(exact.albedo * ((1.0 - forward) / similar.share), 1.0);
+    const DeltaScaled scaled = ScaleForward(exact.albedo, forward);
+    similar.share = scaled.extinction;
+    similar.albedo = scaled.albedo;
     similar.choice_albedo = MeanColor(similar.albedo);
     similar.phase = std::make_shared<const SampledPhase>(SampledPhase::HenyeyGreenstein(rest));
     similar_.groups.push_back(similar);

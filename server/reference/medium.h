@@ -1,6 +1,6 @@
 // The scattering medium: extinction on a grid for each group of fields with the same optics, and a
-// coarse lattice of local maxima (majorants) for null-collision sampling. Knows no light and no
-// files.
+// lattice of bricks with their local maxima (majorants) for null-collision sampling. Knows no light
+// and no files.
 #pragma once
 
 #include <array>
@@ -29,6 +29,16 @@ enum class Sides { kOpen, kPeriodic };
 // Henyey and Greenstein's function of g / (1 + g). Sunlight reaches deeper there, and paths are
 // shorter.
 enum class Optics { kExact, kSimilar };
+
+// Delta scaling: a share of the light that is scattered counts as not scattered.
+struct DeltaScaled {
+  double extinction = 1.0;  // a factor
+  glm::dvec3 albedo{1.0};
+};
+
+// The colour with the largest albedo is absorbed as much as before. Extinction is the same for all
+// colours, so one between that and black is absorbed a little less.
+DeltaScaled ScaleForward(const glm::dvec3& albedo, double forward_share);
 
 // Fields with the same optics.
 struct ScatteringGroup {
@@ -78,7 +88,7 @@ class Medium {
   Scattering ScatteringAt(const glm::dvec3& point_m, double u,
                           Optics optics = Optics::kExact) const;
 
-  // The lattice of bricks that fills the box; a brick's majorant bounds extinction in it.
+  // The lattice of bricks that covers the box; a brick's majorant bounds extinction in it.
   const glm::ivec3& Bricks() const { return bricks_; }
   const glm::dvec3& BrickLow_m() const { return brick_low_m_; }  // the first one's lower corner
   const glm::dvec3& BrickSize_m() const { return grid_.spacing_m; }

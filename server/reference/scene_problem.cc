@@ -136,10 +136,10 @@ CutOptics CutPeak(const GroupLook& look, double peak_cut_deg) {
     return
         [=](double mu) { return physics::PhaseColors(phase, std::min(mu, cut.cut_cosine))[color]; };
   };
-  const double albedo = (look.albedo.x + look.albedo.y + look.albedo.z) / 3.0;
+  const DeltaScaled scaled = ScaleForward(look.albedo, cut.forward_share);
   CutOptics optics;
-  optics.extinction = 1.0 - albedo * cut.forward_share;
-  optics.albedo = glm::min(look.albedo * (1.0 - cut.forward_share) / optics.extinction, 1.0);
+  optics.extinction = scaled.extinction;
+  optics.albedo = scaled.albedo;
   optics.phase = std::make_shared<const SampledPhase>(
       SampledPhase::Tabulated(std::array<SampledPhase::Function, 3>{held(0), held(1), held(2)}));
   return optics;
@@ -265,11 +265,10 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
 
 }  // namespace
 
-std::size_t MediumBytes(const volume::HydrometeorFields& fields) {
-  // Each field's extinction; in all, and its bound, of the medium and the similar one.
+std::size_t MediumBytes(const volume::HydrometeorFields& fields, bool similar) {
   constexpr std::size_t kOfField = sizeof(float);
-  constexpr std::size_t kOfAll = 4 * sizeof(float);
-  return fields.grid.CellCount() * (kOfField * fields.fields.size() + kOfAll);
+  constexpr std::size_t kOfAll = 2 * sizeof(float);  // the sum and its bound
+  return fields.grid.CellCount() * (kOfField * fields.fields.size() + (similar ? 2 : 1) * kOfAll);
 }
 
 absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene,

@@ -42,9 +42,9 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
                                                        const volume::HydrometeorFields& fields,
                                                        Sides sides);
 
-// Memory that such a medium takes at most, without detail: extinction and its bounds, of each
-// field.
-std::size_t MediumBytes(const volume::HydrometeorFields& fields);
+// Memory that such a medium takes, without detail: each field's extinction, their sum and its
+// bounds, and the same of the sum in the similar medium, if it has one.
+std::size_t MediumBytes(const volume::HydrometeorFields& fields, bool similar);
 
 // kShaded is a Lambertian ground lit by sun and sky through the medium; renderers draw its shadow
 // from the sun. kUniform has the radiance that the same ground would have without any medium.

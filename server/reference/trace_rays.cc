@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/status.h"
 #include "reference/parallel.h"
 #include "reference/path_radiance.h"
 
@@ -14,6 +15,7 @@ constexpr std::size_t kRaysInPiece = 64;
 
 std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surroundings,
                                   const std::vector<Ray>& rays, const TraceRaysOptions& options) {
+  THUNDERHEAD_CHECK(options.similar_after == 0 || medium.HasSimilar(), "no similar medium");
   std::vector<glm::dvec3> radiance(rays.size(), glm::dvec3(0.0));
   const PathOptions of_path{.similar_after = options.similar_after};
   const std::size_t pieces = (rays.size() + kRaysInPiece - 1) / kRaysInPiece;

@@ -23,7 +23,7 @@ constexpr std::size_t kTracedBytesPerPixel = 160;
 std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& size_px) {
   return static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y) *
              kTracedBytesPerPixel +
-         reference::MediumBytes(fields);
+         reference::MediumBytes(fields, false);
 }
 
 }  // namespace

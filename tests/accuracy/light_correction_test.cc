@@ -243,7 +243,7 @@ TEST_F(LightCorrection, APoolKeepsWhatIsTracedAndRefusesOneTooMany) {
 }
 
 TEST_F(LightCorrection, APoolReservesItsCopiesOfTheStorm) {
-  const std::size_t bytes = reference::MediumBytes(*fields_);
+  const std::size_t bytes = reference::MediumBytes(*fields_, true);
   const auto memory = base::MemoryBudget::Make({.bytes = bytes + bytes / 2});
   CorrectorPool pool(programs_, lights_, memory, 8, 0.0);
   LightClaim claim;
@@ -261,7 +261,7 @@ TEST_F(LightCorrection, APoolReservesItsCopiesOfTheStorm) {
 }
 
 TEST_F(LightCorrection, AStormThatNeverFitsDropsNoOther) {
-  const std::size_t bytes = reference::MediumBytes(*fields_);
+  const std::size_t bytes = reference::MediumBytes(*fields_, true);
   const auto memory = base::MemoryBudget::Make({.bytes = bytes});
   CorrectorPool pool(programs_, lights_, memory, 8, 0.0);
   ASSERT_TRUE(pool.Trace(scene_, fields_).ok());

@@ -116,6 +116,18 @@ TEST(Medium, TheSimilarOneTurnsAndAbsorbsAsMuch) {
   EXPECT_NEAR((forward_per_m + 6.0) * turned, turned_per_m, 1e-4);
 }
 
+// The similar medium has one extinction for all colours: the brightest keeps its albedo.
+TEST(Medium, AColoredOneStaysAsBright) {
+  MediumDescription red = EmptyDescription({1, 1, 1}, {10.0, 10.0, 10.0});
+  red.groups.push_back({{2.0F}, {1.0, 0.5, 0.0}, HenyeyGreensteinPhase(0.8)});
+  red.similar = true;
+  const auto medium = Made(red);
+  const Scattering scattering = medium->ScatteringAt(medium->Low_m() + 5.0, 0.5, Optics::kSimilar);
+  EXPECT_NEAR(scattering.weight.x, 1.0, 1e-12);
+  EXPECT_NEAR(scattering.weight.y, 0.5, 1e-12);
+  EXPECT_EQ(scattering.weight.z, 0.0);
+}
+
 Ray RandomRay(const Medium& medium, RandomStream* random) {
   const glm::dvec3 size = medium.High_m() - medium.Low_m();
   const glm::dvec3 place(random->Uniform(), random->Uniform(), random->Uniform());
@@ -142,20 +154,30 @@ std::vector<Case> Cases() {
   cases.push_back({"periodic", LumpyCloud(0.02, 1.0, 0.5)});
   cases.back().description.sides = Sides::kPeriodic;
   cases.push_back({"chessboard", Chessboard(0.0, 0.02, 1.0, 0.5)});
+  // Condensate at all sides of a domain one cell thick; two groups.
+  cases.push_back({"thin", EmptyDescription({5, 1, 4}, {100.0, 200.0, 70.0})});
+  ScatteringGroup thick{std::vector<float>(20, 0.008F), glm::dvec3(1.0),
+                        HenyeyGreensteinPhase(0.5)};
+  ScatteringGroup other{{}, glm::dvec3(1.0), HenyeyGreensteinPhase(0.5)};
+  for (int i = 0; i < 20; ++i) other.extinction_per_m.push_back(static_cast<float>(i % 3) * 0.006F);
+  cases.back().description.groups = {thick, other};
+  for (Case& test : cases) test.description.similar = true;
   return cases;
 }
 
 // Along random rays, segments do not overlap, extinction is at most the segment's majorant, and it
 // is zero outside of segments.
-class BrickWalkIn : public testing::TestWithParam<Optics> {};
-INSTANTIATE_TEST_SUITE_P(Optics, BrickWalkIn, testing::Values(Optics::kExact, Optics::kSimilar));
+class MediumWith : public testing::TestWithParam<Optics> {};
+INSTANTIATE_TEST_SUITE_P(Optics, MediumWith, testing::Values(Optics::kExact, Optics::kSimilar),
+                         [](const auto& with) {
+                           return with.param == Optics::kExact ? "Exact" : "Similar";
+                         });
 
-TEST_P(BrickWalkIn, StretchesBoundExtinction) {
+TEST_P(MediumWith, StretchesBoundExtinction) {
   // No cell has more: a larger majorant would be none.
   const double largest_per_m = GetParam() == Optics::kExact ? 0.02 : 0.75 * 0.02;
-  for (Case test : Cases()) {
+  for (const Case& test : Cases()) {
     SCOPED_TRACE(test.name);
-    test.description.similar = true;
     const auto medium = Made(test.description);
     RandomStream random(3, 0, 0);
     int bounded = 0;
@@ -186,21 +208,21 @@ TEST_P(BrickWalkIn, StretchesBoundExtinction) {
   }
 }
 
-double DepthWithin(const Medium& medium, const Ray& ray, double limit_m) {
+double DepthWithin(const Medium& medium, const Ray& ray, double limit_m, Optics optics) {
   constexpr int kSteps = 200000;
   const RayInterval interval = Clip(medium, ray, limit_m);
   const double step_m = std::max(interval.end_m - interval.begin_m, 0.0) / kSteps;
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) {
-    sum += medium.Extinction_per_m(ray.At(interval.begin_m + (i + 0.5) * step_m));
+    sum += medium.Extinction_per_m(ray.At(interval.begin_m + (i + 0.5) * step_m), optics);
   }
   return sum * step_m;
 }
 
 // Transmittances, exact while they are large, and the share of flights without collision, against
-// quadrature along 6 rays that meet each of 5 media. Midpoints across walls of constant cells miss
+// quadrature along 6 rays that meet each of 6 media. Midpoints across walls of constant cells miss
 // up to 4 steps of 200000.
-TEST(Tracking, TransmittanceIsThatOfQuadrature) {
+TEST_P(MediumWith, TransmittanceIsThatOfQuadrature) {
   constexpr double kLimit_m = 1500.0;
   for (const Case& test : Cases()) {
     SCOPED_TRACE(test.name);
@@ -208,22 +230,24 @@ TEST(Tracking, TransmittanceIsThatOfQuadrature) {
     RandomStream rays(11, 0, 0);
     for (int r = 0; r < 6; ++r) {
       Ray ray = RandomRay(*medium, &rays);
-      double depth = DepthWithin(*medium, ray, kLimit_m);
+      double depth = DepthWithin(*medium, ray, kLimit_m, GetParam());
       for (int i = 0; i < 200 && depth < 0.1; ++i) {
         ray = RandomRay(*medium, &rays);
-        depth = DepthWithin(*medium, ray, kLimit_m);
+        depth = DepthWithin(*medium, ray, kLimit_m, GetParam());
       }
       ASSERT_GE(depth, 0.1);
       SampleMean passed;
       SampleMean flights;
       for (std::uint32_t i = 0; i < 20000; ++i) {
         RandomStream random(23, static_cast<std::uint64_t>(r), i);
-        const double transmittance = EstimateTransmittance(*medium, ray, kLimit_m, &random);
+        const double transmittance =
+            EstimateTransmittance(*medium, ray, kLimit_m, &random, GetParam());
         passed.Add(transmittance);
         if (depth < 0.9) {
           ASSERT_NEAR(transmittance, std::exp(-depth), 1e-4);
         }
-        flights.Add(SampleCollision(*medium, ray, kLimit_m, &random).has_value() ? 0.0 : 1.0);
+        const auto met = SampleCollision(*medium, ray, kLimit_m, &random, GetParam());
+        flights.Add(met.has_value() ? 0.0 : 1.0);
       }
       ExpectAgrees(passed.Share(), std::exp(-depth), 1e-4, 4e-3);
       ExpectAgrees(flights.Share(), std::exp(-depth), 1e-4, 4e-3);

@@ -47,7 +47,8 @@ scene::Scene TowerScene() {
 
 picture::LinearPicture TruthOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
   scene::Scene truth = scene;
-  truth.rendering.technique = scene::Reference{};
+  truth.rendering.technique =
+      scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
   reference::RefineLimits limits;
   limits.samples_per_pixel = 400;
   return reference::TraceScene(truth, fields, reference::TraceOptions{}, limits, {}, {})->image;
@@ -145,6 +146,17 @@ TEST(ErrorMeter, PathsCountForTheNextPictureToo) {
   EXPECT_FALSE(meter->Result().has_value());
 }
 
+TEST(ErrorMeter, FalseColorsAreNoError) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  scene::Scene scene = TowerScene();
+  scene::MediumSettingsOf(&scene.rendering.technique)->look.false_colors = true;
+  const picture::LinearPicture truth = TruthOf(scene, *fields);
+  const auto meter = *ErrorMeter::Create(scene, fields, 0);
+  meter->Show(truth);
+  for (int step = 0; step < 8; ++step) meter->Step();
+  EXPECT_LT(meter->Result()->relative_rmse.low, NoiseOf(truth));
+}
+
 TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
   const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
   scene::Scene scene = TowerScene();
@@ -176,7 +188,7 @@ TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
 
 TEST(ErrorMeters, ReserveTheirCopyOfTheStorm) {
   const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
-  const std::size_t bytes = reference::MediumBytes(*fields);
+  const std::size_t bytes = reference::MediumBytes(*fields, true);
   const auto memory = base::MemoryBudget::Make({.bytes = bytes + bytes / 2});
   const ErrorMeters::Draw draw = [](const scene::Scene&) {
     return picture::LinearPicture{{32, 24}, std::vector<glm::vec3>(768, glm::vec3(0.1F))};
