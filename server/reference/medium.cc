@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "glm/common.hpp"
+#include "glm/vec4.hpp"
 #include "glm/vector_relational.hpp"
 
 namespace thunderhead::reference {

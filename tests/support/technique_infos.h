@@ -21,8 +21,7 @@ inline std::vector<scene::TechniqueInfo> TechniquesOfTheSchema() {
   };
   [&]<typename... Kinds>(std::type_identity<std::variant<Kinds...>>) {
     (add(std::type_identity<Kinds>{}), ...);
-  }
-  (std::type_identity<scene::Technique>{});
+  }(std::type_identity<scene::Technique>{});
   return infos;
 }
 
