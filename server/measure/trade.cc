@@ -131,8 +131,7 @@ void MarkPareto(std::vector<TradeRow>* rows) {
 }
 
 scene::Scene TrueScene(scene::Scene scene) {
-  scene.rendering.technique =
-      scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
+  scene.rendering.technique = scene::Reference{};
   return scene;
 }
 
