@@ -24,14 +24,20 @@ std::string ServerOf(const std::vector<std::string>& words) {
 TEST(Flags, WithoutAServerItIsThatOfThisMachine) {
   EXPECT_EQ(ServerOf({}), "localhost:50051");
   EXPECT_EQ(ServerOf({"--kiosk"}), "localhost:50051");
-  EXPECT_EQ(ServerOf({"--name", "Room 5:2", "--key", "a:1"}), "localhost:50051");
+  EXPECT_EQ(ServerOf({"--name", "Room 5:2"}), "localhost:50051");
+  EXPECT_EQ(ServerOf({"--key", "a:1", "--full-screen"}), "localhost:50051");
+  EXPECT_EQ(ServerOf({"--views", "a:1.json", "b.json"}), "localhost:50051");
+  EXPECT_EQ(ServerOf({"--name=a:1"}), "localhost:50051");
 }
 
 TEST(Flags, TheServerStandsAnywhereAmongThem) {
   const std::string server = "storms.example.org:50051";
   EXPECT_EQ(ServerOf({server}), server);
   EXPECT_EQ(ServerOf({"--name", "Wall", server}), server);
+  EXPECT_EQ(ServerOf({server, "--name", "Wall"}), server);
+  EXPECT_EQ(ServerOf({"--kiosk", server, "--views", "a.json"}), server);
   EXPECT_EQ(ServerOf({"--views", "a.json", "b.json", "--kiosk", server}), server);
+  EXPECT_EQ(ServerOf({"--tls-ca=ca.pem", server}), server);
   EXPECT_EQ(ServerOf({"[::1]:50051"}), "[::1]:50051");
 }
 

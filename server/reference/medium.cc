@@ -230,10 +230,13 @@ Medium::Between Medium::BetweenCells(int axis, double cell) const {
   const double above = cell + 0.5;
   const int high = static_cast<int>(above);
   const double share = above - high;
+  return {OffsetsFrom(axis, high - 1), {1.0 - share, share}};
+}
+
+Medium::OffsetPair Medium::OffsetsFrom(int axis, int cell) const {
   const std::size_t stride = strides_[axis];
-  return {{static_cast<std::size_t>(CellIndex(axis, high - 1)) * stride,
-           static_cast<std::size_t>(CellIndex(axis, high)) * stride},
-          {1.0 - share, share}};
+  return {static_cast<std::size_t>(CellIndex(axis, cell)) * stride,
+          static_cast<std::size_t>(CellIndex(axis, cell + 1)) * stride};
 }
 
 double Medium::Weigh(const std::vector<float>& values, const Place& place) {
@@ -247,15 +250,12 @@ double Medium::Weigh(const std::vector<float>& values, const Place& place) {
 double Medium::MeanExtinction_per_m(const glm::ivec3& brick, const glm::dvec3& from_m,
                                     const glm::dvec3& to_m, Optics optics) const {
   const std::vector<float>& values = Of(optics).extinction_per_m;
-  std::array<std::array<std::size_t, 2>, 3> offsets;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int of_axis = static_cast<int>(axis);
-    const int first = first_cell_[of_axis] + brick[of_axis];
-    offsets[axis] = {static_cast<std::size_t>(CellIndex(of_axis, first)) * strides_[of_axis],
-                     static_cast<std::size_t>(CellIndex(of_axis, first + 1)) * strides_[of_axis]};
-  }
+  const glm::ivec3 first = first_cell_ + brick;
+  const OffsetPair along_x = OffsetsFrom(0, first.x);
+  const OffsetPair along_y = OffsetsFrom(1, first.y);
+  const OffsetPair along_z = OffsetsFrom(2, first.z);
   const auto corner = [&](std::size_t x, std::size_t y, std::size_t z) {
-    return static_cast<double>(values[offsets[0][x] + offsets[1][y] + offsets[2][z]]);
+    return static_cast<double>(values[along_x[x] + along_y[y] + along_z[z]]);
   };
   if (!linear_) return corner(0, 0, 0);
   // Values at the four edges along x, and their slopes.

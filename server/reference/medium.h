@@ -108,9 +108,11 @@ class Medium {
     std::array<double, 8> shares;
     int count = 0;
   };
+  // What two neighbouring cells along an axis add to an offset.
+  using OffsetPair = std::array<std::size_t, 2>;
   // The two cells along an axis.
   struct Between {
-    std::array<std::size_t, 2> offsets;
+    OffsetPair offsets;
     std::array<double, 2> shares;
   };
   // Of a group.
@@ -142,6 +144,7 @@ class Medium {
                    const CellRange& z) const;
   Place PlaceOf(const glm::dvec3& point_m) const;
   Between BetweenCells(int axis, double cell) const;
+  OffsetPair OffsetsFrom(int axis, int cell) const;
   static double Weigh(const std::vector<float>& values, const Place& place);
   std::size_t BrickOffset(const glm::ivec3& brick) const {
     return (static_cast<std::size_t>(brick.z) * static_cast<std::size_t>(bricks_.y) +

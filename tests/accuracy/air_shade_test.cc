@@ -147,7 +147,7 @@ TEST_F(AirShadeTest, AirBesideASunlitTowerHasItsLight) {
       EXPECT_GT(drawn[color], 1.01 * lit[color]) << row << ' ' << color;
       // Faces turned as a sphere's stand for the tower's two, which the sun strikes more squarely:
       // 0.06 to 0.075 of the lit air are missing.
-      EXPECT_NEAR(drawn[color], traced[color], 0.085 * lit[color]) << row << ' ' << color;
+      EXPECT_NEAR(drawn[color], traced[color], 0.08 * lit[color]) << row << ' ' << color;
     }
   }
 }

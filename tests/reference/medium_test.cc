@@ -165,14 +165,14 @@ std::vector<Case> Cases() {
   return cases;
 }
 
-// Along random rays, segments do not overlap, extinction is at most the segment's majorant, and it
-// is zero outside of segments.
 class MediumWith : public testing::TestWithParam<Optics> {};
 INSTANTIATE_TEST_SUITE_P(Optics, MediumWith, testing::Values(Optics::kExact, Optics::kSimilar),
                          [](const auto& with) {
                            return with.param == Optics::kExact ? "Exact" : "Similar";
                          });
 
+// Along random rays, segments do not overlap, extinction is at most the segment's majorant, and it
+// is zero outside of segments.
 TEST_P(MediumWith, StretchesBoundExtinction) {
   // No cell has more: a larger majorant would be none.
   const double largest_per_m = GetParam() == Optics::kExact ? 0.02 : 0.75 * 0.02;

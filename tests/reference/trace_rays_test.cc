@@ -62,7 +62,8 @@ TEST_F(TraceRaysTest, MeansAreThoseOfThePicture) {
   EXPECT_GT(traced.front().x, 0.0);
 }
 
-// What a slab of this optical depth reflects, from straight above.
+// The radiance that a slab reflects straight up, of sunlight that comes from 37 degrees off the
+// zenith.
 FluxShare Reflected(double optical_depth, double asymmetry, double albedo, int similar_after) {
   constexpr int kRays = 64;
   MediumDescription description = EmptyDescription({1, 1, 1}, {1e5, 1e5, 1000.0});

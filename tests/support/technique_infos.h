@@ -1,4 +1,4 @@
-// What a server says of its techniques, without drawing.
+// Descriptions of the techniques, for tests of messages, which have no renderers.
 #pragma once
 
 #include <string>

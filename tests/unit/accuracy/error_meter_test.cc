@@ -9,6 +9,7 @@
 #include "accuracy/error_meters.h"
 #include "base/memory_budget.h"
 #include "gtest/gtest.h"
+#include "measure/image_error.h"
 #include "reference/scene_problem.h"
 #include "reference/trace_scene.h"
 #include "tests/support/slab.h"
@@ -52,19 +53,6 @@ picture::LinearPicture TruthOf(const scene::Scene& scene, const volume::Hydromet
   reference::RefineLimits limits;
   limits.samples_per_pixel = 400;
   return reference::TraceScene(truth, fields, reference::TraceOptions{}, limits, {}, {})->image;
-}
-
-// Relative to the mean.
-double NoiseOf(const picture::LinearPicture& truth) {
-  double squares = 0.0;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < truth.radiance.size(); ++i) {
-    for (int color = 0; color < 3; ++color) {
-      squares += std::pow(truth.standard_error[i][color], 2);
-      sum += truth.radiance[i][color];
-    }
-  }
-  return std::sqrt(squares * 3.0 * static_cast<double>(truth.radiance.size())) / sum;
 }
 
 struct Wrong {
@@ -139,7 +127,7 @@ TEST(ErrorMeter, PathsCountForTheNextPictureToo) {
   meter->Show(truth);
   EXPECT_EQ(meter->Result()->paths, paths);
   // All that is wrong with it is its own noise.
-  EXPECT_LT(meter->Result()->relative_rmse.low, NoiseOf(truth));
+  EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
   EXPECT_LT(meter->Result()->relative_rmse.value, 0.5 * wrong.error);
   picture::LinearPicture smaller{{16, 12}, std::vector<glm::vec3>(192, glm::vec3(0.1F))};
   meter->Show(smaller);
@@ -154,7 +142,7 @@ TEST(ErrorMeter, FalseColorsAreNoError) {
   const auto meter = *ErrorMeter::Create(scene, fields, 0);
   meter->Show(truth);
   for (int step = 0; step < 8; ++step) meter->Step();
-  EXPECT_LT(meter->Result()->relative_rmse.low, NoiseOf(truth));
+  EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
 }
 
 TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
