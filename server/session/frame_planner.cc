@@ -20,6 +20,12 @@ FrameQuality Step(int step, bool sparse) {
 
 bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
 
+// A finer frame is drawn whatever was drawn last.
+scene::Stage FirstDirtyAtRest(const std::optional<LastDrawn>& last_drawn,
+                              const scene::Scene& scene) {
+  return std::min(FirstDirty(last_drawn, scene), scene::Stage::kView);
+}
+
 }  // namespace
 
 scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene) {
@@ -57,22 +63,35 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
                               const std::optional<LastDrawn>& last_drawn) const {
   const Clock::time_point rested_at = targets_.RestsAt(newest);
   if (now < rested_at) return {std::nullopt, rested_at};
-  const scene::Stage first_dirty =
-      std::min(FirstDirty(last_drawn, *newest.scene), scene::Stage::kView);
+  const scene::Stage first_dirty = FirstDirtyAtRest(last_drawn, *newest.scene);
   if (!drawn_.refined) {
     const FrameQuality quality = Finest(*newest.scene, first_dirty, targets_.refined_ms);
-    if (IsFull(quality) || quality.image_scale > drawn_.quality.image_scale) {
-      return {FramePlan{quality, true}, std::nullopt};
-    }
+    if (IsFiner(quality)) return {FramePlan{quality, true}, std::nullopt};
   }
   const Clock::time_point settled_at = targets_.SettlesAt(newest);
   if (now < settled_at) return {std::nullopt, settled_at};
-  const FrameQuality finest = Finest(*newest.scene, first_dirty, targets_.longest_ms);
-  const bool is_finer = IsFull(finest) || finest.image_scale > drawn_.quality.image_scale;
+  const std::chrono::duration<double, std::milli> rested = now - newest.changed_at;
+  const double budget_ms =
+      std::clamp(rested.count(), targets_.longest_ms, targets_.longest_at_rest_ms);
+  const FrameQuality finest = Finest(*newest.scene, first_dirty, budget_ms);
   // One that is no finer is drawn all the same if there is no refined frame yet: the estimate may
   // be of a moment at which the machine was busy.
-  if (!is_finer && drawn_.refined) return {};
+  if (!IsFiner(finest) && drawn_.refined) return {};
   return {FramePlan{finest, true}, std::nullopt};
+}
+
+std::optional<Clock::time_point> FramePlanner::FinerAt(
+    const NewestScene& drawn, const std::optional<LastDrawn>& last_drawn) const {
+  if (finished_) return std::nullopt;
+  const scene::Stage first_dirty = FirstDirtyAtRest(last_drawn, *drawn.scene);
+  for (int step = 0; step <= kSteps; ++step) {
+    const FrameQuality quality = Step(step, false);
+    if (!IsFiner(quality)) continue;
+    const double ms = costs_.FrameMs(view_, *drawn.scene, quality, first_dirty);
+    if (ms > targets_.longest_at_rest_ms) return std::nullopt;
+    return drawn.changed_at + std::chrono::milliseconds(1 + std::llround(ms));
+  }
+  return std::nullopt;
 }
 
 bool FramePlanner::DrawsWhole(const scene::Scene& scene) const {
@@ -95,6 +114,10 @@ void FramePlanner::Again() {
   revision_ = drawn_revision_;
   finished_ = false;
   drawn_ = {FrameQuality{0.0, 0.0}, false};
+}
+
+bool FramePlanner::IsFiner(const FrameQuality& quality) const {
+  return IsFull(quality) || quality.image_scale > drawn_.quality.image_scale;
 }
 
 FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_dirty,

@@ -21,9 +21,13 @@ struct PlannerTargets {
   // The first frame at rest: with the delay, encoding and network it is shown within 300 ms.
   double refined_ms = 180.0;
   Clock::duration rest_delay = std::chrono::milliseconds(80);
-  // Of a session's pictures: how long others may wait for the lane that draws one. A scene whose
-  // full frame is predicted to take longer stays at the finest quality that does not.
+  // Of a session's pictures: how long others may wait for the lane that draws one. A frame that is
+  // predicted to take longer is drawn once its scene has rested for as long as that: the estimate
+  // may be of a moment at which the machine was busy.
   double longest_ms = 5000.0;
+  // A scene whose full frame is predicted to take even longer stays at the finest quality that
+  // does not.
+  double longest_at_rest_ms = 20'000.0;
   // A frame at rest that is predicted to take longer is drawn in pieces, in a lane.
   double whole_ms = 30.0;
   // A full-quality frame that takes longer than refined_ms blocks the next change, so it waits
@@ -79,6 +83,11 @@ class FramePlanner {
   // Plans no more frames of that revision: it cannot be drawn, or is not drawn by this planner.
   void GiveUp(std::uint64_t revision);
 
+  // When a finer frame of the scene that was drawn last comes, which is predicted to take longer
+  // than longest_ms; none if there will be none.
+  std::optional<Clock::time_point> FinerAt(const NewestScene& drawn,
+                                           const std::optional<LastDrawn>& last_drawn) const;
+
   // False where a frame at full quality is predicted to take longer than longest_ms.
   bool DrawsWhole(const scene::Scene& scene) const;
 
@@ -95,6 +104,7 @@ class FramePlanner {
                   const std::optional<LastDrawn>& last_drawn) const;
   FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms,
                       bool sparse = false) const;
+  bool IsFiner(const FrameQuality& quality) const;  // than the frame drawn last
 
   const PlannerTargets targets_;
   const accuracy::MachineCosts& costs_;

@@ -56,8 +56,9 @@ std::optional<SessionWork> SessionView::In(State state, const Now& now) {
       return Trace(now);
     case State::kReference:
       return ShowReference{now.shown};
-    case State::kWaitingForFields:
     case State::kSettled:
+      return Settle(now);
+    case State::kWaitingForFields:
     case State::kYielded:
     case State::kFailed:
       return WaitUntil{};
@@ -108,6 +109,13 @@ std::optional<SessionWork> SessionView::Trace(const Now& now) {
     if (light || !error_.ended()) return TraceLight{now.shown, light, true};
   }
   state_ = State::kSettled;
+  return std::nullopt;
+}
+
+std::optional<SessionWork> SessionView::Settle(const Now& now) {
+  const auto finer_at = planner_.FinerAt(now.shown, now.last_drawn);
+  if (!finer_at.has_value() || now.time < *finer_at) return WaitUntil{finer_at};
+  state_ = State::kRefining;
   return std::nullopt;
 }
 

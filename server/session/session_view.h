@@ -56,7 +56,7 @@ class SessionView {
     kChecking,      // drawn at full quality: measure error and time, and decide the setting again
     kTracingLight,  // correct the light, and measure the error, by more and more paths
     kReference,     // refined by the tracer
-    kSettled,       // final
+    kSettled,       // final, or until the scene has rested for as long as a finer frame takes
     kYielded,       // its picture stays; its fields and light were given up for others
     kFailed,        // cannot be drawn
   };
@@ -137,6 +137,7 @@ class SessionView {
   std::optional<SessionWork> Refine(const Now& now);
   std::optional<SessionWork> Check(const Now& now);
   std::optional<SessionWork> Trace(const Now& now);
+  std::optional<SessionWork> Settle(const Now& now);
 
   const PlannerTargets targets_;
   State state_ = State::kWaitingForFields;

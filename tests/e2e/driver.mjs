@@ -77,10 +77,12 @@ export function restedAndFits(page) {
   return resting("a refined picture of the canvas's size that rests", page, whole);
 }
 
-// Like `restedAndFits`, once the still has come that replaces the frame's JPEG, from which it differs by about a level.
+// Like `restedAndFits`, once the still has come that replaces the frame's JPEG, from which it differs by about a level,
+// and of a picture at full quality: a machine that is busy draws a coarser one before.
 export function restedStill(page) {
-  const still = (data) => data.refined === "true" && data.encoding === "avif" && fits(data);
-  return resting("a still of the canvas's size that rests", page, still);
+  const still = (data) =>
+    data.refined === "true" && data.encoding === "avif" && fits(data) && Number(data.scale) === 1;
+  return resting("a still of the canvas's size and of full quality that rests", page, still);
 }
 
 // Runs an action that changes the scene, and waits for the refined picture of the new scene.

@@ -53,9 +53,21 @@ class FramePlannerTest : public ::testing::Test {
     last_ms_ = ms;
   }
 
+  NewestScene AtPlanned() const { return At(revision_, scene_, kPlannedAt); }
+
   Decision Ask(milliseconds since_change) {
-    return planner_.Decide(At(revision_, scene_, kPlannedAt), kPlannedAt + since_change,
-                           last_drawn_);
+    return planner_.Decide(AtPlanned(), kPlannedAt + since_change, last_drawn_);
+  }
+
+  // The milliseconds of the last of them.
+  double DrawAllAt(milliseconds since_change, const Machine& machine) {
+    for (int frames = 0; frames < 10; ++frames) {
+      const auto plan = Ask(since_change).plan;
+      if (!plan.has_value()) return last_ms_;
+      Draw(machine, *plan);
+    }
+    ADD_FAILURE() << "it must come to an end";
+    return last_ms_;
   }
 
   const accuracy::OfferTables tables_;
@@ -76,19 +88,41 @@ TEST_F(FramePlannerTest, FastMachineDrawsFullQualityAtOnceAndOnce) {
   EXPECT_FALSE(decision.ask_again_at.has_value());
 }
 
-// A frame is drawn whole, and everybody waits for it: one scene must not stall a server.
-TEST_F(FramePlannerTest, NoFrameIsDrawnThatEverybodyWouldWaitTooLongFor) {
+// Others wait for the lane that draws it: one scene must not stall a server.
+TEST_F(FramePlannerTest, NoFrameIsDrawnSoonThatOthersWouldWaitTooLongFor) {
   Drag({4.0, 100.0}, 20);  // 12 s a full frame
-  int frames = 0;
-  while (const auto plan = Ask(milliseconds(10000)).plan) {
-    ASSERT_LT(++frames, 10) << "it must come to an end";
-    Draw({4.0, 100.0}, *plan);
-    EXPECT_LE(last_ms_, PlannerTargets{}.longest_ms);
-  }
-  EXPECT_GT(last_ms_, 0.3 * PlannerTargets{}.longest_ms);
+  const double drawn_ms = DrawAllAt(milliseconds(1000), {4.0, 100.0});
+  EXPECT_LE(drawn_ms, PlannerTargets{}.longest_ms);
+  EXPECT_GT(drawn_ms, 0.3 * PlannerTargets{}.longest_ms);
   EXPECT_TRUE(last_plan_.refined);
-  EXPECT_FALSE(Ask(milliseconds(10000)).ask_again_at.has_value());
+  EXPECT_FALSE(Ask(milliseconds(1000)).ask_again_at.has_value());
   EXPECT_FALSE(planner_.DrawsWhole(scene_));
+}
+
+TEST_F(FramePlannerTest, AFullFrameComesOnceItsSceneHasRestedForAsLongAsItTakes) {
+  const Machine machine{4.0, 100.0};
+  Drag(machine, 20);
+  DrawAllAt(milliseconds(1000), machine);
+  int frames = 0;
+  while (const auto finer_at = planner_.FinerAt(AtPlanned(), last_drawn_)) {
+    ASSERT_LT(++frames, 10) << "it must come to an end";
+    const auto since_change = std::chrono::duration_cast<milliseconds>(*finer_at - kPlannedAt);
+    EXPECT_FALSE(Ask(since_change - milliseconds(100)).plan.has_value());
+    const auto plan = Ask(since_change).plan;
+    ASSERT_TRUE(plan.has_value());
+    Draw(machine, *plan);
+    EXPECT_GE(1.01 * static_cast<double>(since_change.count()), last_ms_);
+  }
+  EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
+}
+
+TEST_F(FramePlannerTest, AFrameThatOthersWouldWaitForeverForIsNotDrawn) {
+  const Machine machine{4.0, 1000.0};  // two minutes a full frame
+  Drag(machine, 20);
+  const double drawn_ms = DrawAllAt(milliseconds(1'000'000), machine);
+  EXPECT_LE(drawn_ms, PlannerTargets{}.longest_at_rest_ms);
+  EXPECT_GT(drawn_ms, 0.3 * PlannerTargets{}.longest_at_rest_ms);
+  EXPECT_FALSE(planner_.FinerAt(AtPlanned(), last_drawn_).has_value());
 }
 
 TEST_F(FramePlannerTest, AFrameThatTookTooLongByChanceIsRefinedAllTheSame) {
@@ -101,11 +135,7 @@ TEST_F(FramePlannerTest, AFrameThatTookTooLongByChanceIsRefinedAllTheSame) {
   ASSERT_TRUE(plan.has_value());
   EXPECT_TRUE(plan->refined);
   Draw({4.0, 10.0}, *plan);
-  int frames = 0;
-  while (const auto finer = Ask(milliseconds(10000)).plan) {
-    ASSERT_LT(++frames, 10) << "it must come to an end";
-    Draw({4.0, 10.0}, *finer);
-  }
+  DrawAllAt(milliseconds(10000), {4.0, 10.0});
 }
 
 TEST_F(FramePlannerTest, AFrameOfASecondIsDrawnWhole) {

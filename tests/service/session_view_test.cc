@@ -63,7 +63,7 @@ class SessionViewTest : public ::testing::Test {
     const auto* draw = std::get_if<DrawFrame>(&work);
     if (draw == nullptr) return false;
     last_plan_ = draw->plan;
-    Observe(draw->plan.quality, 1000.0);
+    Observe(draw->plan.quality, ms_per_mega_sample_);
     view_.Drawn(*draw);
     return true;
   }
@@ -111,6 +111,7 @@ class SessionViewTest : public ::testing::Test {
   std::optional<NewestScene> decided_;
   std::optional<LastDrawn> last_drawn_;
   FramePlan last_plan_;
+  double ms_per_mega_sample_ = 1000.0;
 };
 
 TEST_F(SessionViewTest, ASceneWithoutFieldsWaitsAndThenMoves) {
@@ -134,6 +135,23 @@ TEST_F(SessionViewTest, FromMovingToRefiningToSettled) {
   Change();
   EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(0)));
   EXPECT_EQ(view_.state(), State::kMoving);
+}
+
+TEST_F(SessionViewTest, AFrameThatTakesLongComesOnceItsSceneHasRestedForAsLong) {
+  scene_.output = {1280, 720, 88};
+  ms_per_mega_sample_ = 100.0;  // 12 s a full frame
+  Drag();
+  while (DrawNext(milliseconds(600))) {
+  }
+  ASSERT_NE(last_plan_, (FramePlan{FrameQuality{}, true}));
+  const SessionWork work = Next(milliseconds(600));
+  const auto* wait = std::get_if<WaitUntil>(&work);
+  ASSERT_NE(wait, nullptr);
+  EXPECT_EQ(view_.state(), State::kSettled);
+  ASSERT_TRUE(wait->time.has_value());
+  EXPECT_GT(*wait->time, kStart + milliseconds(5000));
+  ASSERT_TRUE(DrawNext(milliseconds(15'000)));
+  EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
 }
 
 TEST_F(SessionViewTest, AGestureWithLongPausesRestsLater) {

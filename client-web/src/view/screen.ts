@@ -120,6 +120,7 @@ export class Screen {
       refined: String(frame.refined),
       encoding: encodingOf(frame),
       size: `${frame.widthPx}x${frame.heightPx}`,
+      scale: String(frame.accuracy?.imageScale ?? 1),
       ownView: String(frame.ownView),
       tier: String(frame.tier),
       time: String(shownTimeIndex ?? ""),
