@@ -101,10 +101,6 @@ async function unfoldSettings(open = true) {
 
 const foldSettings = () => unfoldSettings(false);
 
-// Waits for the still that replaces a frame at rest and takes its sequence.
-const stillShown = () =>
-  until("the still", async () => (await canvasDataOf(page)).encoding === "avif");
-
 // Waits until the readout shows more than this many million traced paths.
 function pathsBeyond(millions) {
   return page.waitForFunction(
@@ -259,7 +255,7 @@ test("the readout says what the picture costs, and on what", async () => {
 });
 
 test("a drag turns the storm, and the way back brings the first picture again", async () => {
-  const first = await rested();
+  const first = await restedStill(page);
   const firstPicture = await grabCanvas(page);
   const turned = await changing(() => drag(220, 0));
   const turnedPicture = await grabCanvas(page);
@@ -270,6 +266,7 @@ test("a drag turns the storm, and the way back brings the first picture again", 
   const change = difference(firstPicture, turnedPicture);
   assert.ok(change > 1, `the picture hardly changed: ${change}`);
   await changing(() => drag(-220, 0));
+  await restedStill(page);
   const back = difference(firstPicture, await grabCanvas(page));
   assert.ok(back < change / 4, `the way back differs by ${back}, the turn by ${change}`);
 });
@@ -637,8 +634,7 @@ test("no error reached the browser's console", () => {
 });
 
 test("a server that dies and comes back is found again with the same scene", async () => {
-  const before = await rested();
-  await stillShown();
+  const before = await restedStill(page);
   const beforePicture = await grabCanvas(page);
   await server.stop("SIGKILL");
   await page.getByTestId("connection-lost").waitFor({ state: "visible", timeout: 15_000 });
@@ -653,8 +649,7 @@ test("a server that dies and comes back is found again with the same scene", asy
     before.sequence,
     { timeout: PICTURE_TIMEOUT_MS },
   );
-  const healed = await rested();
-  await stillShown();
+  const healed = await restedStill(page);
   await screenshot("15-healed");
   assert.equal(healed.azimuth, before.azimuth);
   const change = difference(beforePicture, await grabCanvas(page));

@@ -169,6 +169,7 @@ async function assertSameView(link) {
       return same.every((name) => there[name] === here[name]);
     });
     await restedStill(colleague);
+    await restedStill(page);
     assert.equal(await colleague.getByTestId("run").innerText(), await text("run"));
     assert.equal(await colleague.getByTestId("top-time").innerText(), await text("top-time"));
     const apart = difference(await grabCanvas(page), await grabCanvas(colleague));

@@ -319,10 +319,9 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
       const [there, here] = await Promise.all([canvasData(fresh), canvasData(page)]);
       return there.azimuth === here.azimuth && there.distance === here.distance && there.refined === "true";
     });
-    await restedStill(fresh);
-    await restedStill(page);
+    const shown = [await restedStill(fresh), await restedStill(page)];
     const apart = difference(await grabCanvas(page), await grabCanvas(fresh));
-    assert.ok(apart < 1, `the pictures differ by ${apart}`);
+    assert.ok(apart < 1, `the pictures differ by ${apart}: ${JSON.stringify(shown)}`);
   } finally {
     await fresh.context().close();
   }
