@@ -8,7 +8,7 @@ import { BackOff } from "../src/core/back_off";
 import { cameraOfPose, type OrbitPose, poseOfCamera, type SpotterPose } from "../src/core/camera";
 import { History } from "../src/core/history";
 import { cameraPath, type MovieDraft, movieScenes, pictureCount } from "../src/core/movie_plan";
-import { RememberedMovie } from "../src/core/movie_work";
+import { RememberedMovies } from "../src/core/movie_work";
 import { NamedViews } from "../src/core/named_views";
 import { crc32, pngText, withPngText } from "../src/core/png_text";
 import { withDisplay, withField, withSun, withSunClock, withTime } from "../src/core/scene";
@@ -234,24 +234,27 @@ test("a camera path goes the shorter way around, and through every view", () => 
   expect(path.map(({ timeIndex }) => timeIndex)).toEqual([0, 0, 1, 2, 2]);
 });
 
-test("a movie is remembered until it is forgotten, and what is no movie is none", () => {
+test("a movie of each storm is remembered until it is forgotten, and what is no movie is none", () => {
   const texts = new Map<string, string>();
   const store = {
     getItem: (name: string) => texts.get(name) ?? null,
     setItem: (name: string, text: string) => void texts.set(name, text),
   };
-  const movie = new RememberedMovie(store);
-  expect(movie.work).toBeUndefined();
+  const movies = new RememberedMovies(store);
+  expect(movies.of("supercell")).toBeUndefined();
   const work = { jobId: "j1", pictures: 3, draft: DRAFT, stormId: "supercell" };
-  expect(movie.remember(work)).toBe(true);
-  expect(new RememberedMovie(store).work).toEqual(work);
-  movie.forget();
-  expect(new RememberedMovie(store).work).toBeUndefined();
+  const other = { ...work, jobId: "j2", stormId: "squall line" };
+  expect(movies.remember(work)).toBe(true);
+  expect(movies.remember(other)).toBe(true);
+  expect(new RememberedMovies(store).of("supercell")).toEqual(work);
+  movies.forget("supercell");
+  expect(new RememberedMovies(store).of("supercell")).toBeUndefined();
+  expect(new RememberedMovies(store).of("squall line")).toEqual(other);
   for (const text of ["{", "[]", '{"jobId":"j1"}']) {
     for (const name of texts.keys()) texts.set(name, text);
-    expect(new RememberedMovie(store).work).toBeUndefined();
+    expect(new RememberedMovies(store).of("squall line")).toBeUndefined();
   }
-  expect(new RememberedMovie(undefined).remember(work)).toBe(false);
+  expect(new RememberedMovies(undefined).remember(work)).toBe(false);
 });
 
 describe("pictures of a job", () => {

@@ -336,9 +336,14 @@ test("a file that is no scene is refused where it was opened", async () => {
   await page.keyboard.press("Escape");
 });
 
-async function fillMovieForm(format) {
+async function openMovieForm() {
   await openPanel(page, "keep");
-  await page.getByTestId("keep-movie").locator("summary").click();
+  const section = page.getByTestId("keep-movie");
+  if (!(await section.evaluate(({ open }) => open))) await section.locator("summary").click();
+}
+
+async function fillMovieForm(format) {
+  await openMovieForm();
   assert.match(await text("movie-length"), /^4 pictures, 1 s/);
   await page.getByTestId("movie-size").selectOption("own");
   await page.getByTestId("movie-size-width").fill("500");
@@ -377,7 +382,7 @@ test("a reload while a movie is made goes on with it, and the next does not make
   page.on("download", (download) => downloads.push(download));
   await page.getByTestId("save-movie").click();
   await page.keyboard.press("Escape");
-  const remembered = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie") || undefined);
+  const remembered = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
   await until("a movie that outlives the page", remembered);
   assert.equal(downloads.length, 0);
   await page.reload();
@@ -389,6 +394,85 @@ test("a reload while a movie is made goes on with it, and the next does not make
   await restedAndFits(page);
   assert.equal(downloads.length, 1);
   assert.equal(await page.getByTestId("at-work").count(), 0);
+  page.removeAllListeners("download");
+});
+
+// The picture of a movie with that number.
+function pictureOf(file, number) {
+  const picture = join(folder, `picture-${number}.png`);
+  ffmpeg("-i", file, "-vf", `select=eq(n\\,${number})`, "-frames:v", "1", picture);
+  return PNG.sync.read(readFileSync(picture));
+}
+
+async function makeMovie(pictures) {
+  const coming = page.waitForEvent("download", { timeout: 200_000 });
+  await page.getByTestId("save-movie").click();
+  const file = await (await coming).path();
+  await page.getByTestId("keep-work").waitFor({ state: "detached" });
+  const counting = ["-count_frames", "-select_streams", "v:0", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0"];
+  assert.equal(execFileSync("ffprobe", ["-v", "error", ...counting, file], { encoding: "utf8" }).trim(), String(pictures));
+  return file;
+}
+
+test("a movie begins at the time shown, unless the newest is, and ends where it is told", { timeout: 240_000 }, async () => {
+  const newest = await page.getByTestId("time").inputValue();
+  await changing(() => page.getByTestId("time").fill("1"), page);
+  await openMovieForm();
+  assert.match(await text("movie-length"), /^3 pictures/);
+  assert.equal(await page.getByTestId("movie-from").inputValue(), "1");
+  await page.getByTestId("movie-to").selectOption("0");
+  assert.match(await text("movie-length"), /^2 pictures/);
+  const backwards = await makeMovie(2);
+  await key("Escape");
+  await restedAndFits(page);
+  assertSameColours(pictureOf(backwards, 0), await grabCanvas(page), "the first picture");
+  await changing(() => page.getByTestId("time").fill("0"), page);
+  await restedAndFits(page);
+  assertSameColours(pictureOf(backwards, 1), await grabCanvas(page), "the last picture");
+  await changing(() => page.getByTestId("time").fill(newest), page);
+});
+
+test("a movie goes from one named view to another", { timeout: 240_000 }, async () => {
+  await openTool(page, "map");
+  const before = await canvasData(page);
+  await page.getByTestId("camera-kind").getByText("From above").click();
+  await until("the view from above", async () => (await canvasData(page)).camera === "topDown");
+  await page.getByTestId("keep-view").click();
+  await page.getByTestId("view-name").fill("Above");
+  await page.keyboard.press("Enter");
+  await until("two views", async () => (await page.getByTestId("named-view").count()) === 2);
+  await openMovieForm();
+  await page.getByTestId("movie-along-views").check();
+  await page.getByTestId("movie-per-view").fill("2");
+  await page.getByTestId("movie-per-view").press("Enter");
+  assert.match(await text("movie-length"), /^3 pictures/);
+  const file = await makeMovie(3);
+  await page.getByTestId("movie-along-views").uncheck();
+  await key("Escape");
+  assert.ok(difference(pictureOf(file, 0), pictureOf(file, 2)) > 5, "it ends where it began");
+  await page.getByTestId("named-view").first().click();
+  await until("the view as before", async () => (await canvasData(page)).camera === before.camera);
+  await openTool(page, undefined);
+});
+
+test("a movie that is cancelled is neither saved nor made again", { timeout: 240_000 }, async () => {
+  const downloads = [];
+  page.on("download", (download) => downloads.push(download));
+  await openMovieForm();
+  await page.getByTestId("movie-size").selectOption("3840x2160");
+  await page.getByTestId("save-movie").click();
+  const remembered = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
+  await until("the job", remembered);
+  await page.getByTestId("keep-cancel").click();
+  await page.getByTestId("keep-work").waitFor({ state: "detached" });
+  await until("the job to be given up", async () => (await remembered()) === undefined);
+  assert.equal(await page.getByTestId("save-movie").isEnabled(), true);
+  await page.getByTestId("movie-size").selectOption("window");
+  await key("Escape");
+  await page.reload();
+  await restedAndFits(page);
+  assert.equal(await page.getByTestId("at-work").count(), 0);
+  assert.equal(downloads.length, 0);
   page.removeAllListeners("download");
 });
 

@@ -1,4 +1,5 @@
-// The movie whose pictures a job of the server draws, remembered for this tab: after a reload the page goes on with it.
+// Movies whose pictures jobs of the server draw, one of each storm, remembered for this tab: after a reload the page goes
+// on with that of the storm that it shows.
 import type { MovieDraft } from "./movie_plan";
 import type { TextStore } from "./own_keys";
 
@@ -10,9 +11,9 @@ export interface MovieWork {
   readonly stormId: string;
 }
 
-const MOVIE_ITEM = "thunderhead.movie";
+const itemOf = (stormId: string) => `thunderhead.movie.${stormId}`;
 
-export class RememberedMovie {
+export class RememberedMovies {
   readonly #store: TextStore | undefined;
 
   constructor(store: TextStore | undefined) {
@@ -21,25 +22,25 @@ export class RememberedMovie {
 
   // False where the browser keeps nothing: a reload loses the movie.
   remember(work: MovieWork): boolean {
-    return this.#set(JSON.stringify(work));
+    return this.#set(work.stormId, JSON.stringify(work));
   }
 
-  forget(): void {
-    this.#set("");
+  forget(stormId: string): void {
+    this.#set(stormId, "");
   }
 
-  get work(): MovieWork | undefined {
+  of(stormId: string): MovieWork | undefined {
     try {
-      const work: unknown = JSON.parse(this.#store?.getItem(MOVIE_ITEM) || "null");
+      const work: unknown = JSON.parse(this.#store?.getItem(itemOf(stormId)) || "null");
       return isWork(work) ? work : undefined;
     } catch {
       return undefined;
     }
   }
 
-  #set(text: string): boolean {
+  #set(stormId: string, text: string): boolean {
     try {
-      this.#store?.setItem(MOVIE_ITEM, text);
+      this.#store?.setItem(itemOf(stormId), text);
       return this.#store !== undefined;
     } catch {
       return false;

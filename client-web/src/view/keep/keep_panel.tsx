@@ -125,15 +125,21 @@ function Movie({ page }: { page: Page }) {
   const times = state.storm.value?.times ?? [];
   const last = times.length - 1;
   const chosen = useSize(page);
-  const [draft, setDraft] = useState<Omit<MovieDraft, "widthPx" | "heightPx">>({
-    from: 0,
-    to: last,
+  // The times until they are chosen: from the one shown to the newest, or all where that is shown.
+  const [chosenTimes, setTimes] = useState<Partial<Pick<MovieDraft, "from" | "to">>>({});
+  const shown = state.timeIndex.value;
+  const range = {
+    from: Math.min(chosenTimes.from ?? (shown < last ? shown : 0), last),
+    to: Math.min(chosenTimes.to ?? last, last),
+  };
+  const [form, setForm] = useState<Omit<MovieDraft, "widthPx" | "heightPx" | "from" | "to">>({
     picturesPerSecond: 4,
     picturesPerView: 24,
     alongViews: false,
     format: "webm",
   });
-  const change = (part: Partial<MovieDraft>) => setDraft({ ...draft, ...part });
+  const change = (part: Partial<typeof form>) => setForm({ ...form, ...part });
+  const draft = { ...range, ...form };
   const options = times.map((time, at) => {
     const elapsed = formatElapsed(time.elapsedS);
     const { date, clock } = momentOf(time.validTime, elapsed, undefined);
@@ -162,14 +168,14 @@ function Movie({ page }: { page: Page }) {
             testId="movie-from"
             value={draft.from}
             options={options}
-            onChange={(from) => change({ from })}
+            onChange={(from) => setTimes({ ...chosenTimes, from })}
           />
           <Choice
             label="To"
             testId="movie-to"
             value={draft.to}
             options={options}
-            onChange={(to) => change({ to })}
+            onChange={(to) => setTimes({ ...chosenTimes, to })}
           />
         </>
       )}

@@ -4,7 +4,7 @@ import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
 import { type PictureSize, poseOfCamera } from "../../core/camera";
 import { type MovieDraft, movieScenes } from "../../core/movie_plan";
-import { type MovieWork, RememberedMovie } from "../../core/movie_work";
+import { type MovieWork, RememberedMovies } from "../../core/movie_work";
 import type { NamedView } from "../../core/named_views";
 import type { TextStore } from "../../core/own_keys";
 import { projectionOf } from "../../core/projection";
@@ -30,12 +30,18 @@ export function workInWords({ what, share }: Work): string {
   return `${what}: ${Math.round(100 * share)} %`;
 }
 
+function movieFile() {
+  return import("./movie_file").catch(() => {
+    throw new Error(couldNotBeLoaded("The part of the page that writes movies"));
+  });
+}
+
 export class Keeper {
   readonly #calls: RenderCalls;
   readonly #state: PageState;
   readonly #notes: Notes;
   readonly #views: () => readonly NamedView[];
-  readonly #remembered: RememberedMovie;
+  readonly #remembered: RememberedMovies;
   #working: AbortController | undefined;
   // The file that is being made is not lost with the page.
   #outlivesPage = false;
@@ -54,7 +60,7 @@ export class Keeper {
     this.#state = state;
     this.#notes = notes;
     this.#views = views;
-    this.#remembered = new RememberedMovie(tabStore);
+    this.#remembered = new RememberedMovies(tabStore);
   }
 
   listen(window: Window, options: { readonly signal: AbortSignal }): void {
@@ -119,6 +125,8 @@ export class Keeper {
   saveMovie(draft: MovieDraft): Promise<void> {
     return this.#make("Movie", async (abort, progress) => {
       const scenes = movieScenes(this.sceneShown(), draft, this.#views());
+      // Before the server draws pictures that this browser cannot make a movie of.
+      await (await movieFile()).assertWritable(draft);
       const stormId = this.#state.stormId.peek();
       const jobId = await this.#calls.beginJob(scenes, `movie of ${stormId}`, abort);
       if (jobId === undefined) {
@@ -133,8 +141,8 @@ export class Keeper {
 
   // Goes on with the movie that a reload interrupted, once its storm is shown.
   resumeMovie(stormId: string): void {
-    const work = this.#remembered.work;
-    if (work?.stormId !== stormId || this.#working !== undefined) return;
+    const work = this.#remembered.of(stormId);
+    if (work === undefined || this.#working !== undefined) return;
     void this.#make("Movie", (abort, progress) => {
       this.#outlivesPage = true;
       return this.#writeMovieOfJob(work, abort, progress);
@@ -142,7 +150,7 @@ export class Keeper {
   }
 
   async #writeMovieOfJob(
-    { jobId, pictures, draft }: MovieWork,
+    { jobId, pictures, draft, stormId }: MovieWork,
     abort: AbortSignal,
     progress: (share: number) => void,
   ): Promise<void> {
@@ -151,7 +159,7 @@ export class Keeper {
       await this.#writeMovie(draft, drawn, pictures, progress);
     } finally {
       // Done or given up: nobody else fetches them.
-      this.#remembered.forget();
+      this.#remembered.forget(stormId);
       await this.#calls.forgetJob(jobId);
     }
   }
@@ -162,10 +170,7 @@ export class Keeper {
     count: number,
     progress: (share: number) => void,
   ): Promise<void> {
-    const { startMovie } = await import("./movie_file").catch(() => {
-      throw new Error(couldNotBeLoaded("The part of the page that writes movies"));
-    });
-    const movie = await startMovie(draft);
+    const movie = await (await movieFile()).startMovie(draft);
     try {
       let done = 0;
       for await (const picture of pictures) {

@@ -22,10 +22,17 @@ const CODECS: Readonly<Record<MovieDraft["format"], readonly VideoCodec[]>> = {
   mp4: ["avc", "vp9"],
 };
 
-// Throws an Error for people if this browser encodes no video.
+// Encoders want even sides.
+const sidesOf = ({ widthPx, heightPx }: MovieDraft) => [widthPx & ~1, heightPx & ~1] as const;
+
+// Throws an Error for people if this browser encodes no such video.
+export async function assertWritable(draft: MovieDraft): Promise<void> {
+  await encodable(draft.format, ...sidesOf(draft));
+}
+
+// Throws as assertWritable does.
 export async function startMovie(draft: MovieDraft): Promise<MovieFile> {
-  // Encoders want even sides.
-  const [width, height] = [draft.widthPx & ~1, draft.heightPx & ~1];
+  const [width, height] = sidesOf(draft);
   const codec = await encodable(draft.format, width, height);
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext("2d", { alpha: false });
