@@ -125,11 +125,18 @@ export async function openTool(page, name) {
 }
 
 const PANEL_BUTTONS = { help: "rail-help", drawer: "rail-settings" };
+// In a narrow window they are under others: the panel, and the button in it.
+const UNDER_OTHERS = {
+  compare: ["storms", "storms-compare"],
+  help: ["storms", "storms-help"],
+  people: ["share", "share-people"],
+};
 
-// Opens a panel of the top bar. False where this window has no button for it.
+// Opens a panel of the top bar.
 export async function openPanel(page, name) {
   const button = page.getByTestId(PANEL_BUTTONS[name] ?? name);
-  if (!(await button.isVisible())) return false;
-  await button.click();
-  return true;
+  if (await button.isVisible()) return button.click();
+  const [panel, inIt] = UNDER_OTHERS[name];
+  await page.getByTestId(panel).click();
+  await page.getByTestId(inIt).click();
 }

@@ -60,7 +60,7 @@ try {
     }
     await openTool(page, undefined);
     for (const name of PANELS.filter(wanted)) {
-      if (!(await openPanel(page, name))) continue;
+      await openPanel(page, name);
       await page.waitForTimeout(300);
       await shoot(name);
       await page.keyboard.press("Escape");
