@@ -24,7 +24,6 @@ import {
 import { boxMean, difference, grabCanvas, greyShare } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
-// Wide enough for the run in the bar.
 const VIEWPORT = { width: 1280, height: 620 };
 const RUNS = [
   { start: 0, times: [0, 6, 7, 8], radiusM: 1800 },
@@ -250,6 +249,18 @@ async function withPlace(look, prepare) {
   }
 }
 
+// Its words are on the screen, none cut or under what follows.
+async function assertIsWhole(opened, name) {
+  const words = opened.getByTestId(name);
+  await words.waitFor();
+  const { cut, right } = await words.evaluate((element) => ({
+    cut: element.scrollWidth > element.clientWidth + 1 && getComputedStyle(element).display !== "inline",
+    right: element.getBoundingClientRect().right,
+  }));
+  const next = await opened.locator(".top-buttons").boundingBox();
+  assert.ok(!cut && right <= next.x, `${name} is cut, or ends at ${right} of ${next.x} pixels`);
+}
+
 test("a run with a place: local time, borders on the map, latitude and longitude under the probe", async () => {
   await withPlace(async (opened) => {
     await openTool(opened, "map");
@@ -267,6 +278,13 @@ test("a run with a place: local time, borders on the map, latitude and longitude
     await screenshot("questions-place", opened);
     assert.match(await opened.getByTestId("top-time").innerText(), /08:00Z/);
     assert.match(await opened.getByTestId("local-time").innerText(), /10:00/);
+    await openTool(opened, undefined);
+    for (const width of [1240, 900]) {
+      await opened.setViewportSize({ width, height: VIEWPORT.height });
+      for (const name of ["run", "top-time", "local-time"]) await assertIsWhole(opened, name);
+      await screenshot(`questions-place-${width}`, opened);
+    }
+    await opened.setViewportSize(VIEWPORT);
     await openTool(opened, "probe");
     await opened.getByTestId("probe-middle").click();
     const place = opened.getByTestId("probe-place");
