@@ -2,9 +2,14 @@
 // with slices, pixels, fields and cells. The camera moves every frame, or the sun if the row says
 // "light".
 #include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "accuracy/named_settings.h"
+#include "accuracy/presets.h"
 #include "glm/geometric.hpp"
 #include "tests/bench/storm_bench.h"
 #include "tests/support/techniques.h"
@@ -45,33 +50,53 @@ Fields InHaze(const Fields& fields) {
   return hazy;
 }
 
+// Values of the cells of `coarse` for those of `fine`, which has `factor` times as many along each
+// axis.
+template <typename Value>
+std::vector<Value> Repeated(const volume::RegularGrid& coarse, const volume::RegularGrid& fine,
+                            int factor, const std::vector<Value>& values) {
+  std::vector<Value> repeated(fine.CellCount());
+  std::size_t i = 0;
+  for (int z = 0; z < fine.cells.z; ++z) {
+    for (int y = 0; y < fine.cells.y; ++y) {
+      const Value* row = values.data() + coarse.Offset(0, y / factor, z / factor);
+      for (int x = 0; x < fine.cells.x; ++x) repeated[i++] = row[x / factor];
+    }
+  }
+  return repeated;
+}
+
 // Divides every cell into `factor` cells along each axis.
 Fields Refined(const Fields& fields, int factor) {
-  auto fine = std::make_shared<volume::HydrometeorFields>(*fields);
+  auto fine = std::make_shared<volume::HydrometeorFields>();
+  fine->grid = fields->grid;
   fine->grid.cells *= factor;
   fine->grid.spacing_m /= static_cast<double>(factor);
-  fine->condensate = {fine->condensate.low * factor, fine->condensate.high * factor};
-  fine->terrain_height_m.clear();
-  for (volume::HydrometeorField& field : fine->fields) {
+  fine->condensate = {fields->condensate.low * factor, fields->condensate.high * factor};
+  const auto repeated = [&](const auto& values) {
+    return Repeated(fields->grid, fine->grid, factor, values);
+  };
+  for (const volume::HydrometeorField& field : fields->fields) {
+    volume::HydrometeorField& copy = fine->fields.emplace_back();
+    copy.hydrometeor = field.hydrometeor;
+    copy.variable = field.variable;
+    copy.quantity = field.quantity;
     if (field.concentration_kg_per_m3.empty()) continue;
-    const std::vector<float> coarse = std::move(field.concentration_kg_per_m3);
-    field.concentration_kg_per_m3.resize(fine->grid.CellCount());
-    std::size_t i = 0;
-    for (int z = 0; z < fine->grid.cells.z; ++z) {
-      for (int y = 0; y < fine->grid.cells.y; ++y) {
-        const float* row = coarse.data() + fields->grid.Offset(0, y / factor, z / factor);
-        for (int x = 0; x < fine->grid.cells.x; ++x) {
-          field.concentration_kg_per_m3[i++] = row[x / factor];
-        }
-      }
-    }
+    copy.concentration_kg_per_m3 = repeated(field.concentration_kg_per_m3);
+    if (field.sizes.Empty()) continue;
+    std::vector<float> per_radius(fields->grid.CellCount(), 0.0F);
+    volume::AddExtinction(field, {1.0F, true}, 0, per_radius.size(), per_radius.data());
+    copy.sizes = volume::SizesOf(field.sizes, copy.concentration_kg_per_m3, repeated(per_radius));
+  }
+  fine->motion = fields->motion;
+  for (std::vector<std::uint8_t>* values : {&fine->motion.turbulence, &fine->motion.ascent}) {
+    if (!values->empty()) *values = repeated(*values);
   }
   return fine;
 }
 
-std::string Name(const std::string& part, const accuracy::PlainTechnique& plain,
-                 const std::string& what) {
-  return part + "/" + std::string(plain.name) + "/" + what;
+std::string Name(const std::string& part, std::string_view technique, const std::string& what) {
+  return part + "/" + std::string(technique) + "/" + what;
 }
 
 // The camera moves; and, where light is kept apart from the view, the sun.
@@ -79,6 +104,34 @@ void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fiel
   Register(name, scene, fields, Moving::kCamera);
   if (test_support::PlainTechniqueOf(scene.rendering.technique) != test_support::kHalfAngle) {
     Register(name + "/light", scene, fields, Moving::kSun);
+  }
+}
+
+void RegisterGrowthOf(std::string_view technique, const scene::Scene& paper,
+                      const std::vector<Fields>& grids) {
+  const Fields& fields = Sample::Get().fields;
+  for (const int slices : {32, 64, 128, 256, 512}) {
+    scene::Scene scene = paper;
+    scene::SetSlices(&scene.rendering.technique, slices);
+    Register(Name("growth", technique, "slices_" + std::to_string(slices)), scene, fields,
+             Moving::kCamera);
+  }
+  for (const int side_px : {150, 300, 600, 1200}) {
+    scene::Scene scene = paper;
+    scene.output = {side_px, side_px, 88};
+    Register(Name("growth", technique, "pixels_" + std::to_string(side_px * side_px)), scene,
+             fields, Moving::kCamera);
+  }
+  for (const std::size_t count : {1U, 2U, 3U, 4U, 5U}) {
+    scene::Scene scene = paper;
+    PartFields(&scene);
+    ShowOnly(count, &scene);
+    Register(Name("growth", technique, "fields_" + std::to_string(count)), scene, fields,
+             Moving::kCamera);
+  }
+  for (const Fields& grid : grids) {
+    RegisterBoth(Name("growth", technique, "cells_" + std::to_string(grid->grid.CellCount())),
+                 paper, grid);
   }
 }
 
@@ -90,49 +143,37 @@ void RegisterSavings() {
   for (const auto& plain : accuracy::kCellTechniques) {
     scene::Scene scene = PaperScene();
     test_support::SetTechnique(&scene.rendering.technique, plain);
-    RegisterBoth(Name("saving", plain, "five_fields_as_they_merge"), scene, fields);
-    RegisterBoth(Name("saving", plain, "empty_space_drawn"), scene, hazy);
+    RegisterBoth(Name("saving", plain.name, "five_fields_as_they_merge"), scene, fields);
+    RegisterBoth(Name("saving", plain.name, "empty_space_drawn"), scene, hazy);
     scene::Scene detailed = scene;
     test_support::SetMode(&detailed.rendering.technique, test_support::kWithDetail);
-    RegisterBoth(Name("saving", plain, "detail_on"), detailed, fields);
+    RegisterBoth(Name("saving", plain.name, "detail_on"), detailed, fields);
     scene::Scene parted = scene;
     PartFields(&parted);
-    RegisterBoth(Name("saving", plain, "five_fields_apart"), parted, fields);
+    RegisterBoth(Name("saving", plain.name, "five_fields_apart"), parted, fields);
     ShowOnly(1, &parted);
-    RegisterBoth(Name("saving", plain, "one_field"), parted, fields);
+    RegisterBoth(Name("saving", plain.name, "one_field"), parted, fields);
   }
 }
 
 void RegisterGrowth() {
   const Fields& fields = Sample::Get().fields;
+  const std::vector<Fields> grids = {
+      std::make_shared<volume::HydrometeorFields>(volume::Coarsened(*fields, glm::ivec3(2))),
+      fields, Refined(fields, 2)};
+  scene::Scene paper = PaperScene();
   for (const auto& plain : accuracy::kCellTechniques) {
-    scene::Scene paper = PaperScene();
     test_support::SetTechnique(&paper.rendering.technique, plain);
-    for (const int slices : {32, 64, 128, 256, 512}) {
-      scene::Scene scene = paper;
-      scene::SetSlices(&scene.rendering.technique, slices);
-      Register(Name("growth", plain, "slices_" + std::to_string(slices)), scene, fields,
-               Moving::kCamera);
-    }
-    for (const int side_px : {150, 300, 600, 1200}) {
-      scene::Scene scene = paper;
-      scene.output = {side_px, side_px, 88};
-      Register(Name("growth", plain, "pixels_" + std::to_string(side_px * side_px)), scene, fields,
-               Moving::kCamera);
-    }
-    for (const std::size_t count : {1U, 2U, 3U, 4U, 5U}) {
-      scene::Scene scene = paper;
-      PartFields(&scene);
-      ShowOnly(count, &scene);
-      Register(Name("growth", plain, "fields_" + std::to_string(count)), scene, fields,
-               Moving::kCamera);
-    }
-    const Fields coarse =
-        std::make_shared<volume::HydrometeorFields>(volume::Coarsened(*fields, glm::ivec3(2)));
-    for (const Fields& grid : {coarse, fields, Refined(fields, 2)}) {
-      RegisterBoth(Name("growth", plain, "cells_" + std::to_string(grid->grid.CellCount())), paper,
-                   grid);
-    }
+    RegisterGrowthOf(plain.name, paper, grids);
+  }
+  paper.rendering.technique = accuracy::TechniqueOf(accuracy::kDefaultPreset);
+  RegisterGrowthOf("default", paper, grids);
+  for (const Moving moving : {Moving::kCamera, Moving::kSun}) {
+    const auto finest = [] { return Refined(Sample::Get().fields, 3); };
+    const std::size_t cells = 27 * fields->grid.CellCount();
+    RegisterMade(Name("growth", "default", "cells_" + std::to_string(cells)) +
+                     (moving == Moving::kSun ? "/light" : ""),
+                 paper, finest, moving);
   }
 }
 

@@ -77,6 +77,7 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
   frame::ToneMapper tone_mapper;
   std::map<std::string, double> total_ms;
   int balls = 0;
+  std::size_t device_bytes = 0;
   const auto draw = [&] {
     Move(moving, &scene);
     const auto linear = renderer.Draw(scene, fields, {});
@@ -85,6 +86,7 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
         frame::EncodeJpeg(scene.output.width_px, scene.output.height_px, mapped->rgb, 88);
     benchmark::DoNotOptimize(jpeg);
     balls = linear->content.balls;
+    device_bytes = linear->device_bytes;
     for (const scene::StageTime& stage : linear->stages) {
       total_ms[std::string(scene::NameOf(stage.stage)) + "_ms"] += stage.milliseconds;
     }
@@ -98,15 +100,23 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
     state.counters[name] = milliseconds / static_cast<double>(state.iterations());
   }
   if (balls > 0) state.counters["balls"] = balls;
+  state.counters["fields_MB"] = static_cast<double>(fields->Bytes()) / kBytesPerMB;
+  state.counters["device_MB"] = static_cast<double>(device_bytes) / kBytesPerMB;
   state.counters["fps"] =
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
               Moving moving, double paper_fps) {
+  RegisterMade(
+      name, scene, [fields] { return fields; }, moving, paper_fps);
+}
+
+void RegisterMade(const std::string& name, const scene::Scene& scene,
+                  const std::function<Fields()>& make, Moving moving, double paper_fps) {
   benchmark::RegisterBenchmark(name.c_str(),
                                [=](benchmark::State& state) {
-                                 DrawFrames(state, scene, fields, moving);
+                                 DrawFrames(state, scene, make(), moving);
                                  if (paper_fps > 0.0) state.counters["paper_fps"] = paper_fps;
                                })
       ->Unit(benchmark::kMillisecond)

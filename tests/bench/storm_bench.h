@@ -1,6 +1,7 @@
 // The sample storm and its papers' scene, and a benchmark that draws frame after frame of it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -24,16 +25,22 @@ struct Sample {
 // The parameter that changes with every frame.
 enum class Moving { kCamera, kSun, kSunClimbs, kField, kExposure };
 
+inline constexpr double kBytesPerMB = 1e6;
+
 // The storm as a whole at the papers' size, 300 x 300 pixels, 128 slices.
 scene::Scene PaperScene();
 
-// Draws whole frames, JPEG included, after two that are not counted.
+// Draws whole frames, JPEG included, after two that are not counted; with the memory of fields and
+// textures.
 void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& fields, Moving moving);
 
 // Registers whole frames, JPEG included; the columns `*_ms` split them by stage. `paper_fps` is the
 // papers' own on a GeForce FX 5800 (Riley et al. 2003, AMS, Table IV), 0 for none.
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
               Moving moving, double paper_fps = 0.0);
+// The same of fields that are made when the row is measured.
+void RegisterMade(const std::string& name, const scene::Scene& scene,
+                  const std::function<Fields()>& make, Moving moving, double paper_fps = 0.0);
 
 // The modes of the papers' table by both paths, and the stages that a change reruns.
 void RegisterModes();

@@ -11,8 +11,6 @@
 namespace thunderhead::bench {
 namespace {
 
-constexpr double kBytesPerMB = 1e6;
-
 // Made when the first row needs it, and dropped after the last.
 const Fields& Wide() {
   static const Fields fields = support::WideDomain(*Sample::Get().fields, 5, 6, 1);
