@@ -79,7 +79,9 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
 
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<volume::StormStore> store, const std::string& device) {
-  auto server = service::Server::Start({}, std::move(store), session::GlFrameSources(device));
+  service::ServerOptions options;
+  options.render_loop.lanes_yield = false;
+  auto server = service::Server::Start(options, std::move(store), session::GlFrameSources(device));
   // A device that is not there does not come by waiting.
   if (!server.ok() && !absl::IsInvalidArgument(server.status())) {
     return absl::FailedPreconditionError(server.status().message());

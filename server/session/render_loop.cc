@@ -41,11 +41,11 @@ class Lanes {
     Lane& lane;
   };
 
-  Lanes(const FrameSourceFactory& make_source, const std::function<void()>& wake)
-      : sessions(make_source, kSessionNiceness, wake),
-        tracing(make_source, base::kLowestPriority, wake),
-        quick_images(make_source, kImageNiceness, wake),
-        images(make_source, kImageNiceness, wake),
+  Lanes(const FrameSourceFactory& make_source, bool yield, const std::function<void()>& wake)
+      : sessions(make_source, yield ? kSessionNiceness : 0, wake),
+        tracing(make_source, yield ? base::kLowestPriority : 0, wake),
+        quick_images(make_source, yield ? kImageNiceness : 0, wake),
+        images(make_source, yield ? kImageNiceness : 0, wake),
         all_{{"/tracing", TurnClass::kRefining, tracing},
              {"/quick images", TurnClass::kBatch, quick_images},
              {"/images", TurnClass::kBatch, images}} {}
@@ -203,7 +203,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
                           const FrameSourceFactory& make_source) {
   MeasuredSource measured(std::move(source), options_.offer_tables());
   const auto wake = [this] { wake_.Notify(); };
-  auto lanes = std::make_unique<Lanes>(make_source, wake);
+  auto lanes = std::make_unique<Lanes>(make_source, options_.lanes_yield, wake);
   LightTracer light_tracer(lanes->tracing);
   SessionLane session_lane(lanes->sessions, [this](std::uint64_t bytes) {
     return std::ranges::all_of(options_.device_memory,

@@ -41,6 +41,9 @@ struct RenderLoopOptions {
   std::size_t max_waiting_images_each = 600;  // of one owner
   ImageLimits image_limits;
   int encoder_threads = 1;
+  // Lanes, and the threads that they start, run at a lower priority than frames that move. False
+  // where no session is served: other programs of the machine would come before them.
+  bool lanes_yield = true;
   SerializeFrame serialize_frame = [](const EncodedFrame&) { return ""; };
   // Sessions that show the reference; each takes some hundred bytes a pixel and the medium.
   std::size_t max_traced_sessions = 8;

@@ -1,5 +1,7 @@
 #include "tests/service/fake_engine.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -126,7 +128,9 @@ class FakeFrameSource final : public session::FrameSource {
     do {
       if (turn_ != nullptr) THUNDERHEAD_RETURN_IF_ERROR(turn_->Take());
       if (left_ms == ms) {
-        machine_->Add({scene, quality, std::chrono::steady_clock::now()});
+        // Of the calling thread.
+        const int niceness = ::getpriority(PRIO_PROCESS, 0);
+        machine_->Add({scene, quality, std::chrono::steady_clock::now(), niceness});
         machine_->drawing.Pass();
       }
       const double piece_ms = turn_ != nullptr ? std::min(left_ms, kFakePiece_ms) : left_ms;

@@ -91,6 +91,7 @@ struct FakeMachine {
     scene::Scene scene;
     session::FrameQuality quality;
     std::chrono::steady_clock::time_point at;
+    int niceness = 0;  // of the thread that drew it
   };
 
   Gate drawing;

@@ -396,6 +396,17 @@ TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
   EXPECT_EQ(Picture(OfMetaballs(200)).get().status().message(), "it cannot be fitted");
 }
 
+TEST_F(RenderLoopTest, PicturesYieldToSessionsButNotToOtherProgramsWhereThereAreNone) {
+  for (const bool yield : {true, false}) {
+    Start({.lanes_yield = yield});
+    ASSERT_TRUE(Picture(1.0).get().ok());
+    const auto log = machine_->Log();
+    ASSERT_FALSE(log.empty());
+    EXPECT_EQ(log.back().niceness > 0, yield);
+    loop_.reset();
+  }
+}
+
 // One that waits for light that it may not have traced yet lets the next go on.
 TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
   Start();
