@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/error_details.h"
 #include "base/stopwatch.h"
 #include "gtest/gtest.h"
 #include "session/gl_frame_source.h"
@@ -107,6 +108,9 @@ TEST_F(LaneTest, MoreTimeThanItsLimitEndsTheWork) {
       {nullptr, 300.0});
   Finish();
   EXPECT_TRUE(absl::IsResourceExhausted(drawn_)) << drawn_;
+  const base::ErrorDetails details = base::DetailsOf(drawn_);
+  EXPECT_EQ(details.reason, "PICTURE_TOO_COSTLY");
+  EXPECT_TRUE(details.permanent) << "the same picture would take as long again";
 }
 
 }  // namespace
