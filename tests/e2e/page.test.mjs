@@ -321,6 +321,11 @@ test("a field switched off goes, and with the last one the storm", async () => {
   const switches = page.locator("[data-testid$=-visible]");
   const names = await switches.evaluateAll((boxes) => boxes.map((box) => box.dataset.testid));
   assert.ok(names.includes("field-snow-visible"), `the fields are ${names}`);
+  const sizes = page.getByTestId("field-snow-size");
+  assert.match(await sizes.innerText(), /^Radius by WSM6, mean [\d.]+ µm$/);
+  await changing(() => page.getByTestId("particle-sizes").selectOption({ label: "The papers' constants" }));
+  assert.match(await sizes.innerText(), /^Radius by the papers: [\d.]+ µm$/);
+  await changing(() => page.getByTestId("particle-sizes").selectOption({ label: "As the model has them" }));
 
   await changing(() => page.getByTestId("field-snow-visible").uncheck());
   const withoutSnow = await grabCanvas(page);

@@ -92,6 +92,11 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
           />
         )}
       </div>
+      {field.units !== EXTINCTION_UNITS && (
+        <p class="quiet" data-testid={`field-${id}-size`}>
+          {sizeInWords(field, shown)}
+        </p>
+      )}
       <Slider
         label="Amount"
         limits={LIMITS.fieldScale}
@@ -129,6 +134,32 @@ function amountOf(field: FieldDescription): string {
 
 function micrometres(radiusM: number): string {
   return `${formatNumber(radiusM * 1e6)} µm`;
+}
+
+// Where the particles' radius comes from that the picture is drawn with.
+function sizeInWords(field: FieldDescription, shown: ReturnType<typeof effectiveField>): string {
+  switch (shown.sizes) {
+    case ParticleSizes.PAPERS:
+      return `Radius by the papers: ${micrometres(field.papersRadiusM)}`;
+    case ParticleSizes.GIVEN:
+      return `One radius: ${micrometres(shown.radiusM ?? field.papersRadiusM)}`;
+    default: {
+      const mean = field.meanRadiusM > 0 ? `, mean ${micrometres(field.meanRadiusM)}` : "";
+      return `Radius ${originInWords(field)}${mean}`;
+    }
+  }
+}
+
+function originInWords(field: FieldDescription): string {
+  switch (field.sizeOrigin) {
+    case SizeOrigin.EFFECTIVE_RADIUS:
+    case SizeOrigin.NUMBER:
+      return `from ${field.sizeVariable}`;
+    case SizeOrigin.SCHEME:
+      return `by ${field.sizeScheme}`;
+    default:
+      return "as observed";
+  }
 }
 
 // The source of the model's sizes, with the effective radius of all particles.
@@ -266,7 +297,7 @@ function DetailSettings({ state, field }: { state: PageState; field: FieldDescri
   return (
     <>
       <Slider
-        label="Share"
+        label="Strength"
         limits={LIMITS.detailShare}
         value={detail?.share}
         initial={defaults?.detail?.share}
@@ -274,7 +305,7 @@ function DetailSettings({ state, field }: { state: PageState; field: FieldDescri
         onChange={(share) => edit({ share })}
       />
       <Slider
-        label="Wavelength"
+        label="Largest billows"
         limits={LIMITS.detailWavelength}
         value={detail?.wavelengthM}
         initial={defaults?.detail?.wavelengthM}
@@ -282,14 +313,14 @@ function DetailSettings({ state, field }: { state: PageState; field: FieldDescri
         onChange={(wavelengthM) => edit({ wavelengthM })}
       />
       <Slider
-        label="Octaves"
+        label="Levels of finer ones"
         limits={LIMITS.detailOctaves}
         value={detail?.octaves}
         testId={`field-${id}-detail-octaves`}
         onChange={(octaves) => edit({ octaves })}
       />
       <Slider
-        label="Seed"
+        label="Pattern"
         limits={LIMITS.detailSeed}
         value={detail?.seed}
         testId={`field-${id}-detail-seed`}
