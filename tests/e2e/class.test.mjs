@@ -401,6 +401,14 @@ test("the teacher's pointer is seen where it points, and goes with the tool", as
   await screenshot("26-pointer", student);
   await teacher.keyboard.press("Escape");
   await until("no pointer", async () => (await student.getByTestId("pointer").count()) === 0);
+  // By keys alone.
+  await teacher.getByTestId("tool-pointer").focus();
+  await teacher.keyboard.press("Enter");
+  await teacher.getByTestId("mark-middle").focus();
+  await teacher.keyboard.press("Enter");
+  await student.getByTestId("pointer").waitFor();
+  await teacher.keyboard.press("Escape");
+  await until("no pointer", async () => (await student.getByTestId("pointer").count()) === 0);
   await openTool(teacher, "look");
 });
 

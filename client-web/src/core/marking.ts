@@ -4,7 +4,7 @@ import { arrowStrokes, joined, letterStrokes, ringStroke } from "./lettering";
 import { type Later, Newest } from "./newest";
 import { type Box, picturePointAt } from "./picture_box";
 import { type Projection, pointOnRay, rayAt, type WorldRay } from "./projection";
-import type { PendingMark, SessionState } from "./session_state";
+import type { PendingMark, SessionState, Tool } from "./session_state";
 import { type StrokePoint, simplifiedStroke, strokeLengthPx } from "./stroke";
 
 // A tool in the hand: places are in CSS pixels of the window.
@@ -129,12 +129,13 @@ export class Marking {
     this.#addMark(joined(letterStrokes(words, { left, top: top - LETTER_PX / 2 }, LETTER_PX)));
   }
 
-  // For who has no pointer to draw with: a ring around the middle of the picture, an arrow to it, the words beside it.
-  markMiddle(tool: "pen" | "arrow" | "text"): void {
+  // For who has no mouse: a ring around the middle of the picture, an arrow to it, the words beside it, the pointer on it.
+  markMiddle(tool: Exclude<Tool, "camera">): void {
     const box = this.#steps.picture()?.box;
     if (box === undefined) return;
     const middle = { left: box.left + box.width / 2, top: box.top + box.height / 2 };
     if (tool === "text") this.write(middle);
+    else if (tool === "pointer") this.#pointAt(middle);
     else if (tool === "pen") this.#addMark(ringStroke(middle, RING_PX));
     else {
       const tail = { left: middle.left - ARROW_PX, top: middle.top - ARROW_PX };

@@ -13,10 +13,11 @@ const IN_HAND: readonly (readonly [InHand, string, string])[] = [
   ["pointer", "Pointer", "Everybody sees where you point."],
 ];
 
-const IN_THE_MIDDLE: Readonly<Record<Exclude<InHand, "pointer">, string>> = {
+const IN_THE_MIDDLE: Readonly<Record<InHand, string>> = {
   pen: "Ring around the middle",
   arrow: "Arrow to the middle",
   text: "Write it in the middle",
+  pointer: "Point at the middle",
 };
 
 export function MarksTool({ page }: { page: Page }) {
@@ -69,7 +70,7 @@ export function MarksTool({ page }: { page: Page }) {
         </p>
       )}
       <div class="buttons">
-        {inHand !== "camera" && inHand !== "pointer" && (
+        {inHand !== "camera" && (
           <button
             type="button"
             data-testid="mark-middle"
