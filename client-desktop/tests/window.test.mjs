@@ -99,9 +99,11 @@ test("every tool and panel opens by its key and closes by Escape", async () => {
 
 test("a number that is typed and left by Tab counts", async () => {
   display.key("m");
-  await sleep(500);
+  // A busy machine draws the panel, and the field in the hand, later.
+  await sleep(2000);
   // The field beside "Seen from".
   await display.click(366, 214);
+  await sleep(1000);
   display.key("ctrl+a");
   display.xdotool("type", "--delay", 80, "123");
   display.screenshot("typing");
