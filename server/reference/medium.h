@@ -108,7 +108,7 @@ class Medium {
     std::array<double, 8> shares;
     int count = 0;
   };
-  // What two neighbouring cells along an axis add to an offset.
+  // Parts of the offset of a value in its array: those of two neighbouring cells along an axis.
   using OffsetPair = std::array<std::size_t, 2>;
   // The two cells along an axis.
   struct Between {

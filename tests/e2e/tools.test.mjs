@@ -279,13 +279,19 @@ function assertSameColours(picture, view, what) {
 
 const ffmpeg = (...args) => execFileSync("ffmpeg", ["-v", "error", "-y", ...args]);
 
+// The picture of a movie with that number.
+function pictureOf(file, number) {
+  const picture = join(folder, `picture-${number}.png`);
+  ffmpeg("-i", file, "-vf", `select=eq(n\\,${number})`, "-frames:v", "1", picture);
+  return PNG.sync.read(readFileSync(picture));
+}
+
 // Compares the last picture of a movie with the view scaled down to its size.
 function assertLastPictureIs(view, file) {
-  const [movie, canvas] = ["movie.png", "canvas.png"].map((name) => join(folder, name));
-  ffmpeg("-i", file, "-vf", "select=eq(n\\,3)", "-frames:v", "1", movie);
+  const canvas = join(folder, "canvas.png");
   writeFileSync(canvas, PNG.sync.write(view));
   ffmpeg("-i", canvas, "-vf", "scale=500:310", `${canvas}.small.png`);
-  assertSameColours(PNG.sync.read(readFileSync(movie)), PNG.sync.read(readFileSync(`${canvas}.small.png`)), "the movie's last picture");
+  assertSameColours(pictureOf(file, 3), PNG.sync.read(readFileSync(`${canvas}.small.png`)), "the movie's last picture");
 }
 
 test("a picture is saved, and dropped on a fresh page it brings the same view", async () => {
@@ -353,18 +359,22 @@ async function fillMovieForm(format) {
   await page.getByTestId("movie-format").selectOption(format);
 }
 
+// Size and number of pictures of a movie.
+function streamOf(file) {
+  const shown = ["-show_entries", "stream=width,height,nb_read_frames", "-of", "json"];
+  const probe = execFileSync("ffprobe", ["-v", "error", "-count_frames", "-select_streams", "v:0", ...shown, file], { encoding: "utf8" });
+  const [{ width, height, nb_read_frames: pictures }] = JSON.parse(probe).streams;
+  return { width, height, pictures: Number(pictures) };
+}
+
 async function assertIsTheMovie(download) {
   const file = await download.path();
-  const probe = execFileSync(
-    "ffprobe",
-    ["-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries", "stream=width,height,nb_read_frames,codec_name", "-of", "json", file],
-    { encoding: "utf8" },
-  );
-  const [stream] = JSON.parse(probe).streams;
-  assert.deepEqual([stream.width, stream.height, stream.nb_read_frames], [500, 310, "4"], probe);
+  assert.deepEqual(streamOf(file), { width: 500, height: 310, pictures: 4 });
   await restedAndFits(page);
   assertLastPictureIs(await grabCanvas(page), file);
 }
+
+const rememberedMovie = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
 
 for (const format of ["webm", "mp4"])
   test(`a movie of all times as ${format}, by a job of the server`, { timeout: 240_000 }, async () => {
@@ -382,14 +392,13 @@ test("a reload while a movie is made goes on with it, and the next does not make
   page.on("download", (download) => downloads.push(download));
   await page.getByTestId("save-movie").click();
   await page.keyboard.press("Escape");
-  const remembered = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
-  await until("a movie that outlives the page", remembered);
+  await until("a movie that outlives the page", rememberedMovie);
   assert.equal(downloads.length, 0);
   await page.reload();
   await page.getByTestId("at-work").waitFor();
   await until("the movie", async () => downloads.length > 0, 200_000);
   await assertIsTheMovie(downloads[0]);
-  assert.equal(await remembered(), undefined);
+  assert.equal(await rememberedMovie(), undefined);
   await page.reload();
   await restedAndFits(page);
   assert.equal(downloads.length, 1);
@@ -397,20 +406,12 @@ test("a reload while a movie is made goes on with it, and the next does not make
   page.removeAllListeners("download");
 });
 
-// The picture of a movie with that number.
-function pictureOf(file, number) {
-  const picture = join(folder, `picture-${number}.png`);
-  ffmpeg("-i", file, "-vf", `select=eq(n\\,${number})`, "-frames:v", "1", picture);
-  return PNG.sync.read(readFileSync(picture));
-}
-
 async function makeMovie(pictures) {
   const coming = page.waitForEvent("download", { timeout: 200_000 });
   await page.getByTestId("save-movie").click();
   const file = await (await coming).path();
   await page.getByTestId("keep-work").waitFor({ state: "detached" });
-  const counting = ["-count_frames", "-select_streams", "v:0", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0"];
-  assert.equal(execFileSync("ffprobe", ["-v", "error", ...counting, file], { encoding: "utf8" }).trim(), String(pictures));
+  assert.equal(streamOf(file).pictures, pictures);
   return file;
 }
 
@@ -461,11 +462,10 @@ test("a movie that is cancelled is neither saved nor made again", { timeout: 240
   await openMovieForm();
   await page.getByTestId("movie-size").selectOption("3840x2160");
   await page.getByTestId("save-movie").click();
-  const remembered = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
-  await until("the job", remembered);
+  await until("the job", rememberedMovie);
   await page.getByTestId("keep-cancel").click();
   await page.getByTestId("keep-work").waitFor({ state: "detached" });
-  await until("the job to be given up", async () => (await remembered()) === undefined);
+  await until("the job to be given up", async () => (await rememberedMovie()) === undefined);
   assert.equal(await page.getByTestId("save-movie").isEnabled(), true);
   await page.getByTestId("movie-size").selectOption("window");
   await key("Escape");

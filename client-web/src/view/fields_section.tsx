@@ -61,13 +61,8 @@ function fitsAnew(state: PageState): boolean {
 
 function FieldRow({ state, field }: { state: PageState; field: FieldDescription }) {
   const { hydrometeor, defaults } = field;
-  // Subscribes the row to changes of the fields, not to those of the whole scene.
-  void state.fields.value;
-  const shown = effectiveField(state.scene.peek(), hydrometeor, defaults);
+  const { shown, id, edit } = controlsOf(state, field);
   const name = nameOfHydrometeor(hydrometeor);
-  const id = name.toLowerCase();
-  const edit = (change: Parameters<typeof withField>[2]) =>
-    state.edit((scene) => withField(scene, hydrometeor, change));
   const color = hexOfColor(shown.falseColor ?? { red: 1, green: 1, blue: 1 });
   return (
     <fieldset class={shown.visible ? "field" : "field off"} data-testid={`field-${id}`}>
@@ -144,40 +139,38 @@ function sizeInWords(field: FieldDescription, shown: ReturnType<typeof effective
     case ParticleSizes.GIVEN:
       return `One radius: ${micrometres(shown.radiusM ?? field.papersRadiusM)}`;
     default: {
-      const mean = field.meanRadiusM > 0 ? `, mean ${micrometres(field.meanRadiusM)}` : "";
-      return `Radius ${originInWords(field)}${mean}`;
+      const origin = `${PREPOSITIONS[field.sizeOrigin] ?? ""}${originOf(field)}`;
+      return `Radius ${origin}${meanRadius(field, ", mean ")}`;
     }
   }
 }
 
-function originInWords(field: FieldDescription): string {
+// The variable or scheme that the model's sizes come from.
+function originOf(field: FieldDescription): string {
   switch (field.sizeOrigin) {
     case SizeOrigin.EFFECTIVE_RADIUS:
     case SizeOrigin.NUMBER:
-      return `from ${field.sizeVariable}`;
+      return field.sizeVariable;
     case SizeOrigin.SCHEME:
-      return `by ${field.sizeScheme}`;
+      return field.sizeScheme;
     default:
       return "as observed";
   }
 }
 
-// The source of the model's sizes, with the effective radius of all particles.
-function originOf(field: FieldDescription): string {
-  const radius = field.meanRadiusM > 0 ? `, ${micrometres(field.meanRadiusM)}` : "";
-  switch (field.sizeOrigin) {
-    case SizeOrigin.EFFECTIVE_RADIUS:
-    case SizeOrigin.NUMBER:
-      return `${field.sizeVariable}${radius}`;
-    case SizeOrigin.SCHEME:
-      return `${field.sizeScheme}${radius}`;
-    default:
-      return `as observed${radius}`;
-  }
+const PREPOSITIONS: Partial<Record<SizeOrigin, string>> = {
+  [SizeOrigin.EFFECTIVE_RADIUS]: "from ",
+  [SizeOrigin.NUMBER]: "from ",
+  [SizeOrigin.SCHEME]: "by ",
+};
+
+// The effective radius of all particles after the words before it; nothing where there is none.
+function meanRadius(field: FieldDescription, before: string): string {
+  return field.meanRadiusM > 0 ? `${before}${micrometres(field.meanRadiusM)}` : "";
 }
 
 // A field's settings as the scene has them, the prefix of its test ids, and how to change them. Draws again
-// with every change of the fields.
+// with every change of the fields, not with those of the whole scene.
 function controlsOf(state: PageState, { hydrometeor, defaults }: FieldDescription) {
   void state.fields.value;
   void state.particleSizes.value;
@@ -201,7 +194,7 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
             testId={`field-${id}-sizes`}
             value={shown.sizes}
             options={[
-              [ParticleSizes.MODEL, `Model: ${originOf(field)}`],
+              [ParticleSizes.MODEL, `Model: ${originOf(field)}${meanRadius(field, ", ")}`],
               [ParticleSizes.PAPERS, `Papers: ${micrometres(field.papersRadiusM)}`],
               [ParticleSizes.GIVEN, "One radius"],
             ]}

@@ -120,26 +120,28 @@ function Picture({ page }: { page: Page }) {
   );
 }
 
+const MOVIE = {
+  picturesPerSecond: 4,
+  picturesPerView: 24,
+  alongViews: false,
+  format: "webm",
+} as const;
+
 function Movie({ page }: { page: Page }) {
   const { state } = page;
   const times = state.storm.value?.times ?? [];
   const last = times.length - 1;
   const chosen = useSize(page);
-  // The times until they are chosen: from the one shown to the newest, or all where that is shown.
-  const [chosenTimes, setTimes] = useState<Partial<Pick<MovieDraft, "from" | "to">>>({});
+  const [form, setForm] = useState<Partial<Omit<MovieDraft, "widthPx" | "heightPx">>>({});
+  const change = (part: typeof form) => setForm({ ...form, ...part });
+  // From the time shown to the newest, or all where that is shown, until they are chosen.
   const shown = state.timeIndex.value;
-  const range = {
-    from: Math.min(chosenTimes.from ?? (shown < last ? shown : 0), last),
-    to: Math.min(chosenTimes.to ?? last, last),
+  const draft = {
+    ...MOVIE,
+    ...form,
+    from: Math.min(form.from ?? (shown < last ? shown : 0), last),
+    to: Math.min(form.to ?? last, last),
   };
-  const [form, setForm] = useState<Omit<MovieDraft, "widthPx" | "heightPx" | "from" | "to">>({
-    picturesPerSecond: 4,
-    picturesPerView: 24,
-    alongViews: false,
-    format: "webm",
-  });
-  const change = (part: Partial<typeof form>) => setForm({ ...form, ...part });
-  const draft = { ...range, ...form };
   const options = times.map((time, at) => {
     const elapsed = formatElapsed(time.elapsedS);
     const { date, clock } = momentOf(time.validTime, elapsed, undefined);
@@ -168,14 +170,14 @@ function Movie({ page }: { page: Page }) {
             testId="movie-from"
             value={draft.from}
             options={options}
-            onChange={(from) => setTimes({ ...chosenTimes, from })}
+            onChange={(from) => change({ from })}
           />
           <Choice
             label="To"
             testId="movie-to"
             value={draft.to}
             options={options}
-            onChange={(to) => setTimes({ ...chosenTimes, to })}
+            onChange={(to) => change({ to })}
           />
         </>
       )}
