@@ -19,13 +19,6 @@ std::vector<float> BlockMeans(const RegularGrid& fine, const RegularGrid& coarse
   return means;
 }
 
-// Concentration over radius, to which extinction is proportional.
-std::vector<float> PerRadius(const HydrometeorField& field) {
-  std::vector<float> per_radius(field.concentration_kg_per_m3.size(), 0.0F);
-  AddExtinction(field, {1.0F, true}, 0, per_radius.size(), per_radius.data());
-  return per_radius;
-}
-
 }  // namespace
 
 glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int max_cells) {
@@ -55,8 +48,9 @@ HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& f
     mean.concentration_kg_per_m3 =
         BlockMeans(fields.grid, coarse.grid, factor, field.concentration_kg_per_m3);
     if (field.sizes.Empty()) continue;
-    mean.sizes = SizesOf(field.sizes, mean.concentration_kg_per_m3,
-                         BlockMeans(fields.grid, coarse.grid, factor, PerRadius(field)));
+    mean.sizes =
+        SizesOf(field.sizes, mean.concentration_kg_per_m3,
+                BlockMeans(fields.grid, coarse.grid, factor, ConcentrationPerRadius(field)));
   }
   coarse.motion = fields.motion;
   for (std::vector<std::uint8_t>* values : {&coarse.motion.turbulence, &coarse.motion.ascent}) {

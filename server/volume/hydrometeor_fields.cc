@@ -42,6 +42,12 @@ void AddExtinction(const HydrometeorField& field, const MassExtinction& mass_ext
   }
 }
 
+std::vector<float> ConcentrationPerRadius(const HydrometeorField& field) {
+  std::vector<float> per_radius(field.concentration_kg_per_m3.size(), 0.0F);
+  AddExtinction(field, {1.0F, true}, 0, per_radius.size(), per_radius.data());
+  return per_radius;
+}
+
 physics::ParticleOptics WithDrawnRadius(const HydrometeorField& field,
                                         physics::ParticleOptics optics, physics::SizeSource sizes) {
   const bool by_cell = sizes == physics::SizeSource::kModel && field.sizes.mean_radius_m > 0.0F;

@@ -63,6 +63,10 @@ MassExtinction MassExtinctionOf(const HydrometeorField& field,
 void AddExtinction(const HydrometeorField& field, const MassExtinction& mass_extinction,
                    std::size_t offset, std::size_t count, float* sums, std::size_t stride = 1);
 
+// Concentration over radius (kg/m4) of each cell, to which extinction is proportional. The field
+// has radii.
+std::vector<float> ConcentrationPerRadius(const HydrometeorField& field);
+
 // `optics` with the effective radius of all the field's particles together, by which their phase
 // function is chosen.
 physics::ParticleOptics WithDrawnRadius(const HydrometeorField& field,

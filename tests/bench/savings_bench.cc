@@ -84,9 +84,8 @@ Fields Refined(const Fields& fields, int factor) {
     if (field.concentration_kg_per_m3.empty()) continue;
     copy.concentration_kg_per_m3 = repeated(field.concentration_kg_per_m3);
     if (field.sizes.Empty()) continue;
-    std::vector<float> per_radius(fields->grid.CellCount(), 0.0F);
-    volume::AddExtinction(field, {1.0F, true}, 0, per_radius.size(), per_radius.data());
-    copy.sizes = volume::SizesOf(field.sizes, copy.concentration_kg_per_m3, repeated(per_radius));
+    copy.sizes = volume::SizesOf(field.sizes, copy.concentration_kg_per_m3,
+                                 repeated(volume::ConcentrationPerRadius(field)));
   }
   fine->motion = fields->motion;
   for (std::vector<std::uint8_t>* values : {&fine->motion.turbulence, &fine->motion.ascent}) {
@@ -100,11 +99,15 @@ std::string Name(const std::string& part, std::string_view technique, const std:
 }
 
 // The camera moves; and, where light is kept apart from the view, the sun.
-void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fields& fields) {
-  Register(name, scene, fields, Moving::kCamera);
+void RegisterBoth(const std::string& name, const scene::Scene& scene, const MakeFields& make) {
+  Register(name, scene, make, Moving::kCamera);
   if (test_support::PlainTechniqueOf(scene.rendering.technique) != test_support::kHalfAngle) {
-    Register(name + "/light", scene, fields, Moving::kSun);
+    Register(name + "/light", scene, make, Moving::kSun);
   }
+}
+
+void RegisterBoth(const std::string& name, const scene::Scene& scene, const Fields& fields) {
+  RegisterBoth(name, scene, [fields] { return fields; });
 }
 
 void RegisterGrowthOf(std::string_view technique, const scene::Scene& paper,
@@ -168,13 +171,9 @@ void RegisterGrowth() {
   }
   paper.rendering.technique = accuracy::TechniqueOf(accuracy::kDefaultPreset);
   RegisterGrowthOf("default", paper, grids);
-  for (const Moving moving : {Moving::kCamera, Moving::kSun}) {
-    const auto finest = [] { return Refined(Sample::Get().fields, 3); };
-    const std::size_t cells = 27 * fields->grid.CellCount();
-    RegisterMade(Name("growth", "default", "cells_" + std::to_string(cells)) +
-                     (moving == Moving::kSun ? "/light" : ""),
-                 paper, finest, moving);
-  }
+  const std::size_t cells = 27 * fields->grid.CellCount();
+  RegisterBoth(Name("growth", "default", "cells_" + std::to_string(cells)), paper,
+               [] { return Refined(Sample::Get().fields, 3); });
 }
 
 }  // namespace thunderhead::bench

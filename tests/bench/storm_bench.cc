@@ -72,6 +72,12 @@ scene::Scene PaperScene() {
   return scene;
 }
 
+void TellMemory(benchmark::State& state, const Fields& fields, std::size_t device_bytes) {
+  constexpr double kBytesPerMB = 1e6;
+  state.counters["fields_MB"] = static_cast<double>(fields->Bytes()) / kBytesPerMB;
+  state.counters["device_MB"] = static_cast<double>(device_bytes) / kBytesPerMB;
+}
+
 void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& fields, Moving moving) {
   renderers::SceneRenderer renderer;
   frame::ToneMapper tone_mapper;
@@ -100,20 +106,19 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
     state.counters[name] = milliseconds / static_cast<double>(state.iterations());
   }
   if (balls > 0) state.counters["balls"] = balls;
-  state.counters["fields_MB"] = static_cast<double>(fields->Bytes()) / kBytesPerMB;
-  state.counters["device_MB"] = static_cast<double>(device_bytes) / kBytesPerMB;
+  TellMemory(state, fields, device_bytes);
   state.counters["fps"] =
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
               Moving moving, double paper_fps) {
-  RegisterMade(
-      name, scene, [fields] { return fields; }, moving, paper_fps);
+  const MakeFields make = [fields] { return fields; };
+  Register(name, scene, make, moving, paper_fps);
 }
 
-void RegisterMade(const std::string& name, const scene::Scene& scene,
-                  const std::function<Fields()>& make, Moving moving, double paper_fps) {
+void Register(const std::string& name, const scene::Scene& scene, const MakeFields& make,
+              Moving moving, double paper_fps) {
   benchmark::RegisterBenchmark(name.c_str(),
                                [=](benchmark::State& state) {
                                  DrawFrames(state, scene, make(), moving);

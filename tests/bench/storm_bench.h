@@ -13,6 +13,7 @@
 namespace thunderhead::bench {
 
 using Fields = std::shared_ptr<const volume::HydrometeorFields>;
+using MakeFields = std::function<Fields()>;
 
 // Opened on first use; ends the program with a message if that fails.
 struct Sample {
@@ -25,7 +26,8 @@ struct Sample {
 // The parameter that changes with every frame.
 enum class Moving { kCamera, kSun, kSunClimbs, kField, kExposure };
 
-inline constexpr double kBytesPerMB = 1e6;
+// Adds columns of the memory of fields and textures.
+void TellMemory(benchmark::State& state, const Fields& fields, std::size_t device_bytes);
 
 // The storm as a whole at the papers' size, 300 x 300 pixels, 128 slices.
 scene::Scene PaperScene();
@@ -39,8 +41,8 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
               Moving moving, double paper_fps = 0.0);
 // The same of fields that are made when the row is measured.
-void RegisterMade(const std::string& name, const scene::Scene& scene,
-                  const std::function<Fields()>& make, Moving moving, double paper_fps = 0.0);
+void Register(const std::string& name, const scene::Scene& scene, const MakeFields& make,
+              Moving moving, double paper_fps = 0.0);
 
 // The modes of the papers' table by both paths, and the stages that a change reruns.
 void RegisterModes();

@@ -37,8 +37,7 @@ void DrawFirst(benchmark::State& state) {
     benchmark::DoNotOptimize(tone_mapper.Map(*linear->radiance, scene));
     device_bytes = linear->device_bytes;
   }
-  state.counters["fields_MB"] = static_cast<double>(Wide()->Bytes()) / kBytesPerMB;
-  state.counters["device_MB"] = static_cast<double>(device_bytes) / kBytesPerMB;
+  TellMemory(state, Wide(), device_bytes);
 }
 
 void DrawMoving(benchmark::State& state, Moving moving) {
