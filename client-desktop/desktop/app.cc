@@ -17,6 +17,8 @@ namespace {
 // The interface takes a few frames to come to rest after an event.
 constexpr std::chrono::milliseconds kSettles{200};
 constexpr std::chrono::milliseconds kFrame{16};
+// ImGui takes a press in one drawing and tells in a later one who has the keys.
+constexpr int kFocusDraws = 3;
 constexpr std::chrono::milliseconds kResizeSettles{250};
 
 v1::Window WindowOf(const Window& window, bool saves_bytes) {
@@ -40,6 +42,14 @@ ScreenPoint PlaceOf(const SDL_Event& event) {
 
 bool Differs(const v1::Window& a, const v1::Window& b) {
   return a.width_px() != b.width_px() || a.height_px() != b.height_px() || a.hidden() != b.hidden();
+}
+
+// Whether the keys that follow go to another control, or to none.
+bool MovesFocus(const SDL_Event& event) {
+  if (event.type == SDL_MOUSEBUTTONDOWN || event.type == SDL_MOUSEBUTTONUP) return true;
+  if (event.type != SDL_KEYDOWN) return false;
+  const SDL_Keycode key = event.key.keysym.sym;
+  return key == SDLK_TAB || key == SDLK_RETURN || key == SDLK_KP_ENTER || key == SDLK_ESCAPE;
 }
 
 }  // namespace
@@ -156,6 +166,11 @@ void App::Run() {
     stale |= TakePicture();
     // Once a second in any case: times and figures go on.
     stale |= now < redraw_until_ || now - drawn_at > std::chrono::seconds(1);
+    if (window_->minimized()) settling_draws_ = 0;
+    if (settling_draws_ > 0) {
+      --settling_draws_;
+      stale = true;
+    }
     if (stale && !window_->minimized()) {
       Draw();
       drawn_at = now;
@@ -167,6 +182,7 @@ void App::Run() {
 }
 
 bool App::TakeEvents(int timeout_ms) {
+  if (settling_draws_ > 0) return true;
   SDL_Event event;
   if (SDL_WaitEventTimeout(&event, timeout_ms) == 0) return true;
   do {
@@ -175,8 +191,9 @@ bool App::TakeEvents(int timeout_ms) {
       woken_ = false;
     } else {
       TakeEvent(event);
+      if (MovesFocus(event)) settling_draws_ = kFocusDraws;
     }
-  } while (SDL_PollEvent(&event) != 0);
+  } while (settling_draws_ == 0 && SDL_PollEvent(&event) != 0);
   return true;
 }
 

@@ -26,7 +26,7 @@ globalThis.XMLHttpRequest = xhr2.XMLHttpRequest ?? xhr2;
 const grpcWeb = (await import("grpc-web")).default;
 
 async function eventually(condition) {
-  const patience = Date.now() + 10_000;
+  const patience = Date.now() + 60_000;
   while (Date.now() < patience) {
     if (await condition()) return;
     await sleep(10);
@@ -90,12 +90,15 @@ for (const [name, createTransport] of Object.entries(transports)) {
     });
 
     test("messages arrive when they are sent", async () => {
-      const arrivals = [];
-      for await (const _ of client.count({ count: 3, intervalMs: 500 })) arrivals.push(Date.now());
-      assert.equal(arrivals.length, 3);
-      // Sent a second apart; a busy machine may delay the first.
-      const apartMs = arrivals[2] - arrivals[0];
-      assert.ok(apartMs > 400, `the last came ${apartMs} ms after the first`);
+      const before = await recordAtRest(server);
+      let seen = 0;
+      for await (const _ of client.count({ count: 2, intervalMs: 3000 })) {
+        seen += 1;
+        // The second is sent 3 s later.
+        assert.equal((await server.record()).done, before.done, "the first came with the last");
+        break;
+      }
+      assert.equal(seen, 1);
     });
 
     test("an error has its code, message, details and trailers", async () => {
@@ -177,7 +180,7 @@ for (const [name, createTransport] of Object.entries(transports)) {
 
     test("a deadline ends the call on both sides", async () => {
       const before = await recordAtRest(server);
-      const error = await failureOf(client.wait({}, { timeoutMs: 1500 }));
+      const error = await failureOf(client.wait({}, { timeoutMs: 4000 }));
       assert.equal(error.code, Code.DeadlineExceeded);
       await eventually(async () => (await server.record()).cancelled === before.cancelled + 1);
     });
@@ -278,7 +281,7 @@ describe("grpc-web", () => {
 
   test("a deadline ends the call", async () => {
     const wait = method("Wait", WaitRequestSchema, SayResponseSchema);
-    const deadline = String(Date.now() + 1500);
+    const deadline = String(Date.now() + 4000);
     const { error } = await call(wait, create(WaitRequestSchema), { deadline });
     assert.equal(error.code, 4);
     await eventually(async () => (await server.record()).cancelled === 1);
