@@ -81,7 +81,8 @@ class App final : private client::SessionListener {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_live_ = Clock::now();
   Clock::time_point redraw_until_{};
-  // Drawings that are due before more input is taken: only they tell whether a text field has the keys.
+  // Drawings that are due before more input is taken: only they tell whether a text field has the
+  // keys.
   int settling_draws_ = 0;
   Clock::time_point resized_at_{};
   Clock::time_point turned_at_{};
