@@ -172,16 +172,35 @@ test("at a scale of 2 panels lie beside each other, and presses hit", async () =
   }
 });
 
-// Xvfb has no window manager, so W cannot be tried here: it asks that for full screen.
+const sized = (width, height) => (now) => rests(now) && now.width_px === width && now.height_px === height;
+const SMALL = ["--width", "800", "--height", "500", "--scale", "1"];
+
 test("full screen has the display's size", async () => {
-  const small = ["--width", "800", "--height", "500", "--scale", "1"];
-  const sized = (width, height) => (now) => rests(now) && now.width_px === width && now.height_px === height;
-  desktop = startDesktop(display, serverFlags.grpcPort, [...small, "--full-screen"]);
+  desktop = startDesktop(display, serverFlags.grpcPort, [...SMALL, "--full-screen"]);
   await desktop.until("a picture of the display's size", sized(SIZE.width, SIZE.height));
   const geometry = () => /Geometry: (\S+)/.exec(display.xdotool("search", "--name", "Thunderhead", "getwindowgeometry"))[1];
   assert.equal(geometry(), `${SIZE.width}x${SIZE.height}`);
   await desktop.stop();
-  desktop = startDesktop(display, serverFlags.grpcPort, small);
+  desktop = startDesktop(display, serverFlags.grpcPort, SMALL);
   await desktop.until("a picture of the window's size", sized(800, 500));
   assert.equal(geometry(), "800x500");
+  await desktop.stop();
+});
+
+test("W makes the window full screen, and a window again", async () => {
+  const managed = await startDisplay(SIZE.width, SIZE.height, { managed: true });
+  try {
+    desktop = startDesktop(managed, serverFlags.grpcPort, SMALL);
+    await desktop.until("a picture of the window's size", sized(800, 500));
+    // Keys go to the window below the pointer.
+    managed.move(400, 300);
+    managed.key("w");
+    await desktop.until("a picture of the display's size", sized(SIZE.width, SIZE.height));
+    managed.screenshot("full_screen_by_key");
+    managed.key("w");
+    await desktop.until("a picture of the window's size again", sized(800, 500));
+  } finally {
+    await desktop.stop();
+    await managed.stop();
+  }
 });

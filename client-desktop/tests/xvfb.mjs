@@ -10,8 +10,8 @@ import { deflateSync } from "node:zlib";
 export const OUTPUT = fileURLToPath(new URL("output/", import.meta.url));
 const START_TIMEOUT_MS = 20_000;
 
-// `display` is a number that nothing else uses, or undefined for the first free one.
-export async function startDisplay(width, height) {
+// With `managed` a window manager runs in it, which programs need to change between full screen and a window.
+export async function startDisplay(width, height, { managed = false } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "thunderhead-xvfb-"));
   const flags = ["-screen", "0", `${width}x${height}x24`, "-fbdir", folder, "-nolisten", "tcp", "-displayfd", "3"];
   const child = spawn("Xvfb", flags, { stdio: ["ignore", "ignore", "ignore", "pipe"] });
@@ -24,6 +24,8 @@ export async function startDisplay(width, height) {
     });
   });
   const env = { ...process.env, DISPLAY: `:${number}`, LIBGL_ALWAYS_SOFTWARE: "1", SDL_VIDEODRIVER: "x11" };
+  // It needs no file of fonts for that one.
+  const manager = managed ? spawn("evilwm", ["-fn", "fixed"], { env, stdio: "inherit" }) : undefined;
   const xdotool = (...words) => execFileSync("xdotool", words.map(String), { env, encoding: "utf8" });
   return {
     env,
@@ -60,6 +62,7 @@ export async function startDisplay(width, height) {
     },
     async stop() {
       const ended = new Promise((resolve) => child.once("exit", resolve));
+      manager?.kill();
       child.kill();
       await ended;
       rmSync(folder, { recursive: true, force: true });
