@@ -1,6 +1,6 @@
 #include "access/audit.h"
 
-#include <algorithm>
+#include <cstdint>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -32,31 +32,21 @@ std::string ReasonOf(const absl::Status& status) {
 
 }  // namespace
 
-bool Audit::Takes(Rate& rate, Clock::time_point now) {
-  const auto second = std::chrono::floor<std::chrono::seconds>(now);
-  if (second != rate.second) {
-    rate.second = second;
-    rate.refusals = 0;
-  }
-  if (++rate.refusals <= kMaxRefusalsPerSecond) return true;
-  ++rate.left_out;
-  return false;
-}
-
 void Audit::Write(const Act& act, const absl::Status& status, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  Rate& rate = act.before_call ? before_calls_ : calls_;
-  if (!status.ok() && !Takes(rate, now)) return;
+  std::uint64_t left_out = 0;
+  if (!status.ok()) {
+    const auto taken = (act.before_call ? before_calls_ : calls_).Take(now);
+    if (!taken.has_value()) return;
+    left_out = *taken;
+  }
   std::string line = absl::StrCat(
       "audit time=",
       absl::FormatTime("%Y-%m-%dT%H:%M:%E3SZ", absl::FromChrono(now), absl::UTCTimeZone()),
       " identity=", Quoted(act.identity), " role=", act.role.empty() ? "none" : act.role,
       " peer=", Quoted(act.peer), " act=", act.name,
       " verdict=", status.ok() ? "allowed" : "refused", " reason=", Quoted(ReasonOf(status)));
-  if (!status.ok() && rate.left_out > 0) {
-    absl::StrAppend(&line, " left_out=", rate.left_out);
-    rate.left_out = 0;
-  }
+  if (left_out > 0) absl::StrAppend(&line, " left_out=", left_out);
   write_(line);
 }
 

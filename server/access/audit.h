@@ -6,13 +6,13 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
 
 #include "absl/status/status.h"
 #include "access/identity.h"
+#include "base/line_limit.h"
 
 namespace thunderhead::access {
 
@@ -42,20 +42,10 @@ class Audit {
   void Write(const Act& act, const absl::Status& status, Clock::time_point now = Clock::now());
 
  private:
-  // How many refusals have been written lately.
-  struct Rate {
-    std::chrono::sys_seconds second{};
-    int refusals = 0;  // in it
-    std::uint64_t left_out = 0;
-  };
-
-  // False if one more at `now` is too many.
-  static bool Takes(Rate& rate, Clock::time_point now);
-
   std::mutex mutex_;
   const std::function<void(const std::string&)> write_;
-  Rate calls_;
-  Rate before_calls_;
+  base::LineLimit calls_{kMaxRefusalsPerSecond};
+  base::LineLimit before_calls_{kMaxRefusalsPerSecond};
 };
 
 }  // namespace thunderhead::access

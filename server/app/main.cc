@@ -15,6 +15,7 @@
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
 #include "app/exit_codes.h"
+#include "app/library_log.h"
 #include "base/loose_thread.h"
 #include "base/version.h"
 #include "sandbox/reader_main.h"
@@ -44,6 +45,7 @@ int Main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   // Standard output is for results, so the log goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));
+  TakeLibraryLogs();
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
   app.set_version_flag("--version", "thunderhead " + base::Version());
   app.require_subcommand(1);

@@ -1,12 +1,14 @@
 #include "base/log.h"
 
-#include <cstdio>
 #include <string>
+
+#include "spdlog/spdlog.h"
 
 namespace thunderhead::base {
 
 void LogError(const absl::Status& error) {
-  std::fprintf(stderr, "thunderhead: %s\n", std::string(error.message()).c_str());
+  const std::string message(error.message());
+  spdlog::error("{}", message);
 }
 
 }  // namespace thunderhead::base

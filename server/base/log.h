@@ -1,4 +1,4 @@
-// Errors that nobody else is told in full: on standard error, a line each.
+// Errors that nobody else is told in full: a line of the log each.
 #pragma once
 
 #include "absl/status/status.h"

@@ -30,14 +30,13 @@ constexpr milliseconds kLeaveTimeout{1000};
 constexpr milliseconds kSlowestWatch{500};
 constexpr milliseconds kFastestWatch{5};
 
-net::mutable_buffer BufferOf(uint8_t& byte) { return {&byte, 1}; }
-
 }  // namespace
 
 WebSocketExchange::WebSocketExchange(Site& site, std::shared_ptr<ClientLink> link)
     : site_(site),
       link_(std::move(link)),
       socket_(link_->Stream()),
+      reader_(socket_),
       watch_timer_(link_->Stream().get_executor()),
       changed_(link_->Stream().get_executor()) {}
 
@@ -75,7 +74,7 @@ net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
   if (error) co_return false;
   timeout.handshake_timeout = websocket::stream_base::none();
   socket_.set_option(timeout);
-  socket_.read_message_max(site_.options.max_message_bytes + sizeof(kind_));
+  reader_.Limit(site_.options.max_message_bytes);
   socket_.binary(true);
   // Otherwise each message would be sent in frames of 4 KiB.
   socket_.auto_fragment(false);
@@ -152,62 +151,38 @@ net::awaitable<void> WebSocketExchange::Close() {
 }
 
 net::awaitable<void> WebSocketExchange::ForwardRequests() {
-  bool received = co_await ReadStart();
-  while (received) {
-    const MessageStart start = {socket_.got_text(),
-                                has_kind_ ? std::optional<uint8_t>(kind_) : std::nullopt,
-                                !socket_.is_message_done(), half_closed_};
-    if (const auto violation = FindViolation(start); violation.has_value()) {
+  error_code error = co_await reader_.ReadStart();
+  while (!error) {
+    if (const auto violation = FindViolation(reader_.Start()); violation.has_value()) {
       EndWith(*violation);
       break;
     }
-    // Only one byte is read ahead of flow control.
     is_held_back_ = true;
     co_await call_->AwaitWritten();
     is_held_back_ = false;
-    if (kind_ == kHalfCloseKind) {
-      half_closed_ = true;
+    if (reader_.IsHalfClose()) {
       call_->BeginHalfClose();
     } else {
-      received = co_await ForwardMessage();
+      error = co_await ForwardMessage();
     }
-    if (received) received = co_await ReadStart();
+    if (!error) error = co_await reader_.ReadStart();
+  }
+  if (error == websocket::error::message_too_big) {
+    TellOfRefusal(site_.options, client_, "Message", MessageTooLarge());
   }
   if (!is_closing_) Abandon();
   reader_ended_ = true;
   changed_.Notify();
 }
 
-net::awaitable<bool> WebSocketExchange::ReadStart() {
-  has_kind_ = false;
-  do {
-    error_code error;
-    const size_t bytes = co_await socket_.async_read_some(
-        BufferOf(kind_), net::redirect_error(net::use_awaitable, error));
-    if (error) co_return EndsReading(error);
-    has_kind_ = bytes > 0;
-  } while (!has_kind_ && !socket_.is_message_done());
-  co_return true;
-}
-
-bool WebSocketExchange::EndsReading(error_code error) const {
-  if (error == websocket::error::message_too_big) {
-    TellOfRefusal(site_.options, client_, "Message", MessageTooLarge());
-  }
-  return false;
-}
-
-net::awaitable<bool> WebSocketExchange::ForwardMessage() {
+net::awaitable<error_code> WebSocketExchange::ForwardMessage() {
   boost::beast::flat_buffer payload;
-  if (!socket_.is_message_done()) {
-    error_code error;
-    co_await socket_.async_read(payload, net::redirect_error(net::use_awaitable, error));
-    if (error) co_return EndsReading(error);
-  }
+  const error_code error = co_await reader_.ReadPayload(payload);
+  if (error) co_return error;
   const grpc::Slice slice =
       payload.size() == 0 ? grpc::Slice() : grpc::Slice(payload.cdata().data(), payload.size());
   call_->BeginWrite(grpc::ByteBuffer(&slice, 1));
-  co_return true;
+  co_return error;
 }
 
 net::awaitable<void> WebSocketExchange::Watch() {

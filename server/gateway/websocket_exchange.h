@@ -11,7 +11,6 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
-#include <cstdint>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -23,6 +22,7 @@
 #include "gateway/peer_liveness.h"
 #include "gateway/site.h"
 #include "gateway/upstream_call.h"
+#include "gateway/websocket_reader.h"
 #include "grpcpp/support/byte_buffer.h"
 
 namespace thunderhead::gateway {
@@ -39,6 +39,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
 
  private:
   using CloseReason = boost::beast::websocket::close_reason;
+  using Socket = boost::beast::websocket::stream<ClientStream&, /*deflateSupported=*/false>;
 
   boost::asio::awaitable<bool> Accept(const Request& request);
   void SpawnTasks();
@@ -53,11 +54,8 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   boost::asio::awaitable<void> Close();
 
   boost::asio::awaitable<void> ForwardRequests();
-  // False if the connection has ended.
-  boost::asio::awaitable<bool> ReadStart();
-  boost::asio::awaitable<bool> ForwardMessage();
-  // False; tells of a message that is too large.
-  bool EndsReading(boost::system::error_code error) const;
+  // The rest of the message that has begun. An error if the connection has ended.
+  boost::asio::awaitable<boost::system::error_code> ForwardMessage();
 
   boost::asio::awaitable<void> Watch();
   void Judge(PeerLiveness& liveness);
@@ -73,15 +71,11 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
 
   Site& site_;
   const std::shared_ptr<ClientLink> link_;
-  boost::beast::websocket::stream<ClientStream&, /*deflateSupported=*/false> socket_;
+  Socket socket_;
+  WebSocketReader<Socket> reader_;
   boost::asio::steady_timer watch_timer_;
   std::shared_ptr<UpstreamCall> call_;
   std::string client_;
-
-  // The WebSocket message that is being received.
-  bool has_kind_ = false;
-  uint8_t kind_ = 0;
-  bool half_closed_ = false;
 
   bool is_writing_ = false;
   bool is_pinging_ = false;

@@ -51,6 +51,13 @@ test("metrics, health and logs of a server that serves and then stops", async ()
     assert.match(text, line);
   }
   assert.match(text, /^thunderhead_memory_bytes [1-9]/m);
+  // A field of text that is not UTF-8 makes protobuf complain, as often as somebody sends it.
+  const wrong = Buffer.from([0, 0, 0, 0, 4, 0x0a, 2, 0xff, 0xfe]);
+  for (let i = 0; i < 200; i += 1) {
+    const headers = { "content-type": "application/grpc-web+proto" };
+    const method = "thunderhead.v1.ThunderheadService/DescribeStorm";
+    await fetch(`${server.url}${method}`, { method: "POST", headers, body: wrong }).then((answer) => answer.text());
+  }
   const exit = ended(server.child);
   server.child.kill("SIGTERM");
   assert.deepEqual(await exit, { code: 0, signal: null });
@@ -62,6 +69,8 @@ test("metrics, health and logs of a server that serves and then stops", async ()
     assert.equal(typeof message, "string");
   }
   assert.ok(messages.some(({ message }) => message.startsWith("draining")));
+  const complaints = messages.filter(({ message }) => message.startsWith("protobuf: ")).length;
+  assert.ok(complaints >= 1 && complaints <= 100, `${complaints} lines of 200 faulty calls`);
 });
 
 test("SIGTERM ends a server that still reads its storms", async () => {

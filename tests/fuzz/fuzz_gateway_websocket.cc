@@ -6,13 +6,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <string>
 
 #include "spdlog/spdlog.h"
+#include "tests/fuzz/websocket_bytes.h"
 #include "tests/gateway/echo_service.h"
 
 namespace thunderhead::gateway {
@@ -76,25 +76,6 @@ class Socket {
   const int socket_;
 };
 
-// Frames by the input: each begins with its opcode and a size, and is masked as it should be.
-std::string Framed(const std::uint8_t* data, std::size_t size) {
-  std::string frames;
-  std::size_t at = 0;
-  while (at + 2 <= size) {
-    const std::uint8_t head = data[at];
-    const std::size_t length = std::min<std::size_t>(data[at + 1] % 126, size - at - 2);
-    frames.push_back(static_cast<char>(head));
-    frames.push_back(static_cast<char>(0x80 | length));
-    const char mask[4] = {1, 2, 3, 4};
-    frames.append(mask, 4);
-    for (std::size_t i = 0; i < length; ++i) {
-      frames.push_back(static_cast<char>(data[at + 2 + i] ^ mask[i % 4]));
-    }
-    at += 2 + length;
-  }
-  return frames;
-}
-
 }  // namespace
 }  // namespace thunderhead::gateway
 
@@ -108,9 +89,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       "Connection: Upgrade\r\nSec-WebSocket-Key: AQIDBAUGBwgJCgsMDQ4PEA==\r\n"
       "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Protocol: grpc-websocket.v1\r\n\r\n");
   Must(socket.Read("\r\n\r\n").starts_with("HTTP/1.1 101"));
-  const bool framed = data[0] % 2 == 0;
-  socket.Send(framed ? Framed(data + 1, size - 1)
-                     : std::string(reinterpret_cast<const char*>(data + 1), size - 1));
+  socket.Send(thunderhead::fuzz::WebSocketBytes(data, size));
   socket.SendNoMore();
   socket.Read("");
   return 0;

@@ -356,9 +356,9 @@ TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItExpires) {
   store_->Change([&](SessionRecord& record) {
     if (record.keys.presenter == damaged.session_id()) record.scene = "\xff\xff";
   });
-  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
   Start();
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
+  EXPECT_THAT(::testing::internal::GetCapturedStdout(),
               HasSubstr("is not brought back, but kept until it expires: its scene is damaged"));
   EXPECT_EQ(CodeOf(damaged.session_id()), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(CodeOf(other.session_id()), grpc::StatusCode::OK);
@@ -380,11 +380,11 @@ TEST_F(KeptSessionsTest, ASessionWhoseStormIsGoneSaysSo) {
 }
 
 TEST_F(KeptSessionsTest, AStoreThatFailsIsLoggedOnceAndTriedAgain) {
-  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
   store_->FailWith(absl::UnavailableError("the disk is full"));
   const auto created = Create();
   std::this_thread::sleep_for(3 * session::SessionKeeper::kPause);
-  const std::string logged = ::testing::internal::GetCapturedStderr();
+  const std::string logged = ::testing::internal::GetCapturedStdout();
   EXPECT_THAT(logged, HasSubstr("trying again: the disk is full"));
   EXPECT_EQ(std::ranges::count(logged, '\n'), 1) << logged;
   store_->FailWith(absl::OkStatus());

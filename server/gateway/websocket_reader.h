@@ -1,0 +1,73 @@
+// A client's messages over a WebSocket, in the format of websocket_protocol.h: the kind of each
+// first, its payload when the call can take it. Knows no call; of any stream of bytes.
+#pragma once
+
+#include <boost/asio/buffer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/system/error_code.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "gateway/awaitable.h"
+#include "gateway/websocket_protocol.h"
+
+namespace thunderhead::gateway {
+
+// `Socket` is a boost::beast::websocket::stream, which must outlive the reader.
+template <typename Socket>
+class WebSocketReader {
+ public:
+  explicit WebSocketReader(Socket& socket) : socket_(socket) {}
+
+  // Of the payload. Beast closes a connection whose client sends more.
+  void Limit(std::size_t max_message_bytes) {
+    socket_.read_message_max(max_message_bytes + sizeof(kind_));
+  }
+
+  // Waits for the next message, and reads its kind alone: only this byte is read ahead of flow
+  // control. An error if the connection has ended.
+  boost::asio::awaitable<boost::system::error_code> ReadStart();
+  // The message that has begun.
+  MessageStart Start() const {
+    return {socket_.got_text(), has_kind_ ? std::optional<uint8_t>(kind_) : std::nullopt,
+            !socket_.is_message_done(), half_closed_};
+  }
+  bool IsHalfClose() const { return has_kind_ && kind_ == kHalfCloseKind; }
+  // Reads the rest of the message that has begun.
+  boost::asio::awaitable<boost::system::error_code> ReadPayload(boost::beast::flat_buffer& payload);
+
+ private:
+  Socket& socket_;
+  bool has_kind_ = false;
+  uint8_t kind_ = 0;
+  bool half_closed_ = false;
+};
+
+template <typename Socket>
+boost::asio::awaitable<boost::system::error_code> WebSocketReader<Socket>::ReadStart() {
+  half_closed_ = half_closed_ || IsHalfClose();
+  has_kind_ = false;
+  boost::system::error_code error;
+  do {
+    const std::size_t bytes = co_await socket_.async_read_some(
+        boost::asio::mutable_buffer(&kind_, sizeof(kind_)),
+        boost::asio::redirect_error(boost::asio::use_awaitable, error));
+    if (error) co_return error;
+    has_kind_ = bytes > 0;
+  } while (!has_kind_ && !socket_.is_message_done());
+  co_return error;
+}
+
+template <typename Socket>
+boost::asio::awaitable<boost::system::error_code> WebSocketReader<Socket>::ReadPayload(
+    boost::beast::flat_buffer& payload) {
+  boost::system::error_code error;
+  if (!socket_.is_message_done()) {
+    co_await socket_.async_read(payload,
+                                boost::asio::redirect_error(boost::asio::use_awaitable, error));
+  }
+  co_return error;
+}
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,36 @@
+// What a client sends after the upgrade to a WebSocket, of a fuzzer's input.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace thunderhead::fuzz {
+
+// Frames by the input: each begins with its opcode and a size, and is masked as it should be.
+inline std::string Framed(const std::uint8_t* data, std::size_t size) {
+  std::string frames;
+  std::size_t at = 0;
+  while (at + 2 <= size) {
+    const std::uint8_t head = data[at];
+    const std::size_t length = std::min<std::size_t>(data[at + 1] % 126, size - at - 2);
+    frames.push_back(static_cast<char>(head));
+    frames.push_back(static_cast<char>(0x80 | length));
+    const char mask[4] = {1, 2, 3, 4};
+    frames.append(mask, 4);
+    for (std::size_t i = 0; i < length; ++i) {
+      frames.push_back(static_cast<char>(data[at + 2 + i] ^ mask[i % 4]));
+    }
+    at += 2 + length;
+  }
+  return frames;
+}
+
+// An even first byte: frames of the rest. Otherwise the rest as it is, which has a mask of its own.
+inline std::string WebSocketBytes(const std::uint8_t* data, std::size_t size) {
+  if (data[0] % 2 == 0) return Framed(data + 1, size - 1);
+  return {reinterpret_cast<const char*>(data + 1), size - 1};
+}
+
+}  // namespace thunderhead::fuzz
