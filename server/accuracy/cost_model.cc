@@ -11,6 +11,11 @@ namespace {
 constexpr double kForgetting = 0.8;
 // Below this variance of x (relative to its mean square) a and b cannot be determined separately.
 constexpr double kMinRelativeVariance = 1e-3;
+// Sizes that differ by a tenth of a million samples say as much as what is supposed before anything
+// was measured; frames of one size, of one million. The pictures that a server draws at its start
+// are far smaller, and mostly fixed cost: by them alone a still of 3840 x 2160 would take an hour.
+constexpr double kSizeNoise = 0.01;
+constexpr double kUnknown = CostModel::kUnknownMsPerMegaSample;
 
 bool IsPreparation(const scene::StageTime& cost) {
   using scene::FrameStage;
@@ -83,16 +88,25 @@ void CostModel::Observe(double mega_samples, double total_ms,
 }
 
 void CostModel::Fit() {
-  const double variance = weight_ * sum_xx_ - sum_x_ * sum_x_;
-  if (variance > kMinRelativeVariance * sum_x_ * sum_x_) {
-    ms_per_mega_sample_ = (weight_ * sum_xy_ - sum_x_ * sum_y_) / variance;
-    fixed_ms_ = (sum_y_ - ms_per_mega_sample_ * sum_x_) / weight_;
+  const double mean_x = sum_x_ / weight_;
+  const double mean_y = sum_y_ / weight_;
+  const double variance = sum_xx_ / weight_ - mean_x * mean_x;
+  if (variance > kMinRelativeVariance * mean_x * mean_x) {
+    const double covariance = sum_xy_ / weight_ - mean_x * mean_y;
+    SetLine((covariance + kSizeNoise * kUnknown) / (variance + kSizeNoise), mean_x, mean_y);
     if (ms_per_mega_sample_ > 0.0 && fixed_ms_ >= 0.0) return;
   }
-  // Frames of one size, or a fit that noise has bent below zero: all of the cost grows with the
-  // size.
+  // Frames of one size, or a fit that noise has bent below zero: nearly all of the cost grows with
+  // the size, unless they are so small that they say nothing of larger ones.
+  SetLine((sum_xy_ / weight_ + kUnknown) / (sum_xx_ / weight_ + 1.0), mean_x, mean_y);
+  if (fixed_ms_ >= 0.0) return;
   fixed_ms_ = 0.0;
   ms_per_mega_sample_ = sum_xx_ > 0.0 ? sum_xy_ / sum_xx_ : ms_per_mega_sample_;
+}
+
+void CostModel::SetLine(double slope, double mean_x, double mean_y) {
+  ms_per_mega_sample_ = slope;
+  fixed_ms_ = mean_y - slope * mean_x;
 }
 
 }  // namespace thunderhead::accuracy

@@ -22,6 +22,10 @@ std::optional<double> ViewMs(double total_ms, const std::vector<scene::StageTime
 
 class CostModel {
  public:
+  // Before anything was measured: between a GPU's 0.1 and a software renderer's 15, so that the
+  // first frame is coarse but not the coarsest.
+  static constexpr double kUnknownMsPerMegaSample = 2.0;
+
   // The cost of a frame if `first_dirty` is the first stage to rerun.
   double EstimateMs(double mega_samples, scene::Stage first_dirty) const;
 
@@ -31,6 +35,7 @@ class CostModel {
 
  private:
   void Fit();
+  void SetLine(double slope, double mean_x, double mean_y);
 
   double weight_ = 0.0;
   double sum_x_ = 0.0;
@@ -38,9 +43,7 @@ class CostModel {
   double sum_xx_ = 0.0;
   double sum_xy_ = 0.0;
   double fixed_ms_ = 0.0;
-  // Before anything was measured: between a GPU's 0.1 and a software renderer's 15, so that the
-  // first frame is coarse but not the coarsest.
-  double ms_per_mega_sample_ = 2.0;
+  double ms_per_mega_sample_ = kUnknownMsPerMegaSample;
   double preparation_ms_ = 0.0;
   double light_ms_ = 0.0;
 };

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "absl/strings/string_view.h"
+#include "google/protobuf/stubs/logging.h"
 #include "google/protobuf/util/field_mask_util.h"
 #include "service/interact_messages.h"
 #include "tests/fuzz/scene_path.h"
@@ -39,6 +40,8 @@ void TakeRequest(const v1::InteractRequest& request) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace v1 = thunderhead::v1;
+  // It writes a line for each text that is not UTF-8.
+  [[maybe_unused]] static const auto quiet = google::protobuf::SetLogHandler(nullptr);
   if (size == 0) return 0;
   const int bytes = static_cast<int>(size - 1);
   v1::Scene scene;

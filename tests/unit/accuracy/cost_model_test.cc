@@ -38,6 +38,24 @@ TEST(CostModelTest, FollowsAMachineThatSlowsDown) {
   EXPECT_NEAR(model.EstimateMs(10.0, scene::Stage::kView), 40.0, 30.0 * 0.11);
 }
 
+TEST(CostModelTest, SmallFramesSayLittleOfLargeOnes) {
+  // As a server draws at its start on software GL: 20 ms, nearly all of it fixed.
+  CostModel start;
+  for (int i = 0; i < 3; ++i) start.Observe(0.03, 20.0, {{scene::FrameStage::kSlices, 1.0}});
+  EXPECT_LT(start.EstimateMs(4000.0, scene::Stage::kView), 20e3);
+  // Two sizes that hardly differ, and noise.
+  CostModel noisy;
+  noisy.Observe(0.01, 10.0, {{scene::FrameStage::kSlices, 1.0}});
+  noisy.Observe(0.03, 20.0, {{scene::FrameStage::kSlices, 1.0}});
+  EXPECT_LT(noisy.EstimateMs(4000.0, scene::Stage::kView), 40e3);
+}
+
+TEST(CostModelTest, FramesOfOneSizeOnASlowMachineTellOfLargerOnes) {
+  CostModel model;
+  for (int i = 0; i < 5; ++i) model.Observe(10.0, 150.0, {{scene::FrameStage::kSlices, 1.0}});
+  EXPECT_NEAR(model.EstimateMs(100.0, scene::Stage::kView), 1500.0, 30.0);
+}
+
 TEST(CostModelTest, NoiseGivesNoNegativeEstimate) {
   CostModel model;
   model.Observe(1.0, 50.0, {{scene::FrameStage::kSlices, 1.0}});
