@@ -21,6 +21,7 @@ import {
 import { difference, grabCanvas } from "./pictures.mjs";
 import { textOfCode } from "./qr.mjs";
 import { freePort, startServer } from "./server_process.mjs";
+import { throttledLink } from "./throttled_link.mjs";
 
 const VIEWPORT = { width: 900, height: 560 };
 const MIDDLE = { x: 620, y: 300 };
@@ -513,15 +514,24 @@ test("a hidden page gets no frames, and the newest one when it is seen again", a
   await inStep();
 });
 
-test("a student's name is seen by the teacher", async () => {
-  await student.getByTestId("people").click();
-  await student.getByTestId("own-name").fill("Ben");
-  await student.getByTestId("own-name").press("Enter");
-  await student.keyboard.press("Escape");
+async function nameThemselves(page, name) {
+  await page.getByTestId("people").click();
+  await page.getByTestId("own-name").fill(name);
+  await page.getByTestId("own-name").press("Enter");
+  await page.keyboard.press("Escape");
+}
+
+// Waits for it; `shot` is a picture of the list.
+async function teacherSees(name, shot) {
   await teacher.getByTestId("people").click();
-  await teacher.getByTestId("people-list").getByText("Ben").waitFor();
-  await screenshot("27-people", teacher);
+  await teacher.getByTestId("people-list").getByText(name).waitFor();
+  if (shot) await screenshot(shot, teacher);
   await teacher.keyboard.press("Escape");
+}
+
+test("a student's name is seen by the teacher", async () => {
+  await nameThemselves(student, "Ben");
+  await teacherSees("Ben", "27-people");
 });
 
 test("the teacher reloads by accident and loses nothing", async () => {
@@ -619,6 +629,44 @@ test("no answer within 20 s ends a request, and control is free a minute after t
 test("no error reached the browsers' consoles", () => {
   assert.deepEqual(complaints, []);
 });
+
+// What happens in the room while one student's Wi-Fi fails is seen when it is back, and what the student did meanwhile counts.
+for (const [how, fail] of Object.entries({
+  "breaks": (link) => link.cut(),
+  "falls silent": (link) => link.silence(),
+})) {
+  test(`a student's network ${how}, and comes back`, async () => {
+    const link = await throttledLink({ port: new URL(server.url).port, kbitPerS: 100_000, roundTripMs: 4 });
+    const far = await visit((await viewersLink()).replace(/:\d+\//, `:${link.port}/`));
+    try {
+      await rested(far);
+      await nameThemselves(far, "Ada");
+      await teacherSees("Ada");
+      const [address, { revision }] = [far.url(), await canvasData(far)];
+      fail(link);
+      if (how === "breaks") await far.getByTestId("connection-lost").waitFor();
+      await changing(() => turn(teacher, 60), teacher);
+      await openTool(teacher, "marks");
+      await teacher.getByTestId("tool-pen").click();
+      await drawLine(teacher, { x: MIDDLE.x, y: 260 });
+      await until("a mark in the room", async () => (await marksOn(student)) === 1);
+      assert.deepEqual([(await canvasData(far)).revision, await marksOn(far)], [revision, 0], "the network has not failed");
+      link.heal();
+      await far.getByTestId("connection-lost").waitFor({ state: "detached" });
+      await until("the room's picture", async () => (await azimuthOf(far)) === (await azimuthOf(student)));
+      await until("the room's mark", async () => (await marksOn(far)) === 1);
+      assert.equal(far.url(), address, "it is another session");
+      await teacherSees("Ada");
+      await teacher.getByTestId("clear-marks").click();
+      await until("no mark", async () => (await marksOn(far)) === 0 && (await marksOn(student)) === 0);
+    } finally {
+      await teacher.keyboard.press("Escape");
+      await openTool(teacher, "look");
+      await far.context().close();
+      await link.close();
+    }
+  });
+}
 
 test("the server is killed and comes back: teacher and student have their session, with marks, rules and keys", async () => {
   await openTool(teacher, "marks");

@@ -1,19 +1,22 @@
-// A link of limited speed and some length before a server: a TCP proxy. Chromium's own emulation leaves WebSockets alone.
+// A link of limited speed and some length before a server, that can also be cut or fall silent: a TCP proxy. Chromium's own emulation leaves WebSockets alone.
 import { createServer, connect } from "node:net";
 
 const SLICE_BYTES = 1460;
 // After the last slice.
 const END_MS = 5;
+// How often a silent link is looked at.
+const SILENCE_MS = 20;
 
 // One direction: bytes leave at the link's speed and arrive after half its round trip. Like a router it holds little, so a
 // sender is held back once that is full.
-function carry(from, to, bytesPerMs, delayMs) {
+function carry(from, to, bytesPerMs, delayMs, link) {
   const BUFFER_BYTES = 16 * 1024;
   let freeAt = 0;
   let held = 0;
   // In order, which timers of different lengths do not keep.
   const onTheirWay = [];
   const arrive = () => {
+    if (link.silent) return setTimeout(arrive, SILENCE_MS);
     const slice = onTheirWay.shift();
     if (to.writable) to.write(slice);
   };
@@ -35,22 +38,41 @@ function carry(from, to, bytesPerMs, delayMs) {
   from.on("error", () => to.destroy());
 }
 
-// Returns its port, and the function that closes it.
+// Returns its port; functions that cut it (connections break, new ones are refused), silence it (connections stay, nothing
+// arrives) and heal it; and the one that closes it.
 export async function throttledLink({ port, kbitPerS, roundTripMs }) {
   const sockets = new Set();
+  const link = { cut: false, silent: false };
+  const breakAll = () => {
+    for (const socket of sockets) socket.destroy();
+  };
   const server = createServer({ allowHalfOpen: true, noDelay: true }, (near) => {
+    if (link.cut) return near.destroy();
     const far = connect({ port, host: "127.0.0.1", allowHalfOpen: true, noDelay: true });
     for (const socket of [near, far]) {
       sockets.add(socket);
       socket.on("close", () => sockets.delete(socket));
     }
-    carry(near, far, kbitPerS / 8, roundTripMs / 2);
-    carry(far, near, kbitPerS / 8, roundTripMs / 2);
+    carry(near, far, kbitPerS / 8, roundTripMs / 2, link);
+    carry(far, near, kbitPerS / 8, roundTripMs / 2, link);
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
-  const close = () => {
-    for (const socket of sockets) socket.destroy();
-    return new Promise((resolve) => server.close(resolve));
+  return {
+    port: server.address().port,
+    cut: () => {
+      link.cut = true;
+      breakAll();
+    },
+    silence: () => {
+      link.silent = true;
+    },
+    heal: () => {
+      link.cut = false;
+      link.silent = false;
+    },
+    close: () => {
+      breakAll();
+      return new Promise((resolve) => server.close(resolve));
+    },
   };
-  return { port: server.address().port, close };
 }
