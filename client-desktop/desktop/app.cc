@@ -66,7 +66,7 @@ App::App(Flags flags, std::vector<v1::Scene> views, std::unique_ptr<Window> wind
                failure_ = failure;
              }}),
       catalogue_(connection, [this] { Wake(); }),
-      session_(connection, MakeSessionOptions(), *this),
+      session_(connection, MakeSessionOptions(views), *this),
       ui_(session_, catalogue_),
       stage_(ui_),
       kiosk_(std::move(views), flags_.view_seconds),
@@ -80,11 +80,13 @@ App::App(Flags flags, std::vector<v1::Scene> views, std::unique_ptr<Window> wind
 // The decoding thread tells the session of lost video, the session's thread offers frames.
 App::~App() { flow_.Stop(); }
 
-client::SessionOptions App::MakeSessionOptions() const {
+client::SessionOptions App::MakeSessionOptions(const std::vector<v1::Scene>& views) const {
   client::SessionOptions options;
   options.key = flags_.key;
   options.name = flags_.name;
   options.scene.set_storm_id(flags_.storm);
+  // Not the server's own view for a moment.
+  if (!views.empty()) LayView(views.front(), options.scene);
   options.codecs = client::PictureDecoder::Codecs();
   options.window = told_window_;
   options.never_gives_up = flags_.kiosk;

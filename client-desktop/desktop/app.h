@@ -56,7 +56,7 @@ class App final : private client::SessionListener {
   void FocusPanel();
   void Escape();
   KeyActions MakeKeyActions();
-  client::SessionOptions MakeSessionOptions() const;
+  client::SessionOptions MakeSessionOptions(const std::vector<v1::Scene>& views) const;
   int Timeout_ms(Clock::time_point now) const;
   void PrintSummary() const;
 

@@ -79,7 +79,6 @@ test("a server that has lost its sessions and its storm is shown as it is now", 
 test("a single view is shown once, and again in a new session", async () => {
   await kiosk.stop();
   kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "1", "--views", join(folder, "view_0.json")]);
-  // A new session begins with the server's own camera.
   const isSeen = (now) => shows(0)(now) && Math.abs(now.azimuth_deg - 45) < 0.5;
   const { revision } = await kiosk.until("the view", isSeen);
   await sleep(4000);
