@@ -81,6 +81,11 @@ class Root:
         npmrc = pathlib.Path.home() / ".npmrc"
         if npmrc.exists():
             shutil.copy(npmrc, folder / "root/.npmrc")
+        # Who vouches for the package registry, where this machine trusts others than Debian does.
+        authorities = os.environ.get("NODE_EXTRA_CA_CERTS", "")
+        if os.path.isfile(authorities):
+            self.environment["NODE_EXTRA_CA_CERTS"] = "/root/authorities.pem"
+            shutil.copy(authorities, folder / "root/authorities.pem")
 
     def inside(self, path):
         return self.folder / str(pathlib.PurePosixPath(self.directory, path)).lstrip("/")
