@@ -7,6 +7,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
 #include "google/rpc/error_details.pb.h"
@@ -39,10 +40,14 @@ absl::StatusOr<std::string> ReadFile(const std::string& path, const std::string&
 
 absl::Status CheckAddress(const std::string& address) {
   const std::size_t colon = address.rfind(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == address.size()) {
+  int port = 0;
+  const bool is_address =
+      colon != std::string::npos && colon > 0 && !absl::StrContains(address, "/") &&
+      absl::SimpleAtoi(address.substr(colon + 1), &port) && port >= 1 && port <= 65535;
+  if (!is_address) {
     return absl::InvalidArgumentError(
         absl::StrCat("'", address, "' is no HOST:PORT; give the server's gRPC port, such as ",
-                     "localhost:50051"));
+                     "localhost:50051, not the address of its page"));
   }
   return absl::OkStatus();
 }

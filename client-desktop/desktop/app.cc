@@ -194,6 +194,10 @@ bool App::TakeEvents(int timeout_ms) {
     } else {
       TakeEvent(event);
       if (MovesFocus(event)) settling_draws_ = kFocusDraws;
+      // ImGui sees a key that is down when it draws: a press and a release between two is none.
+      if (event.type == SDL_KEYDOWN && ImGui::GetIO().WantTextInput) {
+        settling_draws_ = std::max(settling_draws_, 1);
+      }
     }
   } while (settling_draws_ == 0 && SDL_PollEvent(&event) != 0);
   return true;
@@ -305,7 +309,7 @@ void App::Draw() {
 }
 
 void App::DrawKiosk() {
-  const std::string warning = Kiosk::Warning(ui_, last_live_, Clock::now());
+  const std::string warning = kiosk_.Warning(ui_, last_live_, Clock::now());
   if (warning.empty()) return;
   const float margin = 16.0F * ui_.scale;
   const ImVec2 size = ImGui::CalcTextSize(warning.c_str());

@@ -97,6 +97,19 @@ void TextSetting(Ui& ui, const Parameter& parameter, const char* label) {
 
 }  // namespace
 
+std::string Shortened(std::string text, float width) {
+  const auto fits = [&](const std::string& shown) {
+    return ImGui::CalcTextSize(shown.c_str()).x <= width;
+  };
+  if (fits(text)) return text;
+  const auto is_inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
+  while (!text.empty() && !fits(text + "…")) {
+    while (is_inside(text.back()) && text.size() > 1) text.pop_back();
+    text.pop_back();
+  }
+  return text + "…";
+}
+
 void Setting(Ui& ui, const std::string& path, const char* label) {
   const Parameter* const parameter = Find(ui, path);
   if (parameter != nullptr) Setting(ui, *parameter, label);

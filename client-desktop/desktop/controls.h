@@ -9,6 +9,8 @@
 
 namespace thunderhead::desktop {
 
+// The text, or as much of it as fits into `width` with an ellipsis; in the font that is current.
+std::string Shortened(std::string text, float width);
 // The control of a scene's parameter by its path, such as "sun.azimuth_deg"; nothing where the
 // scene has none such now. The label is the parameter's name where none is given.
 void Setting(Ui& ui, const std::string& path, const char* label = nullptr);

@@ -24,8 +24,10 @@ ParsedFlags ParseFlags(int argc, char** argv) {
                  "encrypted");
   app.add_option("--token-file", flags.access.token_file, "file with the access token");
   app.add_flag("--full-screen", flags.full_screen, "begins in full screen");
-  app.add_flag("--kiosk", flags.kiosk, "for a wall: full screen, no controls, never gives up");
-  app.add_option("--views", flags.views, "scene files (JSON) that a kiosk shows in turn");
+  CLI::Option* const kiosk =
+      app.add_flag("--kiosk", flags.kiosk, "for a wall: full screen, no controls, never gives up");
+  app.add_option("--views", flags.views, "scene files (JSON) that a kiosk shows in turn")
+      ->needs(kiosk);
   app.add_option("--view-seconds", flags.view_seconds, "how long it shows each")
       ->check(CLI::Range(1.0, 86400.0));
   app.add_option("--width", flags.width, "of the window")->check(CLI::Range(320, 16384));

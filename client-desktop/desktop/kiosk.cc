@@ -16,45 +16,51 @@ Kiosk::Kiosk(std::vector<v1::Scene> views, double view_seconds)
     : views_(std::move(views)), interval_(view_seconds) {}
 
 void LayView(const v1::Scene& view, v1::Scene& scene) {
-  // Fields of one kind of camera merged into another kind's would mix two views, and the server
-  // takes each field once.
-  if (view.has_camera()) scene.clear_camera();
-  if (view.fields_size() > 0) scene.clear_fields();
-  if (view.lights_size() > 0) scene.clear_lights();
-  const std::string storm = scene.storm_id();
-  scene.MergeFrom(view);
-  if (!view.storm_id().empty() && view.storm_id() != storm && !view.has_time_index()) {
-    scene.clear_time_index();
+  v1::Scene laid = view;
+  const bool same_storm = view.storm_id().empty() || view.storm_id() == scene.storm_id();
+  if (same_storm) {
+    laid.set_storm_id(scene.storm_id());
+    if (!view.has_time_index() && scene.has_time_index()) laid.set_time_index(scene.time_index());
   }
+  *laid.mutable_output() = scene.output();
+  scene = std::move(laid);
 }
 
-bool Kiosk::Stands(const client::SessionState& state) const {
-  const bool shows = state.Steers() || state.looks_around;
-  return shows && state.Steers() == steered_ && state.joined_count == shown_in_;
+bool Kiosk::ShowsOwnView() const {
+  return views_.at(static_cast<std::size_t>(shown_)).has_camera();
 }
 
 void Kiosk::Advance(Ui& ui, TimePoint now) {
-  if (views_.empty() || ui.state.link != client::Link::kLive) return;
-  if (!ui.state.Steers() && !ui.state.MayLookAround()) return;
-  const bool due = now - shown_at_ >= interval_;
+  const client::SessionState& state = ui.state;
+  // Who steers is told after joining: a camera that is asked for before would be a view of one's
+  // own.
+  const bool known = state.link == client::Link::kLive && state.presence.people_size() > 0;
+  if (views_.empty() || !known || (!state.Steers() && !state.MayLookAround())) return;
   const bool first = shown_ < 0;
-  if (!first && (!due || (views_.size() == 1 && Stands(ui.state)))) return;
-  const int next = (shown_ + 1) % static_cast<int>(views_.size());
+  // In another session, or where somebody else has steered meanwhile.
+  const bool undone = !first && (state.joined_count != shown_in_ || state.Steers() != steered_ ||
+                                 (ShowsOwnView() && !state.Steers() && !state.looks_around));
+  const bool due = now - shown_at_ >= interval_ && views_.size() > 1;
+  if (!first && !undone && !due) return;
+  const int next = first || due ? (shown_ + 1) % static_cast<int>(views_.size()) : shown_;
   const v1::Scene& view = views_.at(static_cast<std::size_t>(next));
-  if (ui.state.Steers()) {
+  if (state.Steers()) {
     if (!ui.session.Edit([view](v1::Scene& scene) { LayView(view, scene); })) return;
   } else if (view.has_camera()) {
     if (!ui.session.ShowCamera(view.camera())) return;
   }
   shown_ = next;
   shown_at_ = now;
-  shown_in_ = ui.state.joined_count;
-  steered_ = ui.state.Steers();
+  shown_in_ = state.joined_count;
+  steered_ = state.Steers();
+  notices_ = state.notice_count;
 }
 
-std::string Kiosk::Warning(const Ui& ui, TimePoint last_live, TimePoint now) {
+std::string Kiosk::Warning(const Ui& ui, TimePoint last_live, TimePoint now) const {
   if (ui.state.link == client::Link::kLive) {
-    return ui.state.problem ? ui.state.problem->message() : "";
+    if (ui.state.problem) return ui.state.problem->message();
+    // Why the server has refused the view.
+    return shown_ >= 0 && ui.state.notice_count != notices_ ? ui.state.notice : "";
   }
   if (now - last_live < kQuietLoss) return "";
   const auto minutes = std::chrono::floor<std::chrono::minutes>(now - last_live).count();

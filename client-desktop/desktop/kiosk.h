@@ -11,7 +11,8 @@
 
 namespace thunderhead::desktop {
 
-// Puts what the view says in place of the scene's: lists and the camera as a whole.
+// Makes the view the scene, as `render --scene` reads it: what it does not say is left to the
+// server. Storm and time stay where it names none, and the picture's size.
 void LayView(const v1::Scene& view, v1::Scene& scene);
 
 class Kiosk {
@@ -21,17 +22,17 @@ class Kiosk {
   Kiosk(std::vector<v1::Scene> views, double view_seconds);
 
   // Shows the next view if it is due: the whole of it where this window steers, else its camera as
-  // an own view. A single view is shown again where another session or somebody else has undone it.
+  // an own view. Shows a view again at once where another session or somebody else has undone it.
   void Advance(Ui& ui, TimePoint now);
   // The index of the view shown; -1 before the first.
   int shown() const { return shown_; }
   // The warning that the picture is old, as the connection has been lost for a while, or that the
-  // scene cannot be drawn; else empty.
-  static std::string Warning(const Ui& ui, TimePoint last_live, TimePoint now);
+  // view is refused or cannot be drawn; else empty.
+  std::string Warning(const Ui& ui, TimePoint last_live, TimePoint now) const;
 
  private:
-  // True while nothing has undone the view that was shown last.
-  bool Stands(const client::SessionState& state) const;
+  // The view shown has a camera, which is an own view where this window does not steer.
+  bool ShowsOwnView() const;
 
   const std::vector<v1::Scene> views_;
   const std::chrono::duration<double> interval_;
@@ -39,6 +40,7 @@ class Kiosk {
   TimePoint shown_at_{};
   int shown_in_ = 0;  // the state's joined_count then
   bool steered_ = false;
+  int notices_ = 0;  // the state's notice_count then
 };
 
 }  // namespace thunderhead::desktop

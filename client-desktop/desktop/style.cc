@@ -14,9 +14,9 @@ constexpr char kFolder[] = "/usr/share/fonts/truetype/dejavu/";
 ImFont* bold_font = nullptr;
 ImFont* small_font = nullptr;
 
-// Latin with accents, general punctuation, arrows, and a few symbols.
-constexpr std::array<ImWchar, 9> kGlyphs{0x20,   0x17F,  0x2010, 0x2044, 0x2190,
-                                         0x21FF, 0x25A0, 0x25FF, 0};
+// Latin with accents, Greek and Cyrillic, general punctuation, arrows, and a few symbols.
+constexpr std::array<ImWchar, 11> kGlyphs{0x20,   0x24F,  0x370,  0x52F,  0x2010, 0x2044,
+                                          0x2190, 0x21FF, 0x25A0, 0x25FF, 0};
 
 ImFont* AddFont(const char* file, float size_px) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;

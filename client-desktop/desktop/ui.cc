@@ -44,6 +44,7 @@ void Ui::Undo() {
   if (!state.Steers()) return;
   if (auto scene = history.Undo(state.scene)) {
     session.Edit([scene = *std::move(scene)](v1::Scene& edited) { edited = scene; });
+    Refresh();
   }
 }
 
@@ -51,6 +52,7 @@ void Ui::Redo() {
   if (!state.Steers()) return;
   if (auto scene = history.Redo(state.scene)) {
     session.Edit([scene = *std::move(scene)](v1::Scene& edited) { edited = scene; });
+    Refresh();
   }
 }
 

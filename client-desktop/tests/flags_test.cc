@@ -26,7 +26,7 @@ TEST(Flags, WithoutAServerItIsThatOfThisMachine) {
   EXPECT_EQ(ServerOf({"--kiosk"}), "localhost:50051");
   EXPECT_EQ(ServerOf({"--name", "Room 5:2"}), "localhost:50051");
   EXPECT_EQ(ServerOf({"--key", "a:1", "--full-screen"}), "localhost:50051");
-  EXPECT_EQ(ServerOf({"--views", "a:1.json", "b.json"}), "localhost:50051");
+  EXPECT_EQ(ServerOf({"--kiosk", "--views", "a:1.json", "b.json"}), "localhost:50051");
   EXPECT_EQ(ServerOf({"--name=a:1"}), "localhost:50051");
 }
 

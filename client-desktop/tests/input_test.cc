@@ -371,6 +371,26 @@ TEST(Layout, ToolAndPanelLieBesideEachOther) {
   EXPECT_EQ(Layout::Of(3840.0F, 2160.0F, 2.0F).tool_width, 660.0F);
 }
 
+TEST(KioskView, LeavesNothingToTheNext) {
+  v1::Scene scene;
+  scene.set_storm_id("run");
+  scene.mutable_output()->set_width_px(800);
+  v1::Scene bright;
+  bright.mutable_sun()->set_elevation_deg(2.0);
+  bright.mutable_display()->set_exposure_ev(3.0);
+  bright.add_fields()->set_hydrometeor(v1::HYDROMETEOR_ICE);
+  bright.mutable_output()->set_width_px(64);
+  v1::Scene plain;
+  plain.mutable_camera()->mutable_orbit()->set_azimuth_deg(200.0);
+  LayView(bright, scene);
+  LayView(plain, scene);
+  EXPECT_FALSE(scene.has_sun());
+  EXPECT_FALSE(scene.has_display());
+  EXPECT_EQ(scene.fields_size(), 0);
+  EXPECT_EQ(scene.storm_id(), "run");
+  EXPECT_EQ(scene.output().width_px(), 800U) << "the window's size, not the file's";
+}
+
 TEST(KioskView, IsLaidOverTheSceneWithoutDoublingItsLists) {
   v1::Scene scene;
   scene.set_storm_id("run");

@@ -7,6 +7,7 @@ import { after, before, test } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 import { freePort, ROOT, startServer } from "../../tests/e2e/server_process.mjs";
 import { startDesktop } from "./desktop_process.mjs";
+import { eventually, pixelsLike, region } from "./pixels.mjs";
 import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 640, height: 400 };
@@ -76,9 +77,10 @@ test("a server that has lost its sessions and its storm is shown as it is now", 
   await kiosk.until("a view of it", (now) => now.link === "live" && now.camera !== "none");
 });
 
-test("a single view is shown once, and again in a new session", async () => {
+test("a view stands until it is due, and comes at once in a new session", async () => {
   await kiosk.stop();
-  kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "1", "--views", join(folder, "view_0.json")]);
+  const views = [0, 1].map((at) => join(folder, `view_${at}.json`));
+  kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "3600", "--views", ...views]);
   const isSeen = (now) => shows(0)(now) && Math.abs(now.azimuth_deg - 45) < 0.5;
   const { revision } = await kiosk.until("the view", isSeen);
   await sleep(4000);
@@ -88,4 +90,16 @@ test("a single view is shown once, and again in a new session", async () => {
   await kiosk.until("the loss", (now) => now.link !== "live");
   server = await startServer(serverFlags);
   await kiosk.until("the view in a new session", (now) => isSeen(now) && now.joined > joined);
+});
+
+test("a view that the server refuses says why", async () => {
+  await kiosk.stop();
+  const view = join(folder, "refused.json");
+  writeFileSync(view, JSON.stringify({ camera: { orbit: { azimuthDeg: 45, elevationDeg: 500 } } }));
+  kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "3600", "--views", view]);
+  const { notice } = await kiosk.until("the refusal", (now) => now.notice !== "");
+  assert.match(notice, /elevation_deg/);
+  const corner = { x: 0, y: SIZE.height - 60, width: SIZE.width, height: 60 };
+  await eventually("the wall says nothing", () => pixelsLike(region(display.pixels(), corner), [255, 140, 122]) > 100);
+  display.screenshot("kiosk_refused");
 });

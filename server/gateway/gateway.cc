@@ -13,6 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/line_limit.h"
 #include "base/status.h"
 #include "gateway/awaitable.h"
 #include "gateway/client_link.h"
@@ -98,6 +99,9 @@ class Gateway::Listener {
   bool IsEncrypted() const { return tls_.has_value(); }
 
  private:
+  // A flood of connections must not fill the log.
+  base::LineLimit untold_{1};
+
   net::awaitable<void> Accept() {
     while (!stopping_) {
       error_code error;
@@ -109,7 +113,10 @@ class Gateway::Listener {
         continue;
       }
       // Probably out of file descriptors; trying again at once would waste processor time.
-      spdlog::warn("cannot accept a browser's connection: {}", error.message());
+      if (const auto left_out = untold_.Take(std::chrono::system_clock::now()); left_out) {
+        spdlog::warn("cannot accept a browser's connection: {} ({} more since the last line)",
+                     error.message(), *left_out);
+      }
       net::steady_timer pause(io_, kAcceptPause);
       co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
     }

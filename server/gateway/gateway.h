@@ -61,14 +61,15 @@ struct GatewayOptions {
   // Responses are limited only by the channel.
   size_t max_message_bytes = 4u << 20;
   // Maximum numbers of connections, in all and from one address. At a maximum, a new connection
-  // takes the place of the most expendable one: the longest that has sent no whole request, else
-  // one that takes long to read a file. Where all are calls, the new connection is refused.
+  // takes the place of the most expendable one: the longest that has sent no whole request, or a
+  // WebSocket that the service has not answered, else one that takes long to read a file. Where all
+  // are calls, the new connection is refused.
   size_t max_connections = 768;
   size_t max_connections_per_address = 512;
   // Closes a connection without a call on which no request begins within this time.
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(60);
-  // A request's header, and a TLS handshake, must be complete within this time, and so must the
-  // body after it within three times as long.
+  // A request's header, and a TLS handshake, must be complete within this time, a WebSocket's first
+  // message must begin within it, and the body after a header within three times as long.
   std::chrono::milliseconds header_timeout = std::chrono::seconds(10);
   // A file or text must be read within three header timeouts and the time that it takes at this
   // rate. (Calls have write_stall_timeout alone: their own clients wait for them.)

@@ -133,7 +133,10 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
   const std::string_view target = View(request.target());
   const std::string path(target.substr(0, target.find('?')));
   bool keep = false;
-  if (!site_.policy.AllowsHost(host)) {
+  if (request.count(http::field::host) > 1) {
+    keep = co_await SendText(request, http::status::bad_request,
+                             "A request has one Host header, not several.\n");
+  } else if (!site_.policy.AllowsHost(host)) {
     Tell(request, "Request", HostNotAllowed());
     keep = co_await SendText(request, http::status::forbidden,
                              absl::StrCat("This server does not answer to '", std::string(host),
@@ -201,7 +204,8 @@ net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
     keep = co_await SendText(request, http::status::bad_request,
                              "Nothing may be sent before the upgrade is answered.\n");
   } else {
-    link_.Begin(LinkUse::kCalling);
+    // It says itself when the service works for it.
+    link_.Begin(LinkUse::kReceiving);
     const auto exchange = std::make_shared<WebSocketExchange>(site_, link_.shared_from_this());
     co_await exchange->Run(request, *upstream);
   }

@@ -78,6 +78,7 @@ net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
   socket_.binary(true);
   // Otherwise each message would be sent in frames of 4 KiB.
   socket_.auto_fragment(false);
+  accepted_at_ = PeerLiveness::Clock::now();
   co_return true;
 }
 
@@ -107,6 +108,8 @@ net::awaitable<void> WebSocketExchange::ForwardResponses() {
     const std::optional<grpc::ByteBuffer> message = co_await call_->ReadMessage();
     if (is_closing_) co_return;
     if (!message.has_value()) break;
+    // Only now has the service let it in: until then it makes room for others.
+    if (link_->Use() != LinkUse::kCalling) link_->Begin(LinkUse::kCalling);
     written = co_await WriteMessage(*message);
   }
   if (written) written = co_await WriteTrailers();
@@ -152,6 +155,7 @@ net::awaitable<void> WebSocketExchange::Close() {
 
 net::awaitable<void> WebSocketExchange::ForwardRequests() {
   error_code error = co_await reader_.ReadStart();
+  has_begun_ = true;
   while (!error) {
     if (const auto violation = FindViolation(reader_.Start()); violation.has_value()) {
       EndWith(*violation);
@@ -191,7 +195,9 @@ net::awaitable<void> WebSocketExchange::Watch() {
       {options.websocket_ping_interval, options.write_stall_timeout, kCloseTimeout},
       PeerLiveness::Clock::now());
   const milliseconds period =
-      std::clamp(std::min(options.websocket_ping_interval, options.write_stall_timeout) / 4,
+      std::clamp(std::min({options.websocket_ping_interval, options.write_stall_timeout,
+                           options.header_timeout}) /
+                     4,
                  kFastestWatch, kSlowestWatch);
   while (link_->Stream().socket().is_open()) {
     watch_timer_.expires_after(period);
@@ -210,6 +216,9 @@ void WebSocketExchange::Judge(PeerLiveness& liveness) {
       liveness.Judge({link_->ReceivedBytes(), link_->SentBytes(), link_->DeliveredBytes(),
                       is_writing_, is_pinging_, !is_held_back_, is_closing_},
                      now);
+  if (!has_begun_ && now - accepted_at_ > site_.options.header_timeout) {
+    EndWith({websocket::close_code::policy_error, "no message came in time"});
+  }
   const bool must_leave = leave_by_.has_value() && now >= *leave_by_;
   if (verdict == PeerLiveness::Verdict::kDrop || must_leave ||
       (is_held_back_ && link_->HasHungUp())) {

@@ -77,6 +77,8 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   std::shared_ptr<UpstreamCall> call_;
   std::string client_;
 
+  PeerLiveness::Clock::time_point accepted_at_{};
+  bool has_begun_ = false;  // the client's first message has come, or it has ended
   bool is_writing_ = false;
   bool is_pinging_ = false;
   bool is_held_back_ = false;

@@ -93,6 +93,8 @@ TEST_F(RefusalsTest, WhatIsTooLargeIsTold) {
 TEST_F(RefusalsTest, AConnectionWithoutRoomIsTold) {
   options_.max_connections = 1;
   WebSocketClient calling(Port());
+  calling.Send(std::string("\0\x0a\x05storm", 8));
+  EXPECT_TRUE(calling.Receive().has_value());
   EXPECT_TRUE(RawClient(Port()).IsClosed());
   EXPECT_THAT(Told(), ElementsAre("Connect TOO_MANY_CONNECTIONS"));
   calling.Vanish();

@@ -95,6 +95,16 @@ TEST_F(SlowClientsTest, HalfOpenSocketsLockNobodyOut) {
   EXPECT_LT(LoadPage(), milliseconds(1000));
 }
 
+TEST_F(SlowClientsTest, SilentWebSocketsLockNobodyOut) {
+  const SilentSockets silent(Site().Port(), 768,
+                             "GET /thunderhead.gateway.test.Echo/Converse HTTP/1.1\r\n"
+                             "Host: localhost\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
+                             "Sec-WebSocket-Version: 13\r\n"
+                             "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+                             "Sec-WebSocket-Protocol: grpc-websocket.v1\r\n\r\n");
+  EXPECT_LT(LoadPage(), milliseconds(1000));
+}
+
 TEST_F(SlowClientsTest, AnAddressThatHasItsShareMakesRoomItself) {
   options_.max_connections_per_address = 2;
   RawClient first(Site().Port());
@@ -109,12 +119,16 @@ TEST_F(SlowClientsTest, CallsDoNotMakeRoom) {
   options_.max_connections = 2;
   WebSocketClient first(Site().Port());
   WebSocketClient second(Site().Port());
-  EXPECT_TRUE(RawClient(Site().Port()).IsClosed());
   const std::string message("\0\x0a\x05storm", 8);
-  first.Send(message);
-  EXPECT_TRUE(first.Receive().has_value());
-  second.Send(message);
-  EXPECT_TRUE(second.Receive().has_value());
+  for (WebSocketClient* const client : {&first, &second}) {
+    client->Send(message);
+    EXPECT_TRUE(client->Receive().has_value());
+  }
+  EXPECT_TRUE(RawClient(Site().Port()).IsClosed());
+  for (WebSocketClient* const client : {&first, &second}) {
+    client->Send(message);
+    EXPECT_TRUE(client->Receive().has_value());
+  }
   first.Vanish();
   second.Vanish();
 }

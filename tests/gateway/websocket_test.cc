@@ -492,6 +492,19 @@ TEST_F(WebSocketTest, PeerThatAnswersNoPingsIsDropped) {
   EXPECT_TRUE(client.IsCut());
 }
 
+TEST_F(WebSocketTest, WhoSaysNothingAtFirstIsClosed) {
+  options_.header_timeout = milliseconds(300);
+  WebSocketClient talks(Site().Port());
+  talks.Send(Saying("hello"));
+  const auto begin = Clock::now();
+  WebSocketClient silent(Site().Port());
+  EXPECT_EQ(silent.CloseCode(), 1008);
+  EXPECT_GE(Clock::now() - begin, milliseconds(300));
+  EXPECT_EQ(PayloadOf(talks.Receive()), "hello");
+  talks.Send(Saying("again"));
+  EXPECT_EQ(PayloadOf(talks.Receive()), "again");
+}
+
 TEST_F(WebSocketTest, QuietPeerThatAnswersPingsStays) {
   options_.websocket_ping_interval = milliseconds(100);
   options_.idle_timeout = milliseconds(100);

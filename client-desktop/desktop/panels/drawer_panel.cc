@@ -81,7 +81,6 @@ void DrawerPanel(Ui& ui) {
   ImGui::InputTextWithHint("##query", "Search by name or meaning", &ui.choices.query);
   const std::string wanted = absl::AsciiStrToLower(absl::StripAsciiWhitespace(ui.choices.query));
   ImGui::BeginChild("settings");
-  ImGui::BeginDisabled(!ui.state.Steers());
   // An edit changes the list.
   const std::vector<Parameter> parameters = ui.parameters;
   std::string group;
@@ -92,13 +91,18 @@ void DrawerPanel(Ui& ui) {
     any = true;
     if (parameter.group != group) {
       group = parameter.group;
+      // What a search opens closes with it.
+      const std::string title = TitleOf(group);
       if (!wanted.empty()) ImGui::SetNextItemOpen(true);
-      open = ImGui::CollapsingHeader(TitleOf(group).c_str());
+      open = ImGui::CollapsingHeader((wanted.empty() ? title : title + "##found").c_str());
     }
-    if (open) DrawSetting(ui, parameter);
+    if (!open) continue;
+    // Who does not steer reads them.
+    ImGui::BeginDisabled(!ui.state.Steers());
+    DrawSetting(ui, parameter);
+    ImGui::EndDisabled();
   }
   if (!any) Quiet("No setting has such a name.");
-  ImGui::EndDisabled();
   ImGui::EndChild();
 }
 

@@ -15,10 +15,6 @@ void DrawPerson(Ui& ui, const v1::Person& person) {
   const client::SessionState& state = ui.state;
   const bool me = person.viewer_id() == state.viewer_id;
   const bool steers = person.viewer_id() == state.presence.steering_viewer_id();
-  std::string text = state.NameOf(person);
-  if (me) absl::StrAppend(&text, " (you)");
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(text.c_str());
   std::string notes;
   const auto note = [&notes](bool holds, const char* words) {
     if (holds) absl::StrAppend(&notes, notes.empty() ? "" : ", ", words);
@@ -28,11 +24,18 @@ void DrawPerson(Ui& ui, const v1::Person& person) {
   note(person.hidden(), "away");
   note(!person.follows(), "looking around");
   note(person.asks_control(), "asks to steer");
+  const bool gives = (state.Steers() || state.Presents()) && !me && !steers;
+  const float button = gives ? 116.0F * ui.scale : 0.0F;
+  const std::string you = me ? " (you)" : "";
+  const float room = ImGui::GetContentRegionAvail().x - button -
+                     ImGui::CalcTextSize((you + notes).c_str()).x -
+                     2.0F * ImGui::GetStyle().ItemSpacing.x;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted((Shortened(state.NameOf(person), room) + you).c_str());
   ImGui::SameLine();
   QuietLine(notes);
-  const bool gives = (state.Steers() || state.Presents()) && !me && !steers;
   if (!gives) return;
-  SameLineAtRight(116.0F * ui.scale);
+  SameLineAtRight(button);
   if (ImGui::Button("Give control")) ui.session.GiveControl(person.viewer_id());
 }
 

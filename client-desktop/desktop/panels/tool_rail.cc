@@ -1,6 +1,7 @@
 // Six tools, one open at a time, each with a key; and the panel of the one that is open.
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 
 #include "desktop/controls.h"
@@ -33,11 +34,12 @@ void DrawToolRail(Ui& ui, const Layout& layout) {
   const float button_height = 40.0F * ui.scale;
   const ImGuiStyle& style = ImGui::GetStyle();
   const float padding = 7.0F * ui.scale;
-  const float height =
+  const float whole =
       kTools.size() * button_height + (kTools.size() - 1) * style.ItemSpacing.y + 2.0F * padding;
+  const float height = std::min(whole, layout.bottom() - layout.top());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {padding, padding});
   if (BeginPanel("tool rail", {layout.margin, layout.top()}, {layout.rail_width, height},
-                 ImGuiWindowFlags_NoScrollbar)) {
+                 height < whole ? 0 : ImGuiWindowFlags_NoScrollbar)) {
     ImGui::PushFont(SmallFont());
     for (const ToolText& each : kTools) {
       const bool open = ui.choices.tool == each.tool;

@@ -40,21 +40,26 @@ std::string LinkText(const Ui& ui) {
 void DrawStorm(Ui& ui, float right) {
   const auto& storm = ui.storms.storm;
   const bool known = storm.id() == ui.state.scene.storm_id() && !storm.id().empty();
+  const int index = ui.time_index();
+  const bool has_time = known && index < storm.times_size();
   ImGui::PushFont(BoldFont());
-  const std::string title = known ? storm.title() : ui.state.scene.storm_id();
+  const std::string time = has_time ? FormatValidTime(storm.times(index)) : "";
+  const float gap = 16.0F * ui.scale;
+  const float room = right - ImGui::GetCursorPosX() - 2.0F * gap -
+                     (has_time ? ImGui::CalcTextSize(time.c_str()).x + gap : 0.0F);
+  const std::string title =
+      Shortened(known ? storm.title() : ui.state.scene.storm_id(), std::max(room, 2.0F * gap));
   if (ImGui::Button(absl::StrCat(title.empty() ? "Storms" : title, "###storm").c_str())) {
     ui.choices.Toggle(Panel::kStorms);
   }
   ImGui::PopFont();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Storms (S)");
-  const int index = ui.time_index();
-  if (!known || index >= storm.times_size()) return;
-  ImGui::SameLine(0.0F, 16.0F * ui.scale);
+  if (!has_time || room < 2.0F * gap) return;
+  ImGui::SameLine(0.0F, gap);
   ImGui::PushFont(BoldFont());
-  ImGui::TextUnformatted(FormatValidTime(storm.times(index)).c_str());
+  ImGui::TextUnformatted(time.c_str());
   ImGui::PopFont();
   const std::string elapsed = FormatElapsed(storm.times(index).elapsed_s());
-  const float gap = 16.0F * ui.scale;
   ImGui::SameLine(0.0F, gap);
   if (ImGui::GetCursorPosX() + ImGui::CalcTextSize(elapsed.c_str()).x + gap < right) {
     QuietLine(elapsed);
@@ -66,8 +71,7 @@ ImVec4 LinkColor(client::Link link) {
   return link == client::Link::kConnecting ? kQuiet : kBad;
 }
 
-void DrawLink(Ui& ui) {
-  const std::string text = LinkText(ui);
+void DrawLink(Ui& ui, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.0F, 0.0F, 0.0F, 0.0F));
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float radius = 4.0F * ui.scale;
@@ -75,7 +79,9 @@ void DrawLink(Ui& ui) {
     ui.choices.Toggle(Panel::kReadout);
   }
   ImGui::PopStyleColor();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Figures of the pictures (I)");
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("%s\nFigures of the pictures (I)", LinkText(ui).c_str());
+  }
   const float middle = at.y + 0.5F * ImGui::GetFrameHeight();
   ImGui::GetWindowDrawList()->AddCircleFilled({at.x + 14.0F * ui.scale, middle}, radius,
                                               ImGui::GetColorU32(LinkColor(ui.state.link)));
@@ -95,12 +101,16 @@ void DrawTopBar(Ui& ui, const Layout& layout) {
     const std::string people =
         ui.state.Alone() ? "People" : absl::StrCat("People ", ui.state.presence.people_size());
     const float gap = ImGui::GetStyle().ItemSpacing.x;
-    const float width = WidthOf("    " + LinkText(ui)) + WidthOf(people) + WidthOf("Settings") +
-                        WidthOf("?") + 3.0F * gap;
-    const float right = size.x - width - ImGui::GetStyle().WindowPadding.x;
+    const float buttons = WidthOf(people) + WidthOf("Settings") + WidthOf("?") + 3.0F * gap;
+    const float inside = size.x - ImGui::GetStyle().WindowPadding.x - buttons;
+    // Storm and time come first; the lamp alone says how the connection is where there is no room.
+    std::string link = LinkText(ui);
+    constexpr float kStormRoom = 230.0F;
+    if (inside - WidthOf("    " + link) < kStormRoom * ui.scale) link.clear();
+    const float right = inside - WidthOf("    " + link);
     DrawStorm(ui, right);
     ImGui::SameLine(right);
-    DrawLink(ui);
+    DrawLink(ui, link);
     ImGui::SameLine();
     if (ImGui::Button("Settings")) ui.choices.Toggle(Panel::kDrawer);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Every setting (X)");
