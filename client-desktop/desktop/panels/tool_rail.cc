@@ -36,10 +36,11 @@ void DrawToolRail(Ui& ui, const Layout& layout) {
   const float padding = 7.0F * ui.scale;
   const float whole =
       kTools.size() * button_height + (kTools.size() - 1) * style.ItemSpacing.y + 2.0F * padding;
-  const float height = std::min(whole, layout.bottom() - layout.top());
+  // It stands beside the time line; where even that is too little the wheel scrolls it.
+  const float height = std::min(whole, layout.window.y - layout.margin - layout.top());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {padding, padding});
   if (BeginPanel("tool rail", {layout.margin, layout.top()}, {layout.rail_width, height},
-                 height < whole ? 0 : ImGuiWindowFlags_NoScrollbar)) {
+                 ImGuiWindowFlags_NoScrollbar)) {
     ImGui::PushFont(SmallFont());
     for (const ToolText& each : kTools) {
       const bool open = ui.choices.tool == each.tool;
