@@ -11,11 +11,10 @@ namespace {
 constexpr double kForgetting = 0.8;
 // Below this variance of x (relative to its mean square) a and b cannot be determined separately.
 constexpr double kMinRelativeVariance = 1e-3;
-// Sizes that differ by a tenth of a million samples say as much as what is supposed before anything
-// was measured; frames of one size, of one million. The pictures that a server draws at its start
-// are far smaller, and mostly fixed cost: by them alone a still of 3840 x 2160 would take an hour.
-constexpr double kSizeNoise = 0.01;
-constexpr double kUnknown = CostModel::kUnknownMsPerMegaSample;
+// The line holds up to so many times the size of the frames that it was fitted to. Those of a
+// server's start have a hundredth of a million samples and mostly fixed cost: by their line a still
+// of 3840 x 2160 would take an hour.
+constexpr double kReach = 10.0;
 
 bool IsPreparation(const scene::StageTime& cost) {
   using scene::FrameStage;
@@ -58,8 +57,11 @@ std::optional<double> ViewMs(double total_ms, const std::vector<scene::StageTime
 }
 
 double CostModel::EstimateMs(double mega_samples, scene::Stage first_dirty) const {
+  const double near = std::min(mega_samples, reach_mega_samples_);
   const double drawing_ms =
-      first_dirty >= scene::Stage::kTone ? 0.0 : ms_per_mega_sample_ * mega_samples;
+      first_dirty >= scene::Stage::kTone
+          ? 0.0
+          : ms_per_mega_sample_ * near + ms_beyond_reach_ * (mega_samples - near);
   const double preparation_ms = first_dirty <= scene::Stage::kExtinction ? preparation_ms_ : 0.0;
   const double light_ms = first_dirty <= scene::Stage::kLight ? light_ms_ : 0.0;
   return fixed_ms_ + drawing_ms + preparation_ms + light_ms;
@@ -88,25 +90,24 @@ void CostModel::Observe(double mega_samples, double total_ms,
 }
 
 void CostModel::Fit() {
-  const double mean_x = sum_x_ / weight_;
-  const double mean_y = sum_y_ / weight_;
-  const double variance = sum_xx_ / weight_ - mean_x * mean_x;
-  if (variance > kMinRelativeVariance * mean_x * mean_x) {
-    const double covariance = sum_xy_ / weight_ - mean_x * mean_y;
-    SetLine((covariance + kSizeNoise * kUnknown) / (variance + kSizeNoise), mean_x, mean_y);
-    if (ms_per_mega_sample_ > 0.0 && fixed_ms_ >= 0.0) return;
-  }
-  // Frames of one size, or a fit that noise has bent below zero: nearly all of the cost grows with
-  // the size, unless they are so small that they say nothing of larger ones.
-  SetLine((sum_xy_ / weight_ + kUnknown) / (sum_xx_ / weight_ + 1.0), mean_x, mean_y);
-  if (fixed_ms_ >= 0.0) return;
-  fixed_ms_ = 0.0;
-  ms_per_mega_sample_ = sum_xx_ > 0.0 ? sum_xy_ / sum_xx_ : ms_per_mega_sample_;
+  FitLine();
+  reach_mega_samples_ = kReach * std::sqrt(sum_xx_ / weight_);
+  // As the mean of the frames; those far below a million samples say less than what is supposed.
+  const double mean = (sum_xy_ / weight_ + kUnknownMsPerMegaSample) / (sum_xx_ / weight_ + 1.0);
+  ms_beyond_reach_ = std::min(ms_per_mega_sample_, mean);
 }
 
-void CostModel::SetLine(double slope, double mean_x, double mean_y) {
-  ms_per_mega_sample_ = slope;
-  fixed_ms_ = mean_y - slope * mean_x;
+void CostModel::FitLine() {
+  const double variance = weight_ * sum_xx_ - sum_x_ * sum_x_;
+  if (variance > kMinRelativeVariance * sum_x_ * sum_x_) {
+    ms_per_mega_sample_ = (weight_ * sum_xy_ - sum_x_ * sum_y_) / variance;
+    fixed_ms_ = (sum_y_ - ms_per_mega_sample_ * sum_x_) / weight_;
+    if (ms_per_mega_sample_ > 0.0 && fixed_ms_ >= 0.0) return;
+  }
+  // Frames of one size, or a fit that noise has bent below zero: all of the cost grows with the
+  // size.
+  fixed_ms_ = 0.0;
+  ms_per_mega_sample_ = sum_xx_ > 0.0 ? sum_xy_ / sum_xx_ : ms_per_mega_sample_;
 }
 
 }  // namespace thunderhead::accuracy

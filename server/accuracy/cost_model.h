@@ -3,6 +3,7 @@
 // preparing the fields and carrying the light took when they changed. Plain values, no clock.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -35,7 +36,7 @@ class CostModel {
 
  private:
   void Fit();
-  void SetLine(double slope, double mean_x, double mean_y);
+  void FitLine();
 
   double weight_ = 0.0;
   double sum_x_ = 0.0;
@@ -44,6 +45,8 @@ class CostModel {
   double sum_xy_ = 0.0;
   double fixed_ms_ = 0.0;
   double ms_per_mega_sample_ = kUnknownMsPerMegaSample;
+  double reach_mega_samples_ = std::numeric_limits<double>::infinity();
+  double ms_beyond_reach_ = kUnknownMsPerMegaSample;
   double preparation_ms_ = 0.0;
   double light_ms_ = 0.0;
 };

@@ -109,7 +109,8 @@ test("a browser that saves data sees video while the camera turns, and a still o
   const apart = difference(still, jpeg);
   assert.ok(apart < ALIKE, `the still is ${apart} levels from JPEG`);
   await viewer.getByTestId("readout-summary").click();
-  assert.match(await viewer.getByTestId("encoding").innerText(), /AVIF/);
+  // A frame with more traced light, which comes as video before its own still, may be between.
+  await until("the readout's word for it", async () => /AVIF/.test(await viewer.getByTestId("encoding").innerText()));
   await screenshot("still-avif", viewer);
   assert.deepEqual(complaints, []);
 });
@@ -131,8 +132,7 @@ test("where there is no video the pictures are JPEG or stills, and the readout s
   const plain = await open(server.url.replace("127.0.0.1", OTHER_HOST));
   await rested(plain);
   assert.equal(await plain.evaluate(() => isSecureContext), false);
-  await until("the still", async () => (await canvasData(plain)).encoding === "avif");
-  assert.equal(await sentAs(plain), "AVIF, 10 bits; video needs HTTPS or localhost");
+  await until("the still", async () => (await sentAs(plain)) === "AVIF, 10 bits; video needs HTTPS or localhost");
   // Others reach such an address, so Share does not warn.
   await plain.getByTestId("share").click();
   const link = await plain.getByTestId("viewers-link").inputValue();
