@@ -123,11 +123,12 @@ for (const [name, createTransport] of Object.entries(transports)) {
         anyPack(BadRequestSchema, create(BadRequestSchema, { fieldViolations: [violation] })),
       ];
       const status = toBinary(StatusSchema, create(StatusSchema, { code: 3, message, details }));
+      // One after the other: one that fails while nobody waits for it ends the program.
       for (const call of [
-        client.failOnce({ code: 3, message, details: status }),
-        collect(client.fail({ code: 3, message, messages: 2, details: status })),
+        () => client.failOnce({ code: 3, message, details: status }),
+        () => collect(client.fail({ code: 3, message, messages: 2, details: status })),
       ]) {
-        const error = await failureOf(call);
+        const error = await failureOf(call());
         assert.equal(error.code, Code.InvalidArgument);
         assert.equal(error.rawMessage, message);
         const [info] = error.findDetails(ErrorInfoSchema);
