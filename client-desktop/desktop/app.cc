@@ -44,7 +44,7 @@ bool Differs(const v1::Window& a, const v1::Window& b) {
   return a.width_px() != b.width_px() || a.height_px() != b.height_px() || a.hidden() != b.hidden();
 }
 
-// Whether the keys that follow go to another control, or to none.
+// True for an event after which another control, or none, may have the keyboard.
 bool MovesFocus(const SDL_Event& event) {
   if (event.type == SDL_MOUSEBUTTONDOWN || event.type == SDL_MOUSEBUTTONUP) return true;
   if (event.type != SDL_KEYDOWN) return false;

@@ -42,18 +42,18 @@ void Ui::StepTime(int by) {
 
 void Ui::Undo() {
   if (!state.Steers()) return;
-  if (auto scene = history.Undo(state.scene)) {
-    session.Edit([scene = *std::move(scene)](v1::Scene& edited) { edited = scene; });
-    Refresh();
-  }
+  ShowAgain(history.Undo(state.scene));
 }
 
 void Ui::Redo() {
   if (!state.Steers()) return;
-  if (auto scene = history.Redo(state.scene)) {
-    session.Edit([scene = *std::move(scene)](v1::Scene& edited) { edited = scene; });
-    Refresh();
-  }
+  ShowAgain(history.Redo(state.scene));
+}
+
+void Ui::ShowAgain(std::optional<v1::Scene> scene) {
+  if (!scene) return;
+  session.Edit([scene = *std::move(scene)](v1::Scene& edited) { edited = scene; });
+  Refresh();
 }
 
 int Ui::time_count() const { return storms.storm.times_size(); }

@@ -62,6 +62,10 @@ struct Ui {
   bool Refresh();
   // Texts appeared or vanished; the interface needs more than one drawing to lay them out.
   bool texts_changed = false;
+
+ private:
+  // A scene of the history, if there is one.
+  void ShowAgain(std::optional<v1::Scene> scene);
 };
 
 }  // namespace thunderhead::desktop

@@ -99,9 +99,6 @@ class Gateway::Listener {
   bool IsEncrypted() const { return tls_.has_value(); }
 
  private:
-  // A flood of connections must not fill the log.
-  base::LineLimit untold_{1};
-
   net::awaitable<void> Accept() {
     while (!stopping_) {
       error_code error;
@@ -113,7 +110,7 @@ class Gateway::Listener {
         continue;
       }
       // Probably out of file descriptors; trying again at once would waste processor time.
-      if (const auto left_out = untold_.Take(std::chrono::system_clock::now()); left_out) {
+      if (const auto left_out = accept_errors_.Take(std::chrono::system_clock::now()); left_out) {
         spdlog::warn("cannot accept a browser's connection: {} ({} more since the last line)",
                      error.message(), *left_out);
       }
@@ -148,6 +145,7 @@ class Gateway::Listener {
   tcp::endpoint endpoint_;
   std::optional<TlsContexts> tls_;
   OpenLinks links_;
+  base::LineLimit accept_errors_{1};  // without descriptors left there are ten a second
   bool stopping_ = false;
   std::thread thread_;
 };

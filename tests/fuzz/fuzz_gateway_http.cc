@@ -17,6 +17,7 @@
 #include "gateway/text_view.h"
 #include "gateway/websocket_protocol.h"
 #include "gateway/websocket_upgrade.h"
+#include "tests/fuzz/must.h"
 
 namespace thunderhead::gateway {
 namespace {
@@ -48,9 +49,7 @@ StaticFiles Page() {
   return *StaticFiles::Open(folder.Path());
 }
 
-void Must(bool condition) {
-  if (!condition) std::abort();
-}
+using fuzz::Must;
 
 // gRPC ends the process for metadata that breaks its rules.
 void CheckMetadata(const Metadata& metadata) {

@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <string>
 
 #include "spdlog/spdlog.h"
+#include "tests/fuzz/must.h"
 #include "tests/fuzz/websocket_bytes.h"
 #include "tests/gateway/echo_service.h"
 
@@ -20,9 +20,7 @@ namespace {
 
 constexpr int kPatience_ms = 20'000;
 
-void Must(bool condition) {
-  if (!condition) std::abort();
-}
+using fuzz::Must;
 
 std::uint16_t Port() {
   static const std::unique_ptr<test::EchoSite> site = [] {

@@ -1,7 +1,6 @@
 // Small texts and bytes from outside: manifest lines, names of products, rules of readiness, marks
 // from the store, and what `thunderhead load` gets from a server.
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 
 #include "load/web_wire.h"
@@ -9,14 +8,13 @@
 #include "pipeline/product_name.h"
 #include "pipeline/readiness.h"
 #include "store/mark_bytes.h"
+#include "tests/fuzz/must.h"
 
 namespace {
 
 using namespace thunderhead;
 
-void Must(bool condition) {
-  if (!condition) std::abort();
-}
+using fuzz::Must;
 
 void TakeLine(const std::string& text) {
   const auto entry = pipeline::FromLine(text);

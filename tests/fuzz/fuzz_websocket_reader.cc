@@ -14,6 +14,7 @@
 #include <exception>
 #include <string>
 
+#include "tests/fuzz/must.h"
 #include "tests/fuzz/websocket_bytes.h"
 
 namespace thunderhead::gateway {
@@ -27,9 +28,7 @@ using Socket = beast::websocket::stream<beast::test::stream, /*deflateSupported=
 
 constexpr std::size_t kMaxMessageBytes = 1U << 12;
 
-void Must(bool condition) {
-  if (!condition) std::abort();
-}
+using fuzz::Must;
 
 http::request<http::string_body> Upgrade() {
   http::request<http::string_body> request(http::verb::get, "/a.B/C", 11);

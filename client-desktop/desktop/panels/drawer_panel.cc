@@ -91,7 +91,7 @@ void DrawerPanel(Ui& ui) {
     any = true;
     if (parameter.group != group) {
       group = parameter.group;
-      // What a search opens closes with it.
+      // A group that a search has opened is closed again when the search is empty.
       const std::string title = TitleOf(group);
       if (!wanted.empty()) ImGui::SetNextItemOpen(true);
       open = ImGui::CollapsingHeader((wanted.empty() ? title : title + "##found").c_str());
