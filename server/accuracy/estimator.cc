@@ -16,7 +16,7 @@ Setting DrawnWith(Setting setting, const FrameQuality& quality, std::int64_t tra
     const int drawn = static_cast<int>(std::ceil(*slices * quality.slice_share));
     scene::SetSlices(&setting.technique, std::max(drawn, 1));
   }
-  setting.image_scale *= quality.image_scale;
+  setting.image_scale *= quality.Scale();
   setting.million_paths = static_cast<double>(traced_paths) / 1e6;
   return setting;
 }

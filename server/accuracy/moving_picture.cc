@@ -55,6 +55,21 @@ double Sum_ms(const renderers::StageTimes& times) {
 
 }  // namespace
 
+double MovingOutputScale(const scene::Scene& scene) {
+  const double pixels = 1.0 * scene.output.width_px * scene.output.height_px;
+  return std::min(std::sqrt(kMostMovingPixels / pixels), 1.0);
+}
+
+scene::Scene WithOutputScale(const scene::Scene& scene, double output_scale) {
+  const auto scaled = [&](int pixels) {
+    return std::max(static_cast<int>(std::lround(output_scale * pixels)), 1);
+  };
+  scene::Scene smaller = scene;
+  smaller.output.width_px = scaled(scene.output.width_px);
+  smaller.output.height_px = scaled(scene.output.height_px);
+  return smaller;
+}
+
 bool MovesSparsely(const scene::Scene& scene) {
   return scene::CapabilitiesOf(scene.rendering.technique).sparse;
 }

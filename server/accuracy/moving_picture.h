@@ -22,6 +22,16 @@ inline constexpr int kMovingContrast = 18;
 // Of the light while the sun or a field changes (renderers::DrawQuality).
 inline constexpr double kMovingLightTolerance = 4e-3;
 
+// Frames of a moving scene that asks for more pixels have so many: the work that is done for each
+// of a picture's pixels, however few have rays, holds up all others (docs/reliability.md).
+inline constexpr double kMostMovingPixels = 1600.0 * 900.0;
+
+// FrameQuality::output_scale of the scene's frames while it moves.
+double MovingOutputScale(const scene::Scene& scene);
+
+// The scene with a picture of `output_scale` of its width and height.
+scene::Scene WithOutputScale(const scene::Scene& scene, double output_scale);
+
 // True for scenes that are drawn so while they move.
 bool MovesSparsely(const scene::Scene& scene);
 

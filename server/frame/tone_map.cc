@@ -18,6 +18,8 @@ constexpr float kMaxFactor = 64.0F;
 constexpr float kMaxAboveCard = 2.0F;
 
 constexpr gl::PieceCost kPixel{"tone map", 50.0};
+// Of a pixel of several bytes a channel.
+constexpr double kFinePixel_ns = 4.0;
 
 struct ToneMapVariant {
   gl::DefineValue filmic;
@@ -28,6 +30,45 @@ struct ToneMapVariant {
 
 std::size_t PixelCount(const gl::Texture2D& texture) {
   return static_cast<std::size_t>(texture.Size().x) * static_cast<std::size_t>(texture.Size().y);
+}
+
+struct PixelFormat {
+  GLenum channels;
+  GLenum type;
+  std::size_t count;  // of channels
+};
+
+// The texture's pixels into `values`, some rows in each piece.
+template <typename Value>
+absl::Status ReadRows(const gl::Texture2D& texture, const PixelFormat& format, gl::Pieces& pieces,
+                      Value* values) {
+  const glm::ivec2 size = texture.Size();
+  const std::size_t row = format.count * static_cast<std::size_t>(size.x);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  return pieces.Steps(
+      {"read back finely", kFinePixel_ns * size.x}, size.y, [&](int begin, int end) {
+        const std::size_t count = row * static_cast<std::size_t>(end - begin);
+        glGetTextureSubImage(texture.Get(), 0, 0, begin, 0, size.x, end - begin, 1, format.channels,
+                             format.type, static_cast<GLsizei>(count * sizeof(Value)),
+                             values + row * static_cast<std::size_t>(begin));
+      });
+}
+
+// From rows from bottom to top, four floats a pixel.
+picture::LinearPicture PictureOfTexels(const std::vector<float>& values, const glm::ivec2& size) {
+  picture::LinearPicture picture;
+  picture.size_px = size;
+  picture.radiance.reserve(values.size() / 4);
+  picture.opacity.reserve(values.size() / 4);
+  const auto width = static_cast<std::size_t>(size.x);
+  for (auto y = static_cast<std::size_t>(size.y); y-- > 0;) {
+    for (std::size_t x = 0; x < width; ++x) {
+      const float* pixel = &values[4 * (y * width + x)];
+      picture.radiance.emplace_back(pixel[0], pixel[1], pixel[2]);
+      picture.opacity.push_back(pixel[3]);
+    }
+  }
+  return picture;
 }
 
 }  // namespace
@@ -79,10 +120,8 @@ absl::StatusOr<FineImage> ToneMapper::MapFine(const gl::Texture2D& linear) {
   THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA16, /*noise=*/false, &fine_display_));
   FineImage image{linear.Size().x, linear.Size().y, {}};
   image.rgb.resize(PixelCount(linear) * 3);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glGetTextureImage(fine_display_.texture.Get(), 0, GL_RGB, GL_UNSIGNED_SHORT,
-                    static_cast<GLsizei>(image.rgb.size() * sizeof(std::uint16_t)),
-                    image.rgb.data());
+  THUNDERHEAD_RETURN_IF_ERROR(ReadRows(fine_display_.texture, {GL_RGB, GL_UNSIGNED_SHORT, 3},
+                                       programs_->Pieces(), image.rgb.data()));
   return image;
 }
 
@@ -102,11 +141,15 @@ absl::Status ToneMapper::Draw(const gl::Texture2D& linear, GLenum format, bool n
   return whole_target_.Draw(programs_->Pieces(), kPixel, *program, display->target);
 }
 
-std::vector<float> ReadLinear(const gl::Texture2D& linear) {
+absl::StatusOr<std::vector<float>> ReadLinear(const gl::Texture2D& linear, gl::Pieces& pieces) {
   std::vector<float> values(PixelCount(linear) * 4);
-  glGetTextureImage(linear.Get(), 0, GL_RGBA, GL_FLOAT,
-                    static_cast<GLsizei>(values.size() * sizeof(float)), values.data());
+  THUNDERHEAD_RETURN_IF_ERROR(ReadRows(linear, {GL_RGBA, GL_FLOAT, 4}, pieces, values.data()));
   return values;
+}
+
+std::vector<float> ReadLinear(const gl::Texture2D& linear) {
+  gl::Pieces whole;
+  return *ReadLinear(linear, whole);
 }
 
 gl::Texture2D TextureOf(const picture::LinearPicture& picture) {
@@ -125,19 +168,17 @@ gl::Texture2D TextureOf(const picture::LinearPicture& picture) {
   return texture;
 }
 
-picture::LinearPicture PictureOf(const gl::Texture2D& linear) {
-  const std::vector<float> values = ReadLinear(linear);
+absl::StatusOr<picture::LinearPicture> PictureOf(const gl::Texture2D& linear, gl::Pieces& pieces) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> values, ReadLinear(linear, pieces));
   picture::LinearPicture picture;
-  picture.size_px = linear.Size();
-  const auto width = static_cast<std::size_t>(picture.size_px.x);
-  for (auto y = static_cast<std::size_t>(picture.size_px.y); y-- > 0;) {
-    for (std::size_t x = 0; x < width; ++x) {
-      const float* pixel = &values[4 * (y * width + x)];
-      picture.radiance.emplace_back(pixel[0], pixel[1], pixel[2]);
-      picture.opacity.push_back(pixel[3]);
-    }
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(
+      pieces.OffTurn([&] { picture = PictureOfTexels(values, linear.Size()); }));
   return picture;
+}
+
+picture::LinearPicture PictureOf(const gl::Texture2D& linear) {
+  gl::Pieces whole;
+  return *PictureOf(linear, whole);
 }
 
 }  // namespace thunderhead::frame

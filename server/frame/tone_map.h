@@ -12,6 +12,7 @@
 #include "frame/pixel_reader.h"
 #include "frame/white_balance.h"
 #include "gl/objects.h"
+#include "gl/pieces.h"
 #include "gl/program.h"
 #include "gl/whole_target.h"
 #include "picture/linear_picture.h"
@@ -74,12 +75,15 @@ class ToneMapper {
   Display fine_display_;
 };
 
-// The texture's values, four floats a pixel, rows from bottom to top as GL keeps them.
-std::vector<float> ReadLinear(const gl::Texture2D& linear);
+// The texture's values, four floats a pixel, rows from bottom to top as GL keeps them; some rows in
+// each piece.
+absl::StatusOr<std::vector<float>> ReadLinear(const gl::Texture2D& linear, gl::Pieces& pieces);
+std::vector<float> ReadLinear(const gl::Texture2D& linear);  // in one piece
 
 // A linear frame in the renderers' texture format, and back. A picture of unknown opacity counts
 // as all storm.
 gl::Texture2D TextureOf(const picture::LinearPicture& picture);
+absl::StatusOr<picture::LinearPicture> PictureOf(const gl::Texture2D& linear, gl::Pieces& pieces);
 picture::LinearPicture PictureOf(const gl::Texture2D& linear);
 
 }  // namespace thunderhead::frame

@@ -2,7 +2,6 @@
 
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
-#include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/security/tls_certificate_provider.h>
 #include <grpcpp/security/tls_credentials_options.h>
@@ -18,6 +17,7 @@
 #include "base/wake_signal.h"
 #include "service/catalogue_follower.h"
 #include "service/engine.h"
+#include "service/health_service.h"
 #include "service/interact_messages.h"
 #include "service/job_messages.h"
 #include "service/job_pictures.h"
@@ -40,6 +40,8 @@ constexpr int kKeepaliveTimeoutMs = 10'000;
 // A client that connects and says nothing, or begins no call, is dropped after these.
 constexpr int kHandshakeTimeoutMs = 10'000;
 constexpr int kIdleConnectionMs = 600'000;
+// Of services whose calls hold a thread each, which is reflection alone; further calls are refused.
+constexpr int kMaxCallThreads = 16;
 // Time for running calls to end by themselves before they are cancelled.
 constexpr std::chrono::seconds kShutdownGrace{2};
 
@@ -111,17 +113,17 @@ class RunningServer final : public Server {
                                               keeper_.get(), *catalogue_, drain_, limits_});
     service_ = MakeThunderheadService(*engine_, *door_);
     job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, jobs_.get());
-    // Global settings, which apply to every server built later.
+    // A global setting, which applies to every server built later.
     static std::once_flag plugins;
-    std::call_once(plugins, [] {
-      grpc::EnableDefaultHealthCheckService(true);
-      grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-    });
+    std::call_once(plugins, [] { grpc::reflection::InitProtoReflectionServerBuilderPlugin(); });
     grpc::ServerBuilder builder;
     builder.RegisterService(service_.get());
     builder.RegisterService(job_service_.get());
-    grpc::ResourceQuota memory("thunderhead");
-    builder.SetResourceQuota(memory.Resize(limits_.grpc_memory_bytes));
+    builder.RegisterService(&health_);
+    grpc::ResourceQuota quota("thunderhead");
+    quota.Resize(limits_.grpc_memory_bytes).SetMaxThreads(kMaxCallThreads);
+    builder.SetResourceQuota(quota);
+    builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
     builder.SetMaxReceiveMessageSize(static_cast<int>(limits_.max_request_bytes));
     builder.SetMaxSendMessageSize(kMaxResponseBytes);
     // Otherwise a second server would share the port instead of failing.
@@ -180,12 +182,7 @@ class RunningServer final : public Server {
     return place.ok() ? std::optional(*std::move(place)) : std::nullopt;
   }
 
-  void SetServing(bool serving) override {
-    serving = serving && !drain_.HasBegun();
-    grpc::HealthCheckServiceInterface& health = *server_->GetHealthCheckService();
-    health.SetServingStatus(serving);
-    health.SetServingStatus(v1::ThunderheadService::service_full_name(), serving);
-  }
+  void SetServing(bool serving) override { health_.SetServing(serving && !drain_.HasBegun()); }
 
   void BeginDrain() override {
     drain_.Begin();
@@ -195,7 +192,7 @@ class RunningServer final : public Server {
   }
 
   void Shutdown() override {
-    if (server_ != nullptr) server_->GetHealthCheckService()->Shutdown();
+    health_.SetServing(false);
     if (jobs_ != nullptr) jobs_->CancelPictures();
     // First, so that no picture is begun after a client has seen its stream end.
     if (loop_ != nullptr) loop_->RequestStop();
@@ -234,6 +231,7 @@ class RunningServer final : public Server {
   std::unique_ptr<jobs::Jobs> jobs_;  // null: none are kept
   std::unique_ptr<grpc::Service> service_;
   std::unique_ptr<RenderJobService> job_service_;
+  HealthService health_{v1::ThunderheadService::service_full_name()};
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<LocalListener> local_;
   int port_ = 0;

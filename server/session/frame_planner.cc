@@ -13,9 +13,12 @@ namespace {
 // the estimate do not change the size of the buffers.
 constexpr int kSteps = 8;
 
-FrameQuality Step(int step, bool sparse) {
+// `quality` at one of the steps.
+FrameQuality Step(int step, FrameQuality quality) {
   const double share = kCoarsest * std::pow(1.0 / kCoarsest, static_cast<double>(step) / kSteps);
-  return step == kSteps ? FrameQuality{1.0, 1.0, sparse} : FrameQuality{share, share, sparse};
+  quality.image_scale = step == kSteps ? 1.0 : share;
+  quality.slice_share = quality.image_scale;
+  return quality;
 }
 
 bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
@@ -48,10 +51,15 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
                                const std::optional<LastDrawn>& last_drawn) const {
   const scene::Stage first_dirty = FirstDirty(last_drawn, scene);
   if (first_dirty < scene::Stage::kTone) {
-    const bool sparse =
-        accuracy::MovesSparsely(scene) &&
-        costs_.FrameMs(view_, scene, FrameQuality{}, first_dirty) > targets_.smooth_ms;
-    const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms, sparse);
+    const double whole_ms = costs_.FrameMs(view_, scene, FrameQuality{}, first_dirty);
+    const double output_scale = accuracy::MovingOutputScale(scene);
+    const bool large = output_scale < 1.0;
+    FrameQuality moving;
+    if (whole_ms > (large ? targets_.coarse_ms : targets_.smooth_ms)) {
+      moving.sparse = accuracy::MovesSparsely(scene);
+      moving.output_scale = output_scale;
+    }
+    const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms, moving);
     return {quality, IsFull(quality)};
   }
   // Only the tone changes: the linear frame is reused at its quality, at no cost.
@@ -85,7 +93,7 @@ std::optional<Clock::time_point> FramePlanner::FinerAt(
   if (finished_) return std::nullopt;
   const scene::Stage first_dirty = FirstDirtyAtRest(last_drawn, *drawn.scene);
   for (int step = 0; step <= kSteps; ++step) {
-    const FrameQuality quality = Step(step, false);
+    const FrameQuality quality = Step(step, {});
     if (!IsFiner(quality)) continue;
     const double ms = costs_.FrameMs(view_, *drawn.scene, quality, first_dirty);
     if (ms > targets_.longest_at_rest_ms) return std::nullopt;
@@ -117,16 +125,16 @@ void FramePlanner::Again() {
 }
 
 bool FramePlanner::IsFiner(const FrameQuality& quality) const {
-  return IsFull(quality) || quality.image_scale > drawn_.quality.image_scale;
+  return IsFull(quality) || quality.Scale() > drawn_.quality.Scale();
 }
 
 FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_dirty,
-                                  double budget_ms, bool sparse) const {
+                                  double budget_ms, const FrameQuality& moving) const {
   for (int step = kSteps; step > 0; --step) {
-    const FrameQuality quality = Step(step, sparse);
+    const FrameQuality quality = Step(step, moving);
     if (costs_.FrameMs(view_, scene, quality, first_dirty) <= budget_ms) return quality;
   }
-  return Step(0, sparse);
+  return Step(0, moving);
 }
 
 }  // namespace thunderhead::session

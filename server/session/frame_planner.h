@@ -103,7 +103,7 @@ class FramePlanner {
   Decision AtRest(const NewestScene& newest, Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;
   FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms,
-                      bool sparse = false) const;
+                      const FrameQuality& moving = {}) const;
   bool IsFiner(const FrameQuality& quality) const;  // than the frame drawn last
 
   const PlannerTargets targets_;

@@ -57,10 +57,11 @@ class GlFrameSource final : public FrameSource {
     return shared_.registry->PreparationOfScenes();
   }
 
-  absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
+  absl::StatusOr<DisplayFrame> Draw(const scene::Scene& whole,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                     const FrameQuality& quality) override {
     return Watched([&]() -> absl::StatusOr<DisplayFrame> {
+      const scene::Scene scene = accuracy::WithOutputScale(whole, quality.output_scale);
       const Correction correction = CorrectionOf(scene, fields);
       if (quality.sparse) return DrawMoving(scene, fields, quality, correction);
       THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -79,11 +80,17 @@ class GlFrameSource final : public FrameSource {
       CheckedFrame checked;
       THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame coarse,
                                    renderers_.Draw(scene, fields, Applied(correction, {1.0, 0.5})));
-      const std::vector<float> coarse_radiance = frame::ReadLinear(*coarse.radiance);
+      gl::Pieces& pieces = programs_->Pieces();
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> coarse_radiance,
+                                   frame::ReadLinear(*coarse.radiance, pieces));
       THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame fine,
                                    renderers_.Draw(scene, fields, Applied(correction, {})));
-      checked.discretisation_error =
-          accuracy::DiscretisationError(coarse_radiance, frame::ReadLinear(*fine.radiance));
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> fine_radiance,
+                                   frame::ReadLinear(*fine.radiance, pieces));
+      THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
+        checked.discretisation_error =
+            accuracy::DiscretisationError(coarse_radiance, fine_radiance);
+      }));
       THUNDERHEAD_ASSIGN_OR_RETURN(checked.frame, Display(fine, scene, correction));
       return checked;
     });
@@ -110,7 +117,7 @@ class GlFrameSource final : public FrameSource {
         return Watched([&]() -> absl::StatusOr<picture::LinearPicture> {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                        renderers_.Draw(measured, fields, Applied(correction, {})));
-          auto picture = frame::PictureOf(*linear.radiance);
+          auto picture = frame::PictureOf(*linear.radiance, programs_->Pieces());
           // The light's correction draws the storm with a renderer of its own.
           if (!HasRoomToMeasure(scene, *fields)) renderers_.DropUnusedFor(0.0);
           return picture;
@@ -152,7 +159,7 @@ class GlFrameSource final : public FrameSource {
       return absl::FailedPreconditionError("no picture was drawn whose light could be had");
     }
     return programs_->Pieces().During([&]() -> absl::StatusOr<picture::LinearPicture> {
-      return frame::PictureOf(*tone_mapped_->linear);
+      return frame::PictureOf(*tone_mapped_->linear, programs_->Pieces());
     });
   }
 

@@ -256,7 +256,7 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
     };
     if (!lane_.IsFree() || !has_light(lane_.Last())) return work;
     const bool is_finer = !has_light(source_.Last()) ||
-                          source_.Last()->quality.image_scale < lane_.Last()->quality.image_scale;
+                          source_.Last()->quality.Scale() < lane_.Last()->quality.Scale();
     if (!is_finer) return work;
   } else if (!IsLong(turn, work)) {
     return work;

@@ -17,23 +17,50 @@ std::string GroupOf(const Contender& contender) {
   return std::to_string(IndexOf(*contender.work)) + (contender.own_view ? " own" : "");
 }
 
-// Raises all balances by as much as lets one of `waiting` have a turn. Returns who that is: of
+struct Refilled {
+  std::string next;
+  double raised_ms = 0.0;
+};
+
+// Raises all balances by as much as lets one of `waiting` have a turn, and says who that is: of
 // several the one after `last`.
-std::string Refill(const std::set<std::string>& waiting, const std::string& last,
-                   std::map<std::string, double>* balances) {
+Refilled Refill(const std::set<std::string>& waiting, const std::string& last,
+                std::map<std::string, double>* balances) {
   double best = -std::numeric_limits<double>::infinity();
   for (const std::string& id : waiting) best = std::max(best, (*balances)[id]);
   for (auto& [id, balance] : *balances) balance = std::min(balance - best, 0.0);
   std::string next;
   for (const std::string& id : waiting) {
     if ((*balances)[id] < 0.0) continue;
-    if (id > last) return id;
+    if (id > last) return {id, -best};
     if (next.empty()) next = id;
   }
-  return next;
+  return {next, -best};
 }
 
 }  // namespace
+
+void Turns::Leave(const std::set<std::string>& present, Group* group) {
+  std::erase_if(group->balances, [&](const auto& entry) {
+    if (present.contains(entry.first)) return false;
+    if (entry.second < 0.0) group->left_behind.push_back(entry.second);
+    return true;
+  });
+}
+
+std::string Turns::NextOf(const std::set<std::string>& waiting, Group* group) {
+  for (const std::string& id : waiting) {
+    if (group->left_behind.empty()) break;
+    if (group->balances.contains(id)) continue;
+    const auto deepest = std::ranges::min_element(group->left_behind);
+    group->balances[id] = *deepest;
+    group->left_behind.erase(deepest);
+  }
+  const Refilled refilled = Refill(waiting, group->last_served, &group->balances);
+  for (double& balance : group->left_behind) balance += refilled.raised_ms;
+  std::erase_if(group->left_behind, [](double balance) { return balance >= 0.0; });
+  return refilled.next;
+}
 
 std::optional<TurnClass> Turns::ClassNow(const std::vector<Contender>& contenders) {
   std::array<bool, kTurnClasses> waits{};
@@ -54,10 +81,7 @@ std::optional<TurnClass> Turns::ClassNow(const std::vector<Contender>& contender
 std::optional<std::size_t> Turns::Next(const std::vector<Contender>& contenders) {
   std::set<std::string> present;
   for (const Contender& contender : contenders) present.insert(contender.id);
-  for (auto& [group, of_group] : groups_) {
-    std::erase_if(of_group.balances,
-                  [&](const auto& entry) { return !present.contains(entry.first); });
-  }
+  for (auto& [name, group] : groups_) Leave(present, &group);
   const std::optional<TurnClass> now = ClassNow(contenders);
   if (!now.has_value()) return std::nullopt;
 
@@ -68,9 +92,8 @@ std::optional<std::size_t> Turns::Next(const std::vector<Contender>& contenders)
     waiting[GroupOf(contender)].insert(contender.id);
     groups.insert(GroupOf(contender));
   }
-  const std::string group = Refill(groups, last_group_, &group_balances_);
-  Group& of_group = groups_[group];
-  const std::string id = Refill(waiting[group], of_group.last_served, &of_group.balances);
+  const std::string name = Refill(groups, last_group_, &group_balances_).next;
+  const std::string id = NextOf(waiting[name], &groups_[name]);
   const auto next = std::ranges::find(contenders, id, &Contender::id);
   return static_cast<std::size_t>(next - contenders.begin());
 }

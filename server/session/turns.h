@@ -1,15 +1,17 @@
 // The order of drawing: deficit round robin in ms. Pictures that people wait for come before what
 // becomes finer while they look, and that before pictures for nobody's eyes; but the later ones get
 // a tenth of the time however much the earlier have to do, so that they end. Within a class all get
-// the same time, however long each one's pieces are. What many people see and what one sees for
-// himself count as two, so that a class of pupils who look around takes at most half of the time. A
-// plain value, without a clock.
+// the same time, however long each one's pieces are; who comes when another has left takes over
+// what that one used beyond its share, so that coming and leaving over and over gains nothing. What
+// many people see and what one sees for himself count as two, so that a class of pupils who look
+// around takes at most half of the time. A plain value, without a clock.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,9 +49,13 @@ class Turns {
   // Of a class: what people see together, or what one sees for himself.
   struct Group {
     Balances balances;
+    std::vector<double> left_behind;  // negative balances of those who have left
     std::string last_served;
   };
 
+  static void Leave(const std::set<std::string>& present, Group* group);
+  // Who of `waiting` has the next turn.
+  static std::string NextOf(const std::set<std::string>& waiting, Group* group);
   std::optional<TurnClass> ClassNow(const std::vector<Contender>& contenders);
 
   std::map<std::string, Group> groups_;

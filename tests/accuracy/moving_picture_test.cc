@@ -190,6 +190,22 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   EXPECT_LE(off, static_cast<int>(at_rest.rgb.size() / 200));
 }
 
+TEST(MovingSize, PicturesUpToTheLimitKeepTheirsAndLargerOnesTheirShape) {
+  scene::Scene scene;
+  for (const glm::ivec2 size : {glm::ivec2(1600, 900), glm::ivec2(1, 1), glm::ivec2(1, 8192)}) {
+    scene.output.width_px = size.x;
+    scene.output.height_px = size.y;
+    EXPECT_EQ(MovingOutputScale(scene), 1.0) << size.x;
+    EXPECT_EQ(WithOutputScale(scene, 1.0), scene);
+  }
+  scene.output.width_px = 8192;
+  scene.output.height_px = 4096;
+  const scene::Scene moving = WithOutputScale(scene, MovingOutputScale(scene));
+  EXPECT_NEAR(moving.output.width_px, 2.0 * moving.output.height_px, 1.0);
+  EXPECT_NEAR(1.0 * moving.output.width_px * moving.output.height_px, kMostMovingPixels,
+              0.002 * kMostMovingPixels);
+}
+
 TEST_F(MovingPictureTest, AtRestThePictureIsAsIfNothingHadMoved) {
   Show(OfSample("supercell.nc", 1));
   const frame::RgbImage before = AtRest();

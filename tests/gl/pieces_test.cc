@@ -81,7 +81,10 @@ class PiecesTest : public testing::Test {
         auto mapped = tone_mapper.Map(*frame->radiance, scene);
         if (!mapped.ok()) return mapped.status();
         rgb = mapped->rgb;
-        return frame::ReadLinear(*frame->radiance);
+        auto with_more_bits = tone_mapper.MapFine(*frame->radiance);
+        if (!with_more_bits.ok()) return with_more_bits.status();
+        fine = with_more_bits->rgb;
+        return frame::ReadLinear(*frame->radiance, programs->Pieces());
       });
     }
 
@@ -89,6 +92,7 @@ class PiecesTest : public testing::Test {
     renderers::SceneRenderer renderer;
     frame::ToneMapper tone_mapper;
     std::vector<std::uint8_t> rgb;
+    std::vector<std::uint16_t> fine;
   };
 
   void SetUp() override {
@@ -129,6 +133,7 @@ TEST_F(PiecesTest, PicturesAreTheSameToTheLastBit) {
     EXPECT_GT(turn.Taken(), 8) << "not cut";
     EXPECT_TRUE(*in_pieces == *expected);
     EXPECT_TRUE(cut.rgb == whole.rgb);
+    EXPECT_TRUE(cut.fine == whole.fine);
     EXPECT_FALSE(turn.IsHeld());
   }
 }

@@ -361,6 +361,56 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
   }
 }
 
+// Each such call holds a thread of the server while it is open, and needs no token.
+TEST(AccessTest, AFloodOfReflectionTakesFewThreadsAndOthersGoOn) {
+  GuardedService guarded;
+  const auto threads = [] {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  const auto before = threads();
+  constexpr std::intptr_t kCalls = 300;
+  grpc::GenericStub stub(guarded.service().server().LocalChannel());
+  grpc::CompletionQueue queue;
+  std::vector<grpc::ClientContext> contexts(kCalls);
+  std::vector<grpc::Status> ends(kCalls);
+  std::vector<std::unique_ptr<grpc::GenericClientAsyncReaderWriter>> calls;
+  const auto await = [&queue](milliseconds patience) {
+    void* tag = nullptr;
+    bool ok = false;
+    return queue.AsyncNext(&tag, &ok, std::chrono::system_clock::now() + patience) ==
+           grpc::CompletionQueue::GOT_EVENT;
+  };
+  for (std::size_t i = 0; i < kCalls; ++i) {
+    calls.push_back(stub.PrepareCall(
+        &contexts[i], "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", &queue));
+    calls.back()->StartCall(nullptr);
+    ASSERT_TRUE(await(kPatience));
+    calls.back()->Finish(&ends[i], nullptr);
+  }
+  int refused = 0;
+  // Those that have a thread stay open.
+  while (refused < kCalls - 16 && await(kPatience)) ++refused;
+  EXPECT_GE(refused, kCalls - 16);
+  EXPECT_LE(threads(), before + 32);
+  EXPECT_EQ(guarded.Ask("ListStorms", TokenOf("viewer")), grpc::StatusCode::OK);
+  for (grpc::ClientContext& context : contexts) context.TryCancel();
+  for (; refused < kCalls; ++refused) ASSERT_TRUE(await(kPatience));
+  const auto is_refused = [](const grpc::Status& status) {
+    return status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+  };
+  EXPECT_GE(std::ranges::count_if(ends, is_refused), kCalls - 16);
+}
+
+TEST(AccessTest, HealthNeedsNoTokenAndNoCallThatStaysOpen) {
+  GuardedService guarded;
+  const auto ask = [&](const std::string& method) {
+    return guarded.Ask(method, "", "grpc.health.v1.Health");
+  };
+  EXPECT_EQ(ask("Check"), grpc::StatusCode::OK);
+  EXPECT_EQ(ask("Watch"), grpc::StatusCode::UNIMPLEMENTED);
+}
+
 // Opens calls until one is refused, and gives them back.
 TEST(AccessTest, AFloodOfStreamsIsRefusedAndOthersGoOn) {
   GuardedService guarded({}, {.max_streams_per_identity = 100, .requests_per_second = 0});

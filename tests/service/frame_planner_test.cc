@@ -169,6 +169,30 @@ TEST_F(FramePlannerTest, CoarsestIsAQuarter) {
   EXPECT_EQ(last_plan_.quality, (FrameQuality{kCoarsest, kCoarsest, true}));
 }
 
+TEST_F(FramePlannerTest, LargePicturesAreSmallerWhileTheyMove) {
+  for (const scene::Technique& technique :
+       {scene::Technique(scene::LightVolume{}), scene::Technique(scene::HalfAngle{})}) {
+    scene_ = Hd();
+    scene_.rendering.technique = technique;
+    scene_.output.width_px = 3200;
+    scene_.output.height_px = 1800;
+    Drag({4.0, 0.1}, 5);  // some 74 ms a full frame
+    EXPECT_EQ(last_plan_.quality.output_scale, 0.5);
+    EXPECT_FALSE(last_plan_.refined);
+    const auto rested = Ask(milliseconds(80)).plan;
+    ASSERT_TRUE(rested.has_value());
+    EXPECT_EQ(*rested, (FramePlan{FrameQuality{}, true}));
+  }
+}
+
+// A picture with rays where it needs them takes the processors time for each of its pixels.
+TEST_F(FramePlannerTest, LargePicturesAreWholeWhereThatIsQuick) {
+  scene_.output.width_px = 3200;
+  scene_.output.height_px = 1800;
+  Drag({4.0, 0.03}, 5);  // 25 ms a full frame
+  EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
+}
+
 TEST_F(FramePlannerTest, RefinesAfterTheDelayAtFullQualityWhenThatIsQuick) {
   Drag({2.0, 1.0}, 10);  // 120 ms a full frame
   EXPECT_FALSE(last_plan_.refined);

@@ -66,6 +66,22 @@ class LaneTest : public testing::Test {
   std::shared_ptr<const volume::HydrometeorFields> fields_;
 };
 
+TEST_F(LaneTest, AFrameOfASmallerOutputIsTheSmallerPicture) {
+  const auto drawn = [this](const scene::Scene& scene, const FrameQuality& quality) {
+    const auto source = GlFrameSources(test_support::Device())(nullptr);
+    return source.ok() ? (*source)->Draw(scene, fields_, quality) : source.status();
+  };
+  for (const bool sparse : {false, true}) {
+    const auto half = drawn(SceneOf(320, 180, 64), {.sparse = sparse, .output_scale = 0.5});
+    const auto small = drawn(SceneOf(160, 90, 64), {.sparse = sparse});
+    ASSERT_TRUE(half.ok()) << half.status();
+    ASSERT_TRUE(small.ok()) << small.status();
+    EXPECT_EQ(half->width_px, 160);
+    EXPECT_EQ(half->height_px, 90);
+    EXPECT_TRUE(half->rgb == small->rgb);
+  }
+}
+
 TEST_F(LaneTest, PiecesOfLargePicturesAreShort) {
   Begin(SceneOf(320, 180, 128));
   Finish();

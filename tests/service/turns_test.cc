@@ -99,6 +99,37 @@ TEST_F(TurnsTest, WhoPausesAfterALongTurnIsStillInDebt) {
   EXPECT_THAT(ServeTurns(3), ElementsAre("b", "b", "b"));
 }
 
+TEST_F(TurnsTest, ComingAndLeavingOverAndOverGainsNothing) {
+  ids_ = {"a", "b"};
+  double passing_ms = 0.0;
+  double staying_ms = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    // Somebody new whenever the one before has had a turn.
+    ids_[1] = "b" + std::to_string(i);
+    busy_.clear();
+    Busy("a", TurnClass::kInteractive, 10.0);
+    Busy(ids_[1], TurnClass::kInteractive, 100.0);
+    std::string served;
+    while (served != ids_[1]) {
+      served = Serve();
+      (served == "a" ? staying_ms : passing_ms) += served == "a" ? 10.0 : 100.0;
+    }
+  }
+  EXPECT_NEAR(staying_ms / (staying_ms + passing_ms), 0.5, 0.01);
+}
+
+TEST_F(TurnsTest, WhoComesLongAfterAnotherHasLeftOwesNothing) {
+  ids_ = {"a", "b"};
+  Busy("a", TurnClass::kInteractive);
+  Busy("b", TurnClass::kInteractive, 100.0);
+  ServeTurns(2);
+  ids_ = {"a"};
+  ServeTurns(20);
+  ids_ = {"a", "c"};
+  Busy("c", TurnClass::kInteractive);
+  EXPECT_THAT(ServeTurns(3), ElementsAre("c", "a", "c"));
+}
+
 TEST_F(TurnsTest, OwnViewsTogetherTakeHalfOfTheTime) {
   ids_ = {"a", "a/1", "a/2", "a/3", "b"};
   Busy("a", TurnClass::kInteractive);

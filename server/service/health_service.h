@@ -1,0 +1,32 @@
+// What gRPC's health checks are told. Its stream (Watch) is not offered, as gRPC's own service
+// does: it would stay open for people who need no token and are counted nowhere. Clients that ask
+// for it take UNIMPLEMENTED for "serving".
+#pragma once
+
+#include <grpcpp/grpcpp.h>
+
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "grpc/health/v1/health.grpc.pb.h"
+
+namespace thunderhead::service {
+
+class HealthService final : public grpc::health::v1::Health::CallbackService {
+ public:
+  // Answers for the whole server, and by the full name of `service`.
+  explicit HealthService(std::string service) : service_(std::move(service)) {}
+
+  void SetServing(bool serving) { serving_ = serving; }
+
+  grpc::ServerUnaryReactor* Check(grpc::CallbackServerContext* context,
+                                  const grpc::health::v1::HealthCheckRequest* request,
+                                  grpc::health::v1::HealthCheckResponse* response) override;
+
+ private:
+  const std::string service_;
+  std::atomic<bool> serving_ = false;
+};
+
+}  // namespace thunderhead::service
