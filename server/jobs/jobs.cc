@@ -256,6 +256,7 @@ void Jobs::Run() {
   Lock lock(mutex_);
   while (true) {
     board_.Expire(Now());
+    WriteAgain(lock);
     BeginPictures(lock);
     (void)Save(lock);
     if (stopping_ && in_hand_.empty() && tasks_.empty()) break;
@@ -328,8 +329,8 @@ void Jobs::EndPicture(const PicturePlace& picture) {
   lock.unlock();
   const absl::Status kept = base::OrOutOfMemory([&]() -> absl::Status {
     THUNDERHEAD_RETURN_IF_ERROR(hand->begun);
-    THUNDERHEAD_ASSIGN_OR_RETURN(const DrawnPicture drawn, hand->picture->Take());
-    Keep(picture, drawn, hand->since_begun.ElapsedMs());
+    THUNDERHEAD_ASSIGN_OR_RETURN(DrawnPicture drawn, hand->picture->Take());
+    Keep({picture, std::move(drawn), hand->since_begun.ElapsedMs()});
     return absl::OkStatus();
   });
   if (!kept.ok()) Refuse(picture, kept);
@@ -337,28 +338,46 @@ void Jobs::EndPicture(const PicturePlace& picture) {
   (void)Save(lock);
 }
 
-void Jobs::Keep(const PicturePlace& picture, const DrawnPicture& drawn, double milliseconds) {
-  Lock lock(mutex_);
-  if (!board_.IsDrawing(picture)) return;
+void Jobs::WriteAgain(Lock& lock) {
+  if (stopping_) {
+    for (const Unwritten& picture : unwritten_) board_.PutBack(picture.place, false, Now());
+    unwritten_.clear();
+  }
+  if (unwritten_.empty() || paused_until_ > Now()) return;
+  std::vector<Unwritten> pictures = std::exchange(unwritten_, {});
   lock.unlock();
-  const ResultFile file{picture, drawn.extension, pipeline::Sha256(drawn.bytes),
+  for (Unwritten& picture : pictures) Keep(std::move(picture));
+  lock.lock();
+}
+
+void Jobs::Keep(Unwritten picture) {
+  const auto& [job_id, place] = picture.place;
+  const DrawnPicture& drawn = picture.drawn;
+  Lock lock(mutex_);
+  if (!board_.IsDrawing(picture.place)) return;
+  lock.unlock();
+  const ResultFile file{picture.place, drawn.extension, pipeline::Sha256(drawn.bytes),
                         drawn.bytes.size()};
   const absl::Status written =
-      results_.Write(picture.job_id, picture.place, drawn.extension, drawn.bytes, drawn.about);
+      results_.Write(job_id, place, drawn.extension, drawn.bytes, drawn.about);
   lock.lock();
   if (!written.ok()) {
-    board_.PutBack(picture, false, Now() + kUnwrittenPause);
     paused_until_ = Now() + kUnwrittenPause;
-    LogOnce(base::Annotate(written, "a picture of a render job is put back"));
+    if (!std::exchange(cannot_write_, true)) {
+      base::LogError(
+          base::Annotate(written, "pictures of render jobs wait until they can be written"));
+    }
+    unwritten_.push_back(std::move(picture));
     return;
   }
-  const bool kept = board_.Drawn(picture, file, milliseconds, drawn.draw_ms, Now());
+  cannot_write_ = false;
+  const bool kept = board_.Drawn(picture.place, file, picture.milliseconds, drawn.draw_ms, Now());
   const std::vector<ResultFile> dropped = board_.MakeRoom();
   lock.unlock();
   if (kept) {
     Count("drawn");
   } else {
-    results_.Remove(picture.job_id, picture.place, drawn.extension);
+    results_.Remove(job_id, place, drawn.extension);
   }
   for (const ResultFile& old : dropped) {
     results_.Remove(old.picture.job_id, old.picture.place, old.extension);

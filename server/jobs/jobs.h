@@ -1,6 +1,7 @@
 // Jobs of pictures that nobody waits for: takes them in within quotas, has them drawn a few at a
 // time, fairly among owners and their jobs, keeps the results, and goes on after a restart where it
-// was. A picture is written first, then recorded. Knows no messages and no GL; safe from any
+// was. A picture is written first, then recorded; while none can be written, as on a full disk,
+// none is begun. Knows no messages and no GL; safe from any
 // thread.
 #pragma once
 
@@ -103,6 +104,7 @@ class Jobs {
   // Ends those too; they will be begun again.
   void CancelPictures();
   // Waits for the pictures, which whoever draws them must have ended, saves, and tells watchers.
+  // What cannot be written will be drawn again.
   // The destructor does it too.
   void Stop();
 
@@ -118,6 +120,13 @@ class Jobs {
     bool cancelled = false;
   };
 
+  // A drawn picture that could not be written yet.
+  struct Unwritten {
+    PicturePlace place;
+    DrawnPicture drawn;
+    double milliseconds = 0.0;  // since it was begun
+  };
+
   Jobs(const JobsOptions& options, ResultFolder results);
   absl::Status Restore();
   void Run();
@@ -128,7 +137,8 @@ class Jobs {
   void BeginPictures(Lock& lock);
   void BeginOne(const PicturePlace& picture, Lock& lock);
   void EndPicture(const PicturePlace& picture);
-  void Keep(const PicturePlace& picture, const DrawnPicture& drawn, double milliseconds);
+  void Keep(Unwritten picture);
+  void WriteAgain(Lock& lock);
   void Refuse(const PicturePlace& picture, const absl::Status& why);
   absl::Status Save(Lock& lock);
   void SaveNew(const std::string& id, const Done& done);
@@ -151,6 +161,8 @@ class Jobs {
   std::deque<Task> tasks_;
   std::optional<base::Stopwatch> busy_since_;  // while the thread works
   Time paused_until_ = {};                     // as nothing can be written
+  bool cannot_write_ = false;                  // the last of them
+  std::vector<Unwritten> unwritten_;           // at most as many as may be in hand
   bool started_ = false;
   bool draining_ = false;
   bool stopping_ = false;

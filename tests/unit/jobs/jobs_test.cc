@@ -1,8 +1,12 @@
 #include "jobs/jobs.h"
 
 #include <atomic>
+#include <filesystem>
+#include <fstream>
 #include <future>
+#include <memory>
 #include <new>
+#include <string>
 #include <thread>
 
 #include "gtest/gtest.h"
@@ -54,6 +58,87 @@ TEST(JobsTest, APictureWithoutMemoryIsTriedAgainAndTakesNothingWithIt) {
   EXPECT_EQ((*jobs)->Load().result_bytes, 5U);
   EXPECT_EQ((*jobs)->Load().waiting, 2U);
   EXPECT_EQ(begun, 3);
+}
+
+class UnwrittenPictures : public ::testing::Test {
+ protected:
+  void Open() {
+    JobsOptions options;
+    options.folder = results_;
+    auto jobs = Jobs::Open(options);
+    ASSERT_TRUE(jobs.ok()) << jobs.status();
+    jobs_ = *std::move(jobs);
+    jobs_->Start([this](const PictureOrder&, const std::function<void()>& done) {
+      ++begun_;
+      auto picture = std::make_unique<Picture>(cannot_take_);
+      done();
+      return picture;
+    });
+  }
+
+  // The results' folder cannot be written to, whoever runs the test.
+  void Block() {
+    std::filesystem::remove_all(results_);
+    std::ofstream(results_) << "in the way";
+  }
+
+  void Unblock() {
+    std::filesystem::remove(results_);
+    std::filesystem::create_directory(results_);
+  }
+
+  std::string Create(int pictures) {
+    NewJob job;
+    job.owner = "night";
+    job.pictures.resize(static_cast<std::size_t>(pictures));
+    std::promise<std::string> created;
+    jobs_->Create(job, [&](const absl::StatusOr<JobView>& view) { created.set_value(view->id); });
+    return created.get_future().get();
+  }
+
+  template <typename Condition>
+  static bool Await(const Condition& condition) {
+    for (int i = 0; i < 4000 && !condition(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return condition();
+  }
+
+  const testing::TemporaryFolder folder_;
+  const std::string results_ = folder_.File("jobs");
+  std::atomic<int> cannot_take_{0};
+  std::atomic<int> begun_{0};
+  std::unique_ptr<Jobs> jobs_;
+};
+
+TEST_F(UnwrittenPictures, AreKeptUntilTheyCanBeWrittenAndNotDrawnAgain) {
+  Open();
+  Block();
+  const std::string id = Create(10);
+  ASSERT_FALSE(id.empty());
+  ASSERT_TRUE(Await([this] { return begun_ > 0; }));
+  std::this_thread::sleep_for(std::chrono::seconds(6));  // one more attempt to write
+  const int begun = begun_;
+  EXPECT_LE(begun, 4) << "none is begun while none can be written";
+  EXPECT_EQ(jobs_->Load().result_bytes, 0U);
+  Unblock();
+  EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 50; }));
+  EXPECT_EQ(begun_, 10);
+}
+
+TEST_F(UnwrittenPictures, GoWithTheirJobAndHoldUpNoEnd) {
+  Open();
+  Block();
+  const std::string id = Create(2);
+  ASSERT_TRUE(Await([this] { return begun_ > 0; }));
+  std::promise<bool> cancelled;
+  jobs_->Cancel(id, {.name = "night"}, false,
+                [&](const absl::StatusOr<JobView>& view) { cancelled.set_value(view.ok()); });
+  EXPECT_TRUE(cancelled.get_future().get());
+  Create(2);
+  jobs_->Stop();
+  EXPECT_EQ(jobs_->Load().drawing, 0U);
+  EXPECT_EQ(jobs_->Load().waiting, 2U) << "drawn again after the next start";
 }
 
 }  // namespace
