@@ -92,9 +92,9 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
   AddLimit(serve, "--max-viewers", flags.limits.max_viewers_per_session, 1, 1e5,
            "Viewers of a session");
   AddLimit(serve, "--max-connections", flags.gateway.max_connections, 1, 1e5,
-           "Connections of browsers");
+           "Connections of each port");
   AddLimit(serve, "--max-connections-each", flags.gateway.max_connections_per_address, 1, 1e5,
-           "Connections of browsers from one address");
+           "Those from one address");
   AddLimit(serve, "--max-streams", flags.quotas.max_streams, 1, 1e6, "Calls that stay open");
   AddLimit(serve, "--max-streams-each", flags.quotas.max_streams_per_identity, 1, 1e6,
            "Calls that stay open, of one identity");
@@ -238,6 +238,8 @@ absl::Status CompleteFlags(ServeFlags& flags) {
   flags.limits.max_samples = static_cast<std::uint64_t>(1e6 * flags.max_megasamples);
   flags.limits.max_request_bytes = static_cast<std::size_t>(flags.max_message_kib) << 10;
   flags.limits.grpc_memory_bytes = static_cast<std::size_t>(flags.grpc_memory_mib) << 20;
+  flags.limits.max_connections = flags.gateway.max_connections;
+  flags.limits.max_connections_per_address = flags.gateway.max_connections_per_address;
   flags.gateway.max_message_bytes = flags.limits.max_request_bytes;
   flags.gateway.tls_certificate = flags.tls.certificate;
   flags.gateway.tls_key = flags.tls.key;

@@ -12,6 +12,9 @@
 namespace thunderhead::service {
 
 struct Limits {
+  // Of gRPC's port, in all and from one address (trusted proxies have no limit of their own).
+  std::size_t max_connections = 768;
+  std::size_t max_connections_per_address = 512;
   // By Interact and by WatchFrames each; presenters are let in beyond it.
   std::size_t max_viewers_per_session = 256;
   // Width times height, and that times the technique's slices. By default what the schema allows.
@@ -33,6 +36,9 @@ struct Limits {
 // RESOURCE_EXHAUSTED for a picture that is larger, or has more samples, than the limits allow.
 // `scene` has its defaults.
 absl::Status CheckSize(const Limits& limits, const v1::Scene& scene);
+
+// RESOURCE_EXHAUSTED for a connection beyond the limits, which is closed.
+absl::Status TooManyConnections();
 
 // RESOURCE_EXHAUSTED for a session with as many viewers as it may have.
 absl::Status TooManyViewers(std::size_t maximum);

@@ -1,29 +1,24 @@
 #include "service/local_listener.h"
 
-#include <fcntl.h>
 #include <grpcpp/server_posix.h>
-#include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
-#include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/file_descriptor.h"
+#include "base/status.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::service {
 namespace {
-
-// After an error, as when there are no file descriptors left.
-constexpr std::chrono::milliseconds kPause{100};
 
 // In Linux's abstract namespace, which needs no file and disappears with the process.
 std::string NewName() {
@@ -54,45 +49,20 @@ bool IsOwnUser(int connection) {
 
 absl::StatusOr<std::unique_ptr<LocalListener>> LocalListener::Start(grpc::Server& server) {
   const std::string name = NewName();
-  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  const int stop = eventfd(0, EFD_CLOEXEC);
-  std::unique_ptr<LocalListener> listener(
-      new LocalListener(server, absl::StrCat("unix-abstract:", name), socket, stop));
-  if (socket < 0 || stop < 0 || !Bind(socket, name) || listen(socket, SOMAXCONN) != 0) {
+  base::FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!socket.IsOpen() || !Bind(socket.Get(), name) || listen(socket.Get(), SOMAXCONN) != 0) {
     return absl::UnavailableError(
         absl::StrCat("cannot listen on a local socket: ", strerror(errno)));
   }
-  listener->thread_ = std::thread([&listener = *listener] { listener.Accept(); });
-  return listener;
-}
-
-LocalListener::~LocalListener() {
-  if (thread_.joinable()) {
-    const std::uint64_t one = 1;
-    (void)!write(stop_, &one, sizeof(one));
-    thread_.join();
-  }
-  if (socket_ >= 0) close(socket_);
-  if (stop_ >= 0) close(stop_);
-}
-
-void LocalListener::Accept() {
-  while (true) {
-    pollfd waits[] = {{socket_, POLLIN, 0}, {stop_, POLLIN, 0}};
-    if (poll(waits, 2, -1) < 0 && errno != EINTR) return;
-    if (waits[1].revents != 0) return;
-    // gRPC wants sockets that do not block.
-    const int connection = accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (connection < 0) {
-      if (errno != EAGAIN && errno != ECONNABORTED) std::this_thread::sleep_for(kPause);
-      continue;
-    }
-    if (IsOwnUser(connection)) {
-      grpc::AddInsecureChannelFromFd(&server_, connection);
-    } else {
-      close(connection);
-    }
-  }
+  std::vector<base::FileDescriptor> sockets;
+  sockets.push_back(std::move(socket));
+  const auto take = [&server](base::FileDescriptor connection) {
+    if (!IsOwnUser(connection.Get())) return;
+    grpc::AddInsecureChannelFromFd(&server, connection.Release());
+  };
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto loop, AcceptLoop::Start(std::move(sockets), take));
+  return std::unique_ptr<LocalListener>(
+      new LocalListener(absl::StrCat("unix-abstract:", name), std::move(loop)));
 }
 
 }  // namespace thunderhead::service

@@ -6,9 +6,10 @@
 
 #include <memory>
 #include <string>
-#include <thread>
+#include <utility>
 
 #include "absl/status/statusor.h"
+#include "service/accept_loop.h"
 
 namespace thunderhead::service {
 
@@ -17,23 +18,16 @@ class LocalListener {
   // Accepts connections for `server` until it is destroyed, which must be before the server shuts
   // down.
   static absl::StatusOr<std::unique_ptr<LocalListener>> Start(grpc::Server& server);
-  ~LocalListener();
-  LocalListener(const LocalListener&) = delete;
-  LocalListener& operator=(const LocalListener&) = delete;
 
   // Its address as gRPC's clients write it.
   const std::string& address() const { return address_; }
 
  private:
-  LocalListener(grpc::Server& server, std::string address, int socket, int stop)
-      : server_(server), address_(std::move(address)), socket_(socket), stop_(stop) {}
-  void Accept();
+  LocalListener(std::string address, std::unique_ptr<AcceptLoop> loop)
+      : address_(std::move(address)), loop_(std::move(loop)) {}
 
-  grpc::Server& server_;
   const std::string address_;
-  const int socket_;
-  const int stop_;  // an eventfd
-  std::thread thread_;
+  const std::unique_ptr<AcceptLoop> loop_;
 };
 
 }  // namespace thunderhead::service

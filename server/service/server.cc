@@ -22,6 +22,8 @@
 #include "service/job_messages.h"
 #include "service/job_pictures.h"
 #include "service/local_listener.h"
+#include "service/open_sockets.h"
+#include "service/port_listener.h"
 #include "service/render_job_service.h"
 #include "service/stored_scene.h"
 #include "service/thunderhead_service.h"
@@ -39,7 +41,7 @@ constexpr int kKeepaliveTimeMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
 // A client that connects and says nothing, or begins no call, is dropped after these.
 constexpr int kHandshakeTimeoutMs = 10'000;
-constexpr int kIdleConnectionMs = 600'000;
+constexpr int kIdleConnectionMs = 60'000;
 // Of services whose calls hold a thread each, which is reflection alone; further calls are refused.
 constexpr int kMaxCallThreads = 16;
 // Time for running calls to end by themselves before they are cancelled.
@@ -126,27 +128,36 @@ class RunningServer final : public Server {
     builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
     builder.SetMaxReceiveMessageSize(static_cast<int>(limits_.max_request_bytes));
     builder.SetMaxSendMessageSize(kMaxResponseBytes);
-    // Otherwise a second server would share the port instead of failing.
-    builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTimeMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits_.max_streams_per_connection);
     builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeTimeoutMs);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleConnectionMs);
-    if (!address.empty()) builder.AddListeningPort(address, CredentialsOf(tls), &port_);
-    server_ = builder.BuildAndStart();
-    if (server_ == nullptr || (!address.empty() && port_ == 0)) {
-      return absl::UnavailableError(absl::StrCat(
-          "cannot listen for gRPC on ", address,
-          ": it is not an address of this machine, or the port is in use; choose another"));
+    PortListener::Acceptor acceptor;
+    if (!address.empty()) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(port_, PortListener::Open(address));
+      using Builder = grpc::ServerBuilder::experimental_type;
+      acceptor = builder.experimental().AddExternalConnectionAcceptor(
+          Builder::ExternalConnectionType::FROM_FD, CredentialsOf(tls));
     }
+    server_ = builder.BuildAndStart();
+    if (server_ == nullptr) return absl::InternalError("gRPC's server does not start");
     THUNDERHEAD_ASSIGN_OR_RETURN(local_, LocalListener::Start(*server_));
+    if (port_ != nullptr) {
+      THUNDERHEAD_RETURN_IF_ERROR(
+          port_->Start(std::move(acceptor),
+                       OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
+                                   door_->Proxies()),
+                       [this](const std::string& peer) {
+                         door_->ReportBeforeCall(peer, "Connect", TooManyConnections());
+                       }));
+    }
     SetServing(true);
     if (jobs_ != nullptr) jobs_->Start(JobPictures(*engine_, job_files_));
     return absl::OkStatus();
   }
 
-  int Port() const override { return port_; }
+  int Port() const override { return port_ != nullptr ? port_->Port() : 0; }
   const session::DeviceInfo& Device() const override { return loop_->Device(); }
 
   std::shared_ptr<grpc::Channel> LocalChannel() override {
@@ -203,6 +214,7 @@ class RunningServer final : public Server {
     if (job_service_ != nullptr) job_service_->Stop();
     executor_.Stop();
     local_.reset();
+    port_.reset();
     if (server_ != nullptr) {
       server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
       server_->Wait();
@@ -234,7 +246,7 @@ class RunningServer final : public Server {
   HealthService health_{v1::ThunderheadService::service_full_name()};
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<LocalListener> local_;
-  int port_ = 0;
+  std::unique_ptr<PortListener> port_;  // null: none
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 // The ports as doors: gRPC's by TLS with a certificate that changes, and the local socket, which is
 // for this user alone.
+#include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
@@ -10,14 +12,20 @@
 #include <sstream>
 
 #include "absl/strings/str_cat.h"
+#include "base/file_descriptor.h"
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/service/guarded_service.h"
 #include "tests/support/self_signed.h"
 #include "tests/support/temporary_folder.h"
 
 namespace thunderhead::testing {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 using Stub = v1::ThunderheadService::Stub;
 
 std::string ReadFile(const std::string& path) {
@@ -81,6 +89,84 @@ TEST(PortsTest, ANewCertificateIsForNewConnections) {
   EXPECT_TRUE(answers);
   // On the connection that was open before.
   EXPECT_TRUE(Answers(*old));
+}
+
+// A client's socket that says nothing.
+class SilentClient {
+ public:
+  explicit SilentClient(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    connected_ =
+        connect(socket_.Get(), reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
+  }
+
+  // True if the server ends the connection, or says something, within a time.
+  bool IsClosed(int patience_ms) const {
+    pollfd wait{socket_.Get(), POLLIN, 0};
+    char byte = 0;
+    return !connected_ ||
+           (poll(&wait, 1, patience_ms) > 0 && recv(socket_.Get(), &byte, 1, 0) <= 0);
+  }
+
+ private:
+  base::FileDescriptor socket_;
+  bool connected_ = false;
+};
+
+// True if a call is answered, if only by a refusal.
+bool IsReached(int port) {
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+  const auto stub = v1::ThunderheadService::NewStub(grpc::CreateCustomChannel(
+      absl::StrCat("127.0.0.1:", port), grpc::InsecureChannelCredentials(), arguments));
+  v1::ListStormsResponse response;
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(3));
+  const auto code = stub->ListStorms(&context, v1::ListStormsRequest(), &response).error_code();
+  return code == grpc::StatusCode::OK || code == grpc::StatusCode::UNAUTHENTICATED;
+}
+
+TEST(PortsTest, AnAddressHasSoManyConnectionsOfGrpcAndOthersTheRest) {
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  options.limits.max_connections_per_address = 5;
+  GuardedService guarded(options);
+  const int port = guarded.service().server().Port();
+  std::vector<SilentClient> clients;
+  for (int i = 0; i < 5; ++i) clients.emplace_back(port);
+  for (const SilentClient& client : clients) EXPECT_FALSE(client.IsClosed(100));
+  EXPECT_TRUE(SilentClient(port).IsClosed(5000));
+  EXPECT_TRUE(SilentClient(port).IsClosed(5000));
+  EXPECT_THAT(guarded.Audit(), Contains(AllOf(HasSubstr("act=Connect"), HasSubstr("127.0.0.1:"),
+                                              HasSubstr("TOO_MANY_CONNECTIONS"))));
+  clients.clear();
+  bool answers = false;
+  for (int i = 0; i < 20 && !answers; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    answers = IsReached(port);
+  }
+  EXPECT_TRUE(answers) << "those that were closed count no more";
+}
+
+TEST(PortsTest, AllTogetherHaveSoManyConnectionsOfGrpc) {
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  options.limits.max_connections = 3;
+  FakeService fake(options);
+  std::vector<SilentClient> clients;
+  for (int i = 0; i < 3; ++i) clients.emplace_back(fake.server().Port());
+  EXPECT_TRUE(SilentClient(fake.server().Port()).IsClosed(5000));
+  EXPECT_FALSE(clients.front().IsClosed(0));
+}
+
+TEST(PortsTest, GrpcListensOnAddressesOfIpv6) {
+  service::ServerOptions options;
+  options.address = "[::]:0";
+  FakeService fake(options);
+  EXPECT_TRUE(IsReached(fake.server().Port())) << "and of IPv4, by any address";
 }
 
 // The name of this process' newest local socket.

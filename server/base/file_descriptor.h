@@ -1,0 +1,33 @@
+// An open file descriptor, closed when its owner goes.
+#pragma once
+
+#include <unistd.h>
+
+#include <utility>
+
+namespace thunderhead::base {
+
+class FileDescriptor {
+ public:
+  FileDescriptor() = default;
+  // Negative: none.
+  explicit FileDescriptor(int number) : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(other.Release()) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~FileDescriptor() {
+    if (number_ >= 0) close(number_);
+  }
+
+  int Get() const { return number_; }
+  bool IsOpen() const { return number_ >= 0; }
+  // Whoever asks closes it.
+  int Release() { return std::exchange(number_, -1); }
+
+ private:
+  int number_ = -1;
+};
+
+}  // namespace thunderhead::base

@@ -1,0 +1,62 @@
+#include "service/accept_loop.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+
+namespace thunderhead::service {
+namespace {
+
+// After an error, as when there are no file descriptors left.
+constexpr std::chrono::milliseconds kPause{100};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<AcceptLoop>> AcceptLoop::Start(
+    std::vector<base::FileDescriptor> sockets, Take take) {
+  base::FileDescriptor stop(eventfd(0, EFD_CLOEXEC));
+  if (!stop.IsOpen()) {
+    return absl::UnavailableError(absl::StrCat("cannot accept connections: ", strerror(errno)));
+  }
+  std::unique_ptr<AcceptLoop> loop(
+      new AcceptLoop(std::move(sockets), std::move(stop), std::move(take)));
+  loop->thread_ = std::thread([&loop = *loop] { loop.Run(); });
+  return loop;
+}
+
+AcceptLoop::~AcceptLoop() {
+  const std::uint64_t one = 1;
+  (void)!write(stop_.Get(), &one, sizeof(one));
+  if (thread_.joinable()) thread_.join();
+}
+
+void AcceptLoop::Run() {
+  std::vector<pollfd> waits = {{stop_.Get(), POLLIN, 0}};
+  for (const base::FileDescriptor& socket : sockets_) waits.push_back({socket.Get(), POLLIN, 0});
+  while (true) {
+    if (poll(waits.data(), waits.size(), -1) < 0 && errno != EINTR) return;
+    if (waits.front().revents != 0) return;
+    for (std::size_t i = 1; i < waits.size(); ++i) {
+      if (waits[i].revents == 0) continue;
+      base::FileDescriptor connection(
+          accept4(waits[i].fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+      if (connection.IsOpen()) {
+        take_(std::move(connection));
+      } else if (errno != EAGAIN && errno != ECONNABORTED) {
+        std::this_thread::sleep_for(kPause);
+      }
+    }
+  }
+}
+
+}  // namespace thunderhead::service

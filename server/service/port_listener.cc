@@ -1,0 +1,102 @@
+#include "service/port_listener.h"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <cstring>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::service {
+namespace {
+
+struct HostAndPort {
+  std::string host;
+  std::string port;
+};
+
+// Without the brackets of an IPv6 address.
+HostAndPort Split(const std::string& address) {
+  const std::size_t colon = address.rfind(':');
+  HostAndPort parts{address.substr(0, colon), address.substr(colon + 1)};
+  if (parts.host.starts_with('[') && parts.host.ends_with(']')) {
+    parts.host = parts.host.substr(1, parts.host.size() - 2);
+  }
+  return parts;
+}
+
+void Set(int socket, int level, int option, int value) {
+  setsockopt(socket, level, option, &value, sizeof(value));
+}
+
+int PortOf(int socket) {
+  sockaddr_storage own{};
+  socklen_t bytes = sizeof(own);
+  getsockname(socket, reinterpret_cast<sockaddr*>(&own), &bytes);
+  return ntohs(own.ss_family == AF_INET6 ? reinterpret_cast<const sockaddr_in6*>(&own)->sin6_port
+                                         : reinterpret_cast<const sockaddr_in*>(&own)->sin_port);
+}
+
+base::FileDescriptor ListenOn(const addrinfo& at) {
+  base::FileDescriptor socket(
+      ::socket(at.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!socket.IsOpen()) return {};
+  Set(socket.Get(), SOL_SOCKET, SO_REUSEADDR, 1);
+  // [::] is for IPv4 as well. What is set here is set for each connection.
+  if (at.ai_family == AF_INET6) Set(socket.Get(), IPPROTO_IPV6, IPV6_V6ONLY, 0);
+  Set(socket.Get(), IPPROTO_TCP, TCP_NODELAY, 1);
+  if (bind(socket.Get(), at.ai_addr, at.ai_addrlen) != 0) return {};
+  if (listen(socket.Get(), SOMAXCONN) != 0) return {};
+  return socket;
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(const std::string& address) {
+  const HostAndPort parts = Split(address);
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  wanted.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(parts.host.c_str(), parts.port.c_str(), &wanted, &found) != 0) found = nullptr;
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owned(found, &freeaddrinfo);
+  std::vector<base::FileDescriptor> sockets;
+  int port = 0;
+  for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
+    base::FileDescriptor socket = ListenOn(*at);
+    if (!socket.IsOpen()) continue;
+    // With port 0 each would have another.
+    const int its_port = PortOf(socket.Get());
+    if (sockets.empty()) port = its_port;
+    if (its_port == port) sockets.push_back(std::move(socket));
+  }
+  if (!sockets.empty()) {
+    return std::unique_ptr<PortListener>(new PortListener(std::move(sockets), port));
+  }
+  return absl::UnavailableError(absl::StrCat(
+      "cannot listen for gRPC on ", address,
+      ": it is not an address of this machine, or the port is in use; choose another"));
+}
+
+absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, Refused refused) {
+  // Copyable, as functions have to be.
+  auto take = [acceptor = std::shared_ptr(std::move(acceptor)),
+               open = std::make_shared<OpenSockets>(std::move(open)),
+               refused = std::move(refused)](base::FileDescriptor connection) {
+    const auto peer = OpenSockets::PeerOf(connection.Get());
+    if (!peer.has_value()) return;  // gone already
+    if (!open->Take(connection.Get(), *peer)) return refused(*peer);
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters handed;
+    handed.fd = connection.Release();
+    acceptor->HandleNewConnection(&handed);
+  };
+  THUNDERHEAD_ASSIGN_OR_RETURN(loop_, AcceptLoop::Start(std::move(sockets_), std::move(take)));
+  return absl::OkStatus();
+}
+
+}  // namespace thunderhead::service

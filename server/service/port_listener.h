@@ -1,0 +1,44 @@
+// gRPC's TCP port. gRPC's own listens without a limit on connections, and those that say nothing
+// would use up the process's file descriptors.
+#pragma once
+
+#include <grpcpp/server_builder.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "base/file_descriptor.h"
+#include "service/accept_loop.h"
+#include "service/open_sockets.h"
+
+namespace thunderhead::service {
+
+class PortListener {
+ public:
+  using Acceptor = std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>;
+  // Told of a connection that was closed as there are too many; on the listener's thread.
+  using Refused = std::function<void(const std::string& peer)>;
+
+  // Listens on "HOST:PORT", port 0 for a free one; connections wait until Start. UNAVAILABLE if it
+  // cannot.
+  static absl::StatusOr<std::unique_ptr<PortListener>> Open(const std::string& address);
+
+  int Port() const { return port_; }
+
+  // Hands connections to `acceptor` until this is destroyed, which must be before its server shuts
+  // down.
+  absl::Status Start(Acceptor acceptor, OpenSockets open, Refused refused);
+
+ private:
+  PortListener(std::vector<base::FileDescriptor> sockets, int port)
+      : sockets_(std::move(sockets)), port_(port) {}
+
+  std::vector<base::FileDescriptor> sockets_;  // until Start
+  const int port_;
+  std::unique_ptr<AcceptLoop> loop_;
+};
+
+}  // namespace thunderhead::service
