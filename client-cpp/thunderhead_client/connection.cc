@@ -128,6 +128,11 @@ std::string Connection::Explain(const grpc::Status& status) const {
     return status.error_message();
   }
   // gRPC 1.51 has no codes for these, only words.
+  if (absl::StrContains(status.error_message(), "http1.x")) {
+    return absl::StrCat(address(),
+                        " answers by HTTP, as the server's page does; give its gRPC port, ",
+                        "by default 50051");
+  }
   if (access_.tls_ca_file.empty()) {
     if (!absl::StrContains(status.error_message(), "Socket closed")) return Unreachable(address());
     return absl::StrCat(address(), " answers, but hangs up: it may want TLS; give its certificate ",

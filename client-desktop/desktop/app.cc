@@ -350,6 +350,8 @@ int RunDesktop(Flags flags) {
   }
   auto connection = client::Connection::Open(flags.access);
   if (!connection.ok()) return fail(connection.status(), kUsage);
+  const absl::Status status_file = StatusLog::CheckWritable(flags.status_file);
+  if (!status_file.ok()) return fail(status_file, kUsage);
   WindowOptions options;
   options.width = flags.width;
   options.height = flags.height;

@@ -256,6 +256,16 @@ void Title(const char* text, const char* key) {
 
 void SameLineAtRight(float width) { ImGui::SameLine(ImGui::GetContentRegionMax().x - width); }
 
+void SameLineIfRoom(float width, float room) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float end = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x - style.WindowPadding.x;
+  if (end + style.ItemSpacing.x + width <= room) ImGui::SameLine();
+}
+
+float ButtonWidth(const std::string& text) {
+  return ImGui::CalcTextSize(text.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
+}
+
 void Quiet(const std::string& text) {
   ImGui::PushFont(SmallFont());
   ImGui::PushStyleColor(ImGuiCol_Text, kQuiet);

@@ -31,6 +31,9 @@ void Title(const char* text, const char* key);
 // Goes on in the line, with what is that wide at the right; beside the scroll bar where there is
 // one.
 void SameLineAtRight(float width);
+// Goes on in the line where what is that wide fits into a panel with `room` inside.
+void SameLineIfRoom(float width, float room);
+float ButtonWidth(const std::string& text);
 void Quiet(const std::string& text);  // wrapped, in small grey letters
 void QuietLine(const std::string& text);
 void Label(const char* text);  // above a control, small

@@ -5,11 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <string>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "desktop/texts.h"
 
@@ -84,6 +87,12 @@ void RotatedFile::Write(const std::string& line) {
   bytes_ += size;
 }
 
+absl::Status StatusLog::CheckWritable(const std::string& path) {
+  if (path.empty() || std::ofstream(path, std::ios::app)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("cannot write the file of --status, '", path, "': ", std::strerror(errno)));
+}
+
 void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_point now) {
   constexpr std::chrono::milliseconds kInterval{1000};
   if (!file_.is_open() || now - last_ < kInterval) return;
@@ -110,10 +119,10 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
           ui.state.pointers.pointers_size(), view) +
       absl::StrFormat(
           R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"
-          R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"resident_bytes":%d})",
+          R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"scale":%.2f,"resident_bytes":%d})",
           ui.encoding, ui.frame.width_px(), ui.frame.height_px(), ui.figures.frames,
           ui.figures.frames_per_s, ui.figures.latency_ms.value_or(0.0), ui.figures.bytes_per_s,
-          ui.figures.decode_ms, ui.dropped, ResidentBytes()));
+          ui.figures.decode_ms, ui.dropped, ui.scale, ResidentBytes()));
 }
 
 }  // namespace thunderhead::desktop

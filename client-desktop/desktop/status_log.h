@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "absl/status/status.h"
 #include "desktop/ui.h"
 
 namespace thunderhead::desktop {
@@ -31,6 +32,8 @@ class StatusLog {
  public:
   static constexpr std::int64_t kMaxBytes = 1 << 20;
 
+  // INVALID_ARGUMENT names the path and why it cannot be written to.
+  static absl::Status CheckWritable(const std::string& path);
   // An empty path writes nothing.
   explicit StatusLog(const std::string& path) : file_(path, kMaxBytes) {}
 

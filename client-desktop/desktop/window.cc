@@ -22,18 +22,21 @@ absl::Status SdlError(const char* what) {
                    "; it needs a display (DISPLAY or WAYLAND_DISPLAY) and OpenGL 3"));
 }
 
-// Monitors report sizes that do not make sense, projectors above all.
 float ScaleOfMonitor(SDL_Window* window) {
-  constexpr float kUsual_dpi = 96.0F;
-  constexpr float kStep = 0.25F;
   float dpi = 0.0F;
   const int display = SDL_GetWindowDisplayIndex(window);
   if (display < 0 || SDL_GetDisplayDPI(display, nullptr, &dpi, nullptr) != 0) return 1.0F;
-  if (dpi < kUsual_dpi || dpi > 4.0F * kUsual_dpi) return 1.0F;
-  return std::max(1.0F, std::round(dpi / kUsual_dpi / kStep) * kStep);
+  return ScaleOfDpi(dpi);
 }
 
 }  // namespace
+
+float ScaleOfDpi(float dpi) {
+  constexpr float kUsual_dpi = 96.0F;
+  constexpr float kStep = 0.25F;
+  if (!(dpi >= kUsual_dpi && dpi <= 4.0F * kUsual_dpi)) return 1.0F;
+  return std::round(dpi / kUsual_dpi / kStep) * kStep;
+}
 
 absl::StatusOr<std::unique_ptr<Window>> Window::Open(const WindowOptions& options) {
   SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, options.hides_cursor ? "0" : "1");

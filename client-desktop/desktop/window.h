@@ -19,6 +19,10 @@ struct WindowOptions {
   double scale = 0.0;  // of texts and controls; 0: as the monitor asks
 };
 
+// Of texts and controls. Monitors report sizes that do not make sense, projectors above all: 1
+// then.
+float ScaleOfDpi(float dpi);
+
 class Window {
  public:
   // An error says what SDL or OpenGL lacks.

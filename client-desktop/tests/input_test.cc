@@ -12,6 +12,7 @@
 #include "desktop/pointer_input.h"
 #include "desktop/status_log.h"
 #include "desktop/texts.h"
+#include "desktop/window.h"
 #include "gtest/gtest.h"
 
 namespace thunderhead::desktop {
@@ -335,6 +336,24 @@ TEST(FieldColors, AreShownWhereTheTechniqueAndTheSceneDoSo) {
 std::string TextOf(const std::string& path) {
   std::ifstream file(path);
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Scale, IsThatOfTheMonitorInQuartersWhereThatMakesSense) {
+  for (const auto& [dpi, scale] :
+       {std::pair{96.0F, 1.0F}, {110.0F, 1.25F}, {144.0F, 1.5F}, {192.0F, 2.0F}, {384.0F, 4.0F}}) {
+    EXPECT_EQ(ScaleOfDpi(dpi), scale) << dpi;
+  }
+  for (const float dpi : {0.0F, -1.0F, 40.0F, 5000.0F, std::nanf("")})
+    EXPECT_EQ(ScaleOfDpi(dpi), 1.0F);
+}
+
+TEST(StatusFile, ThatCannotBeWrittenIsNamed) {
+  EXPECT_TRUE(StatusLog::CheckWritable("").ok());
+  EXPECT_TRUE(StatusLog::CheckWritable(::testing::TempDir() + "status_new").ok());
+  const absl::Status status = StatusLog::CheckWritable("/nowhere/at/all");
+  EXPECT_TRUE(absl::IsInvalidArgument(status));
+  EXPECT_EQ(status.message(),
+            "cannot write the file of --status, '/nowhere/at/all': No such file or directory");
 }
 
 TEST(StatusFile, StaysSmallAndKeepsWholeLines) {

@@ -204,3 +204,46 @@ test("W makes the window full screen, and a window again", async () => {
     await managed.stop();
   }
 });
+
+// "Ask to steer" in a viewer's window of 640 x 400.
+const ASK = { x: 404, y: 276 };
+// "and 2 more" in the presenter's, of 800 x 500.
+const MORE = [322, 376];
+const ACCENT = [255, 209, 107];
+
+test("several who ask to steer are answered one by one, in a small window too", async () => {
+  const NAMES = ["Aurelia of the long corridor on the second floor", "Ben", "Cleo", "Dora", "Emil"];
+  const shows = (width, height) => ["--width", String(width), "--height", String(height), "--scale", "1"];
+  const small = await startDisplay(800, 500);
+  const viewers = [];
+  try {
+    desktop = startDesktop(small, serverFlags.grpcPort, [...shows(800, 500), "--name", "Wall"]);
+    const { viewer_key } = await desktop.until("the first picture", rests);
+    for (const name of NAMES) {
+      const viewer = await startDisplay(640, 400);
+      const flags = ["--key", viewer_key, "--name", name, ...shows(640, 400)];
+      viewers.push({ viewer, window: startDesktop(viewer, serverFlags.grpcPort, flags) });
+      await desktop.until(`${name} there`, (now) => now.people === viewers.length + 1);
+      await viewer.click(ASK.x, ASK.y);
+      await desktop.until(`${name} asking`, (now) => now.asking === viewers.length);
+    }
+    await sleep(1000);
+    small.screenshot("several_ask");
+    const rail = { x: 12, y: 250, width: 76, height: 110 };
+    assert.equal(pixelsLike(region(small.pixels(), rail), ACCENT), 0, "a button lies over the tools");
+    // Those who do not fit are among the people.
+    await small.click(...MORE);
+    await sleep(700);
+    small.screenshot("several_ask_and_people");
+    const panel = { x: 418, y: 74, width: 370, height: 326 };
+    assert.ok(pixelsLike(region(small.pixels(), panel), [255, 255, 255], 40) > 500, "the people are not shown");
+    assert.equal(pixelsLike(region(small.pixels(), panel), ACCENT), 0, "the bar lies over the people");
+  } finally {
+    for (const { viewer, window } of viewers) {
+      await window.stop();
+      await viewer.stop();
+    }
+    await desktop.stop();
+    await small.stop();
+  }
+});

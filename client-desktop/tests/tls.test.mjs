@@ -124,7 +124,7 @@ test("a file that holds no certificate ends the program with one line", () => {
   );
 });
 
-test("TLS before a server that does not speak it is told from a server that is off", async () => {
+test("TLS before a server that does not speak it is told from a server that is off, and the page's port from both", async () => {
   const plain = { httpPort: await freePort(), grpcPort: await freePort() };
   const reasonAt = async (port, ...flags) =>
     (await startAt(port, ...flags).until("a reason", ({ link }) => link !== "connecting")).reason;
@@ -132,6 +132,7 @@ test("TLS before a server that does not speak it is told from a server that is o
   const another = await startServer(plain);
   try {
     assert.match(await reasonAt(plain.grpcPort, ...trusts("server")), /not by TLS/);
+    assert.match(await reasonAt(plain.httpPort), /answers by HTTP, as the server's page does; give its gRPC port/);
   } finally {
     await another.stop();
   }

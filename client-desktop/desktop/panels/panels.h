@@ -21,6 +21,7 @@ struct Layout {
 
   static Layout Of(float width, float height, float scale);
   float panel_width() const { return kPanelPerTool * tool_width; }  // of one at the right
+  float tool_right() const { return 2.0F * margin + rail_width + tool_width; }
   // Below the bar, above the time line.
   float top() const { return 2.0F * margin + bar_height; }
   float bottom() const { return window.y - 2.0F * margin - line_height; }

@@ -1,7 +1,9 @@
 // Who is there, who steers, what viewers may, and the key for others.
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "desktop/controls.h"
@@ -25,18 +27,25 @@ void DrawPerson(Ui& ui, const v1::Person& person) {
   note(!person.follows(), "looking around");
   note(person.asks_control(), "asks to steer");
   const bool gives = (state.Steers() || state.Presents()) && !me && !steers;
-  const float button = gives ? 116.0F * ui.scale : 0.0F;
+  const float button = gives ? ButtonWidth("Give control") : 0.0F;
   const std::string you = me ? " (you)" : "";
-  const float room = ImGui::GetContentRegionAvail().x - button -
-                     ImGui::CalcTextSize((you + notes).c_str()).x -
-                     2.0F * ImGui::GetStyle().ItemSpacing.x;
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const float room =
+      ImGui::GetContentRegionAvail().x - button - 2.0F * gap - ImGui::CalcTextSize(you.c_str()).x;
+  const std::string name = state.NameOf(person);
+  const float of_notes = ImGui::CalcTextSize(notes.c_str()).x;
+  const bool beside = std::min(ImGui::CalcTextSize(name.c_str()).x, 0.5F * room) + of_notes <= room;
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted((Shortened(state.NameOf(person), room) + you).c_str());
-  ImGui::SameLine();
-  QuietLine(notes);
-  if (!gives) return;
-  SameLineAtRight(button);
-  if (ImGui::Button("Give control")) ui.session.GiveControl(person.viewer_id());
+  ImGui::TextUnformatted((Shortened(name, room - (beside ? of_notes : 0.0F)) + you).c_str());
+  if (beside) {
+    ImGui::SameLine();
+    QuietLine(notes);
+  }
+  if (gives) {
+    SameLineAtRight(button);
+    if (ImGui::Button("Give control")) ui.session.GiveControl(person.viewer_id());
+  }
+  if (!beside) Quiet(notes);
 }
 
 struct Rule {

@@ -1,6 +1,9 @@
 // Who steers and the one button about it, above the time line; shown while that is of interest.
 #include <imgui.h>
 
+#include <algorithm>
+#include <string>
+
 #include "absl/strings/str_cat.h"
 #include "desktop/controls.h"
 #include "desktop/panels/panels.h"
@@ -37,20 +40,27 @@ void ControlButton(Ui& ui) {
   }
 }
 
-// Who asks to steer, for the one who answers.
-void Asking(Ui& ui) {
+// Who asks to steer, for the one who answers: as many as fit into a line of `room`, then below.
+void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;
+  constexpr int kMostShown = 3;
+  const float longest_name = std::min(200.0F * ui.scale, 0.4F * room);
+  int asking = 0;
   for (const v1::Person& person : ui.state.presence.people()) {
-    if (!person.asks_control()) continue;
+    if (!person.asks_control() || ++asking > kMostShown) continue;
+    const std::string give =
+        absl::StrCat("Give to ", Shortened(ui.state.NameOf(person), longest_name));
     ImGui::PushID(static_cast<int>(person.viewer_id()));
-    ImGui::SameLine();
-    if (AccentButton(absl::StrCat("Give to ", ui.state.NameOf(person)).c_str())) {
-      ui.session.GiveControl(person.viewer_id());
-    }
+    SameLineIfRoom(ButtonWidth(give) + ImGui::GetStyle().ItemSpacing.x + ButtonWidth("No"), room);
+    if (AccentButton(give.c_str())) ui.session.GiveControl(person.viewer_id());
     ImGui::SameLine();
     if (ImGui::Button("No")) ui.session.RefuseControl(person.viewer_id());
     ImGui::PopID();
   }
+  if (asking <= kMostShown) return;
+  const std::string more = absl::StrCat("and ", asking - kMostShown, " more");
+  SameLineIfRoom(ButtonWidth(more), room);
+  if (ImGui::Button(more.c_str())) ui.choices.panel = Panel::kPeople;
 }
 
 bool HasCompany(const client::SessionState& state) {
@@ -58,17 +68,40 @@ bool HasCompany(const client::SessionState& state) {
   return !state.Alone() || !state.Steers();
 }
 
-// Who steers, and what can be done about it.
-void People(Ui& ui) {
-  ImGui::TextUnformatted(WhoSteers(ui.state).c_str());
+// Who steers, and what can be done about it, `room` wide.
+void People(Ui& ui, float room) {
+  ImGui::TextUnformatted(Shortened(WhoSteers(ui.state), 0.6F * room).c_str());
   ImGui::SameLine();
   ControlButton(ui);
-  Asking(ui);
+  Asking(ui, room);
   if (!ui.state.looks_around) return;
-  ImGui::SameLine(0.0F, 20.0F * ui.scale);
-  QuietLine("You look around");
-  ImGui::SameLine();
-  if (AccentButton("Back to presenter")) ui.session.Follow();
+  constexpr const char* kState = "You look around";
+  constexpr const char* kBack = "Back to presenter";
+  const float gap = 20.0F * ui.scale;
+  SameLineIfRoom(ImGui::CalcTextSize(kState).x + ButtonWidth(kBack) + 2.0F * gap, room);
+  QuietLine(kState);
+  ImGui::SameLine(0.0F, gap);
+  if (AccentButton(kBack)) ui.session.Follow();
+}
+
+// Where the bar goes from left to right: between the rail, or a tool that is open, and a panel
+// that is open, where that leaves it room.
+struct Place {
+  float middle;
+  float width;
+};
+
+Place PlaceOf(const Ui& ui, const Layout& layout) {
+  const bool tool = ui.choices.tool != Tool::kNone;
+  const float left = tool ? layout.tool_right() : layout.margin + layout.rail_width;
+  const float right =
+      layout.window.x -
+      (ui.choices.panel == Panel::kNone ? 0.0F : layout.panel_width() + layout.margin);
+  const float least = 260.0F * ui.scale;
+  if (right - left - 2.0F * layout.margin < least) {
+    return {0.5F * layout.window.x, layout.window.x - 2.0F * layout.margin};
+  }
+  return {0.5F * (left + right), right - left - 2.0F * layout.margin};
 }
 
 }  // namespace
@@ -78,7 +111,8 @@ void DrawSessionBar(Ui& ui, const Layout& layout) {
   const bool gone = state.link == client::Link::kGone;
   if (!gone && !HasCompany(state)) return;
   const float bottom = ui.time_count() > 1 ? layout.bottom() : layout.window.y - layout.margin;
-  ImGui::SetNextWindowPos({0.5F * layout.window.x, bottom}, ImGuiCond_Always, {0.5F, 1.0F});
+  const Place place = PlaceOf(ui, layout);
+  ImGui::SetNextWindowPos({place.middle, bottom}, ImGuiCond_Always, {0.5F, 1.0F});
   constexpr ImGuiWindowFlags kFlags =
       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing;
@@ -87,7 +121,7 @@ void DrawSessionBar(Ui& ui, const Layout& layout) {
     if (gone) {
       if (AccentButton("Open a session of your own")) ui.session.OpenAnother();
     } else {
-      People(ui);
+      People(ui, place.width - 2.0F * ImGui::GetStyle().WindowPadding.x);
     }
   }
   ImGui::End();

@@ -21,13 +21,17 @@ void DrawStorm(Ui& ui, const v1::StormSummary& storm) {
       scene.clear_camera();
     });
   }
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("%s\n%s", storm.title().c_str(), storm.id().c_str());
   const ImVec2 below = ImGui::GetCursorPos();
   ImGui::SetCursorPos({at.x + 8.0F * ui.scale, at.y + 3.0F * ui.scale});
-  ImGui::TextUnformatted(storm.title().c_str());
+  const float room = ImGui::GetContentRegionAvail().x - 8.0F * ui.scale;
+  ImGui::TextUnformatted(Shortened(storm.title(), room).c_str());
   ImGui::SetCursorPos(
       {at.x + 8.0F * ui.scale, at.y + 5.0F * ui.scale + ImGui::GetTextLineHeight()});
-  Quiet(absl::StrCat(storm.id(), " · ", storm.time_count(),
-                     storm.time_count() == 1 ? " time" : " times"));
+  const std::string times =
+      absl::StrCat(" · ", storm.time_count(), storm.time_count() == 1 ? " time" : " times");
+  QuietLine(Shortened(storm.id(), room - ImGui::CalcTextSize(times.c_str()).x) + times);
   ImGui::SetCursorPos(below);
 }
 

@@ -87,10 +87,6 @@ void DrawLink(Ui& ui, const std::string& text) {
                                               ImGui::GetColorU32(LinkColor(ui.state.link)));
 }
 
-float WidthOf(const std::string& text) {
-  return ImGui::CalcTextSize(text.c_str()).x + 2.0F * ImGui::GetStyle().FramePadding.x;
-}
-
 }  // namespace
 
 void DrawTopBar(Ui& ui, const Layout& layout) {
@@ -101,13 +97,14 @@ void DrawTopBar(Ui& ui, const Layout& layout) {
     const std::string people =
         ui.state.Alone() ? "People" : absl::StrCat("People ", ui.state.presence.people_size());
     const float gap = ImGui::GetStyle().ItemSpacing.x;
-    const float buttons = WidthOf(people) + WidthOf("Settings") + WidthOf("?") + 3.0F * gap;
+    const float buttons =
+        ButtonWidth(people) + ButtonWidth("Settings") + ButtonWidth("?") + 3.0F * gap;
     const float inside = size.x - ImGui::GetStyle().WindowPadding.x - buttons;
     // Storm and time come first; the lamp alone says how the connection is where there is no room.
     std::string link = LinkText(ui);
     constexpr float kStormRoom = 230.0F;
-    if (inside - WidthOf("    " + link) < kStormRoom * ui.scale) link.clear();
-    const float right = inside - WidthOf("    " + link);
+    if (inside - ButtonWidth("    " + link) < kStormRoom * ui.scale) link.clear();
+    const float right = inside - ButtonWidth("    " + link);
     DrawStorm(ui, right);
     ImGui::SameLine(right);
     DrawLink(ui, link);
