@@ -15,10 +15,25 @@ constexpr int kSteps = 8;
 
 // `quality` at one of the steps.
 FrameQuality Step(int step, FrameQuality quality) {
-  const double share = kCoarsest * std::pow(1.0 / kCoarsest, static_cast<double>(step) / kSteps);
+  const double coarsest = quality.sparse ? kCoarsestSparse : kCoarsest;
+  const double share = std::pow(coarsest, 1.0 - static_cast<double>(step) / kSteps);
   quality.image_scale = step == kSteps ? 1.0 : share;
   quality.slice_share = quality.image_scale;
   return quality;
+}
+
+// The least output_scale for the sake of speed, and by what factor another must be wanted for
+// frames of one gesture to change their size: that is seen, and costs video a key frame.
+constexpr double kLeastOutputScale = 0.5;
+constexpr double kKept = 1.15;
+constexpr double kStep = 1.189207115;  // 2^(1/4)
+
+// Down to a step between 1 and the least.
+double OutputStep(double scale) {
+  constexpr double kRounding = 1e-6;
+  if (scale >= 1.0) return 1.0;
+  const double steps = std::floor(std::log(scale) / std::log(kStep) + kRounding);
+  return std::max(std::pow(kStep, steps), kLeastOutputScale);
 }
 
 bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
@@ -55,16 +70,29 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
     const double output_scale = accuracy::MovingOutputScale(scene);
     const bool large = output_scale < 1.0;
     FrameQuality moving;
+    double speed_scale = 1.0;
     if (whole_ms > (large ? targets_.coarse_ms : targets_.smooth_ms)) {
       moving.sparse = accuracy::MovesSparsely(scene);
-      moving.output_scale = output_scale;
+      speed_scale = SpeedScale(scene, moving);
+      moving.output_scale = output_scale * speed_scale;
     }
     const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms, moving);
-    return {quality, IsFull(quality)};
+    return {quality, IsFull(quality), speed_scale};
   }
   // Only the tone changes: the linear frame is reused at its quality, at no cost.
   const bool as_refined_as_before = drawn_.refined && drawn_.quality == last_drawn->quality;
-  return {last_drawn->quality, IsFull(last_drawn->quality) || as_refined_as_before};
+  return {last_drawn->quality, IsFull(last_drawn->quality) || as_refined_as_before, speed_scale_};
+}
+
+double FramePlanner::SpeedScale(const scene::Scene& scene, const FrameQuality& moving) const {
+  FrameQuality coarsest = Step(0, moving);
+  coarsest.output_scale = accuracy::MovingOutputScale(scene) * speed_scale_;
+  const double ms = costs_.FrameMs(view_, scene, coarsest, scene::Stage::kView);
+  const double wanted = speed_scale_ * std::sqrt(targets_.whole_size_ms / ms);
+  const bool gesture_begins = drawn_.refined;
+  if (gesture_begins || wanted <= speed_scale_ / kKept) return OutputStep(wanted);
+  // A step at a time, as what is quick may have been so by chance.
+  return wanted >= speed_scale_ * kKept ? OutputStep(kStep * speed_scale_) : speed_scale_;
 }
 
 Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
@@ -111,6 +139,7 @@ void FramePlanner::Drawn(std::uint64_t revision, const FramePlan& plan) {
   drawn_revision_ = revision;
   finished_ = IsFull(plan.quality);
   drawn_ = plan;
+  if (!plan.refined) speed_scale_ = plan.speed_scale;
 }
 
 void FramePlanner::GiveUp(std::uint64_t revision) {

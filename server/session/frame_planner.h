@@ -17,6 +17,8 @@ namespace thunderhead::session {
 
 struct PlannerTargets {
   double coarse_ms = 33.0;  // a frame while the scene changes
+  double whole_size_ms =
+      45.0;                 // the coarsest that has all its pixels; one that takes longer has fewer
   double smooth_ms = 10.0;  // one that costs no more gets a ray for each pixel even then
   // The first frame at rest: with the delay, encoding and network it is shown within 300 ms.
   double refined_ms = 180.0;
@@ -46,6 +48,8 @@ struct PlannerTargets {
 
 // The smallest image_scale and slice_share of a coarse frame; both vary together up to 1.
 inline constexpr double kCoarsest = 0.25;
+// Of sparse frames: the rays that are saved below it cost next to nothing, and are where edges are.
+inline constexpr double kCoarsestSparse = 0.353553390593;
 
 // The frame that the source drew last, whose stages it can reuse.
 struct LastDrawn {
@@ -59,6 +63,8 @@ scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene:
 struct FramePlan {
   FrameQuality quality;
   bool refined = false;
+  // The part of a coarse frame's output_scale that is for this machine's sake.
+  double speed_scale = 1.0;
 
   bool operator==(const FramePlan&) const = default;
 };
@@ -100,6 +106,9 @@ class FramePlanner {
 
  private:
   FramePlan Coarse(const scene::Scene& scene, const std::optional<LastDrawn>& last_drawn) const;
+  // FramePlan::speed_scale of coarse frames of that kind: where the coarsest with all their
+  // pixels takes longer than whole_size_ms, they have fewer.
+  double SpeedScale(const scene::Scene& scene, const FrameQuality& moving) const;
   Decision AtRest(const NewestScene& newest, Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;
   FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms,
@@ -113,6 +122,7 @@ class FramePlanner {
   std::uint64_t drawn_revision_ = 0;
   bool finished_ = false;  // no finer frame follows for that revision
   FramePlan drawn_;
+  double speed_scale_ = 1.0;  // of the last coarse frame
 };
 
 }  // namespace thunderhead::session

@@ -1,5 +1,7 @@
-// Measures the page on a slow link while its camera turns: frames a second and latency, from its readout.
+// Measures the page on a slow link while its camera turns: frames a second and latency, from its readout. Fails if the latency grows or
+// there are fewer than 8 frames/s on the whole, as its first seconds, in which the link is learnt, have.
 //   node slow_link.mjs [seconds] [kbit/s] [round trip in ms]
+import assert from "node:assert/strict";
 import { setTimeout } from "node:timers/promises";
 import { canvasData, launchBrowser, rested } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
@@ -62,6 +64,9 @@ try {
   console.log(`first third ${mean(all.slice(0, third)).toFixed(0)} ms, last ${mean(all.slice(-third)).toFixed(0)} ms`);
   const shown = await rested(page);
   console.log(`at rest: ${shown.encoding}`);
+  assert.ok(mean(all.slice(-third)) <= 1.2 * mean(all.slice(0, third)) + 50, "the latency has grown");
+  const fps = all.reduce((sum, one) => sum + one.fps, 0) / all.length;
+  assert.ok(fps >= 8, `${fps.toFixed(1)} frames/s`);
 } finally {
   await browser.close();
   await link.close();

@@ -2,6 +2,7 @@
 #include "session/frame_planner.h"
 
 #include <cmath>
+#include <set>
 
 #include "gtest/gtest.h"
 #include "tests/support/techniques.h"
@@ -164,9 +165,35 @@ TEST_F(FramePlannerTest, OnlyPicturesThatCanBeSparseAre) {
   EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
 }
 
-TEST_F(FramePlannerTest, CoarsestIsAQuarter) {
-  Drag({0.0, 1000.0}, 5);
-  EXPECT_EQ(last_plan_.quality, (FrameQuality{kCoarsest, kCoarsest, true}));
+TEST_F(FramePlannerTest, CoarsestIsSomeShareOfHalfThePicture) {
+  for (const bool sparse : {true, false}) {
+    if (!sparse) scene_.rendering.technique = scene::HalfAngle{};
+    Drag({0.0, 1000.0}, 20);
+    const double share = sparse ? kCoarsestSparse : kCoarsest;
+    EXPECT_EQ(last_plan_.quality, (FrameQuality{share, share, sparse, 0.5}));
+  }
+}
+
+// Of a machine whose coarsest frame takes 100 ms, nearly all of it for each pixel of the picture.
+TEST_F(FramePlannerTest, CoarseFramesThatTakeTooLongAreSmallerAndKeepTheirSizeWithinAGesture) {
+  const double samples = accuracy::MegaSamples(Hd(), {kCoarsestSparse, kCoarsestSparse, true});
+  const Machine machine{2.0, 98.0 / samples};
+  Drag(machine, 5);
+  std::set<double> scales;
+  for (int i = 0; i < 50; ++i) {
+    Drag(machine, 1);
+    scales.insert(last_plan_.quality.output_scale);
+  }
+  EXPECT_EQ(scales.size(), 1U);
+  EXPECT_LE(last_ms_, PlannerTargets{}.whole_size_ms);
+  EXPECT_GE(last_ms_, 0.6 * PlannerTargets{}.whole_size_ms);
+  // On a machine that has become quicker the next gesture has them all again.
+  const Machine quick{2.0, 10.0 / samples};
+  for (int i = 0; i < 2; ++i) {
+    Draw(quick, {FrameQuality{}, true});
+    Drag(quick, 10);
+  }
+  EXPECT_EQ(last_plan_.quality.output_scale, 1.0);
 }
 
 TEST_F(FramePlannerTest, LargePicturesAreSmallerWhileTheyMove) {
