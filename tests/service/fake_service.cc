@@ -83,9 +83,10 @@ void Watcher::Run() {
 }
 
 bool Watcher::Await(
-    const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted) {
+    const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted,
+    std::chrono::seconds patience) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, kPatience, [&] { return wanted(messages_); });
+  return changed_.wait_for(lock, patience, [&] { return wanted(messages_); });
 }
 
 bool Watcher::AwaitFrame(std::uint64_t revision, bool refined) {

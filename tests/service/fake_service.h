@@ -48,8 +48,9 @@ class Watcher {
   Watcher(v1::ThunderheadService::Stub& stub, std::string session_id, bool acknowledges = true);
   ~Watcher();
 
-  // Waits until `wanted` is true for the messages so far, for at most kPatience.
-  bool Await(const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted);
+  // Waits until `wanted` is true for the messages so far, for at most so long.
+  bool Await(const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted,
+             std::chrono::seconds patience = kPatience);
   // Waits for a frame of at least that revision, at full quality if `refined`.
   bool AwaitFrame(std::uint64_t revision, bool refined);
   std::vector<v1::WatchFramesResponse> Messages();

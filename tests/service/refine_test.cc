@@ -239,6 +239,9 @@ TEST_F(RefineTest, StopsAmidWork) {
 }
 
 // The path tracer itself behind the same service.
+// Paths are traced at the lowest priority: other tests come before them.
+constexpr std::chrono::minutes kTracingPatience{2};
+
 TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
   FakeService service;
   // The fake storm's cell is opaque, and its paths long.
@@ -260,7 +263,7 @@ TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
     };
   };
   Watcher watcher(service.stub(), id);
-  ASSERT_TRUE(watcher.Await(reached(1, 64)));
+  ASSERT_TRUE(watcher.Await(reached(1, 64), kTracingPatience));
   double first_error = 0.0;
   double last_error = 0.0;
   for (const v1::WatchFramesResponse& message : watcher.Messages()) {
@@ -273,7 +276,7 @@ TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
   EXPECT_LT(last_error, first_error / 2.0);
   EXPECT_GT(last_error, first_error / 16.0);
   const std::uint64_t revision = service.Update(id, from(120.0F));
-  ASSERT_TRUE(watcher.Await(reached(revision, 8)));
+  ASSERT_TRUE(watcher.Await(reached(revision, 8), kTracingPatience));
   const auto messages = watcher.Messages();
   const auto restarted = std::find_if(messages.begin(), messages.end(), [&](const auto& message) {
     return message.frame().scene_revision() == revision;
