@@ -136,7 +136,7 @@ std::string Connection::Explain(const grpc::Status& status) const {
   if (access_.tls_ca_file.empty()) {
     if (!absl::StrContains(status.error_message(), "Socket closed")) return Unreachable(address());
     return absl::StrCat(address(), " answers, but hangs up: it may want TLS; give its certificate ",
-                        "with --tls-ca");
+                        "with --tls-ca; or it has as many connections as it may have");
   }
   const bool answers = absl::StrContains(status.error_message(), "handshake failed") ||
                        absl::StrContains(status.error_message(), "peer certificate");

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -88,7 +90,12 @@ void RotatedFile::Write(const std::string& line) {
 }
 
 absl::Status StatusLog::CheckWritable(const std::string& path) {
-  if (path.empty() || std::ofstream(path, std::ios::app)) return absl::OkStatus();
+  std::error_code ignored;
+  // To open a pipe and close it again would end whoever reads it.
+  const bool other = std::filesystem::exists(path, ignored) &&
+                     !std::filesystem::is_regular_file(path, ignored) &&
+                     !std::filesystem::is_directory(path, ignored);
+  if (path.empty() || other || std::ofstream(path, std::ios::app)) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat("cannot write the file of --status, '", path, "': ", std::strerror(errno)));
 }

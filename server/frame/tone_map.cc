@@ -32,6 +32,15 @@ std::size_t PixelCount(const gl::Texture2D& texture) {
   return static_cast<std::size_t>(texture.Size().x) * static_cast<std::size_t>(texture.Size().y);
 }
 
+// Others draw meanwhile where that takes longer than a piece.
+template <typename Value>
+absl::Status Allocate(std::size_t count, gl::Pieces& pieces, std::vector<Value>* values) {
+  constexpr std::size_t kLarge_bytes = std::size_t{32} << 20;
+  if (count * sizeof(Value) >= kLarge_bytes) return pieces.OffTurn([&] { values->resize(count); });
+  values->resize(count);
+  return absl::OkStatus();
+}
+
 struct PixelFormat {
   GLenum channels;
   GLenum type;
@@ -119,7 +128,7 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
 absl::StatusOr<FineImage> ToneMapper::MapFine(const gl::Texture2D& linear) {
   THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA16, /*noise=*/false, &fine_display_));
   FineImage image{linear.Size().x, linear.Size().y, {}};
-  image.rgb.resize(PixelCount(linear) * 3);
+  THUNDERHEAD_RETURN_IF_ERROR(Allocate(PixelCount(linear) * 3, programs_->Pieces(), &image.rgb));
   THUNDERHEAD_RETURN_IF_ERROR(ReadRows(fine_display_.texture, {GL_RGB, GL_UNSIGNED_SHORT, 3},
                                        programs_->Pieces(), image.rgb.data()));
   return image;
@@ -142,7 +151,8 @@ absl::Status ToneMapper::Draw(const gl::Texture2D& linear, GLenum format, bool n
 }
 
 absl::StatusOr<std::vector<float>> ReadLinear(const gl::Texture2D& linear, gl::Pieces& pieces) {
-  std::vector<float> values(PixelCount(linear) * 4);
+  std::vector<float> values;
+  THUNDERHEAD_RETURN_IF_ERROR(Allocate(PixelCount(linear) * 4, pieces, &values));
   THUNDERHEAD_RETURN_IF_ERROR(ReadRows(linear, {GL_RGBA, GL_FLOAT, 4}, pieces, values.data()));
   return values;
 }

@@ -19,6 +19,8 @@ namespace {
 constexpr int kIdWords = kIdDigits / 8;
 // Until results are written again where one could not be, such as on a full disk.
 constexpr std::chrono::seconds kUnwrittenPause{5};
+// Until one is drawn again whose folder may not be written to.
+constexpr std::chrono::seconds kUnwritablePause{60};
 // The clock may be set in between.
 constexpr std::chrono::seconds kLongestSleep{60};
 
@@ -249,7 +251,8 @@ Time Jobs::WakeTime() const {
   for (const std::optional<Time>& at : {board_.NextRetry(Now()), board_.NextExpiry()}) {
     if (at.has_value()) wake = std::min(wake, *at);
   }
-  return paused_until_ > Now() ? std::min(wake, paused_until_) : wake;
+  // Those that wait to be written are due when the pause is over, which it may be by now.
+  return paused_until_ > Now() || !unwritten_.empty() ? std::min(wake, paused_until_) : wake;
 }
 
 void Jobs::Run() {
@@ -259,9 +262,10 @@ void Jobs::Run() {
     WriteAgain(lock);
     BeginPictures(lock);
     (void)Save(lock);
-    if (stopping_ && in_hand_.empty() && tasks_.empty()) break;
+    const bool ends = stopping_ && in_hand_.empty() && tasks_.empty();
+    if (ends && unwritten_.empty()) break;
     busy_since_.reset();
-    if (tasks_.empty()) changed_.wait_until(lock, WakeTime());
+    if (tasks_.empty() && !ends) changed_.wait_until(lock, WakeTime());
     busy_since_.emplace();
     while (!tasks_.empty()) {
       const Task task = std::move(tasks_.front());
@@ -346,7 +350,14 @@ void Jobs::WriteAgain(Lock& lock) {
   if (unwritten_.empty() || paused_until_ > Now()) return;
   std::vector<Unwritten> pictures = std::exchange(unwritten_, {});
   lock.unlock();
-  for (Unwritten& picture : pictures) Keep(std::move(picture));
+  for (Unwritten& picture : pictures) {
+    const PicturePlace place = picture.place;
+    const absl::Status kept = base::OrOutOfMemory([&] {
+      Keep(std::move(picture));
+      return absl::OkStatus();
+    });
+    if (!kept.ok()) Refuse(place, kept);
+  }
   lock.lock();
 }
 
@@ -361,12 +372,17 @@ void Jobs::Keep(Unwritten picture) {
   const absl::Status written =
       results_.Write(job_id, place, drawn.extension, drawn.bytes, drawn.about);
   lock.lock();
+  if (!written.ok() && !std::exchange(cannot_write_, true)) {
+    base::LogError(
+        base::Annotate(written, "pictures of render jobs wait until they can be written"));
+  }
+  // It may be the job's folder alone, as where that was made somebody else's: others go on.
+  if (absl::IsFailedPrecondition(written)) {
+    board_.PutBack(picture.place, false, Now() + kUnwritablePause);
+    return;
+  }
   if (!written.ok()) {
     paused_until_ = Now() + kUnwrittenPause;
-    if (!std::exchange(cannot_write_, true)) {
-      base::LogError(
-          base::Annotate(written, "pictures of render jobs wait until they can be written"));
-    }
     unwritten_.push_back(std::move(picture));
     return;
   }

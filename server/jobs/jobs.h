@@ -1,6 +1,6 @@
 // Jobs of pictures that nobody waits for: takes them in within quotas, has them drawn a few at a
 // time, fairly among owners and their jobs, keeps the results, and goes on after a restart where it
-// was. A picture is written first, then recorded; while none can be written, as on a full disk,
+// was. A picture is written first, then recorded; while one cannot be written, as on a full disk,
 // none is begun. Knows no messages and no GL; safe from any
 // thread.
 #pragma once
@@ -162,7 +162,7 @@ class Jobs {
   std::optional<base::Stopwatch> busy_since_;  // while the thread works
   Time paused_until_ = {};                     // as nothing can be written
   bool cannot_write_ = false;                  // the last of them
-  std::vector<Unwritten> unwritten_;           // at most as many as may be in hand
+  std::vector<Unwritten> unwritten_;           // at most one more than may be in hand
   bool started_ = false;
   bool draining_ = false;
   bool stopping_ = false;

@@ -27,7 +27,7 @@ struct Limits {
   std::chrono::milliseconds join_timeout = std::chrono::seconds(10);
   // A scene is at most a few kilobytes.
   std::size_t max_request_bytes = 1u << 20;
-  // Of gRPC's buffers, all connections together; near it, connections and calls are refused.
+  // Of gRPC's buffers, all connections together; near it, calls are refused.
   std::size_t grpc_memory_bytes = std::size_t{1} << 30;
   // Further calls of a connection wait in its client.
   int max_streams_per_connection = 1024;

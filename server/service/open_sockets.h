@@ -26,7 +26,6 @@ class OpenSockets {
   // False if there are as many as there may be, of all or of the peer's address; else counts it.
   // Looks at them again ten times a second at most.
   bool Take(int socket, const std::string& peer, Clock::time_point now = Clock::now());
-  std::size_t Count() const { return peers_.size(); }
 
  private:
   bool HasRoomFor(const std::string& peer) const;

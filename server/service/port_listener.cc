@@ -42,7 +42,18 @@ int PortOf(int socket) {
                                          : reinterpret_cast<const sockaddr_in*>(&own)->sin_port);
 }
 
-base::FileDescriptor ListenOn(const addrinfo& at) {
+using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
+
+Addresses Resolve(const std::string& host, const std::string& port) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  wanted.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host.c_str(), port.c_str(), &wanted, &found) != 0) found = nullptr;
+  return {found, &freeaddrinfo};
+}
+
+base::FileDescriptor ListenOn(const addrinfo& at, std::chrono::milliseconds unanswered) {
   base::FileDescriptor socket(
       ::socket(at.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket.IsOpen()) return {};
@@ -50,6 +61,8 @@ base::FileDescriptor ListenOn(const addrinfo& at) {
   // [::] is for IPv4 as well. What is set here is set for each connection.
   if (at.ai_family == AF_INET6) Set(socket.Get(), IPPROTO_IPV6, IPV6_V6ONLY, 0);
   Set(socket.Get(), IPPROTO_TCP, TCP_NODELAY, 1);
+  // gRPC's own keepalive does not end a connection in the middle of a message.
+  Set(socket.Get(), IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(unanswered.count()));
   if (bind(socket.Get(), at.ai_addr, at.ai_addrlen) != 0) return {};
   if (listen(socket.Get(), SOMAXCONN) != 0) return {};
   return socket;
@@ -57,24 +70,26 @@ base::FileDescriptor ListenOn(const addrinfo& at) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(const std::string& address) {
+absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
+    const std::string& address, std::chrono::milliseconds unanswered) {
   const HostAndPort parts = Split(address);
-  addrinfo wanted{};
-  wanted.ai_socktype = SOCK_STREAM;
-  wanted.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
-  addrinfo* found = nullptr;
-  if (getaddrinfo(parts.host.c_str(), parts.port.c_str(), &wanted, &found) != 0) found = nullptr;
-  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owned(found, &freeaddrinfo);
   std::vector<base::FileDescriptor> sockets;
   int port = 0;
-  for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
-    base::FileDescriptor socket = ListenOn(*at);
-    if (!socket.IsOpen()) continue;
-    // With port 0 each would have another.
-    const int its_port = PortOf(socket.Get());
-    if (sockets.empty()) port = its_port;
-    if (its_port == port) sockets.push_back(std::move(socket));
-  }
+  const auto listen = [&](const std::string& host) {
+    const Addresses found = Resolve(host, parts.port);
+    for (const addrinfo* at = found.get(); at != nullptr; at = at->ai_next) {
+      base::FileDescriptor socket = ListenOn(*at, unanswered);
+      if (!socket.IsOpen()) continue;
+      // With port 0 each would have another.
+      const int its_port = PortOf(socket.Get());
+      if (sockets.empty()) port = its_port;
+      if (its_port == port) sockets.push_back(std::move(socket));
+    }
+  };
+  const bool all = parts.host == "0.0.0.0" || parts.host == "::";
+  listen(all ? "::" : parts.host);
+  // Of a machine without IPv6.
+  if (all && sockets.empty()) listen("0.0.0.0");
   if (!sockets.empty()) {
     return std::unique_ptr<PortListener>(new PortListener(std::move(sockets), port));
   }

@@ -4,6 +4,7 @@
 
 #include <grpcpp/server_builder.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -22,9 +23,11 @@ class PortListener {
   // Told of a connection that was closed as there are too many; on the listener's thread.
   using Refused = std::function<void(const std::string& peer)>;
 
-  // Listens on "HOST:PORT", port 0 for a free one; connections wait until Start. UNAVAILABLE if it
-  // cannot.
-  static absl::StatusOr<std::unique_ptr<PortListener>> Open(const std::string& address);
+  // Listens on "HOST:PORT", port 0 for a free one; connections wait until Start. 0.0.0.0 and [::]
+  // are all of this machine's addresses, of IPv4 and IPv6. What has been sent on a connection must
+  // arrive within `unanswered`. UNAVAILABLE if it cannot.
+  static absl::StatusOr<std::unique_ptr<PortListener>> Open(const std::string& address,
+                                                            std::chrono::milliseconds unanswered);
 
   int Port() const { return port_; }
 

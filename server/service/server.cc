@@ -29,6 +29,7 @@
 #include "service/thunderhead_service.h"
 #include "session/session_keeper.h"
 #include "session/upkeep.h"
+#include "telemetry/metrics.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::service {
@@ -135,7 +136,8 @@ class RunningServer final : public Server {
     builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleConnectionMs);
     PortListener::Acceptor acceptor;
     if (!address.empty()) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(port_, PortListener::Open(address));
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          port_, PortListener::Open(address, std::chrono::milliseconds(kKeepaliveTimeoutMs)));
       using Builder = grpc::ServerBuilder::experimental_type;
       acceptor = builder.experimental().AddExternalConnectionAcceptor(
           Builder::ExternalConnectionType::FROM_FD, CredentialsOf(tls));
@@ -149,6 +151,7 @@ class RunningServer final : public Server {
                        OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
                                    door_->Proxies()),
                        [this](const std::string& peer) {
+                         telemetry::Counted().refusals.Of("TOO_MANY_CONNECTIONS").Add();
                          door_->ReportBeforeCall(peer, "Connect", TooManyConnections());
                        }));
     }

@@ -27,6 +27,7 @@ struct EncodedFrame {
   bool key_frame = false;  // of video
   int width_px = 0;
   int height_px = 0;
+  int full_width_px = 0;  // of the scene's picture at rest; 0: the same
   scene::Camera camera;
   scene::View view;
   scene::Sun sun;

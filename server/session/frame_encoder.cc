@@ -38,6 +38,7 @@ EncodedFrame Described(DrawnFrame& drawn) {
   frame.scene_revision = drawn.scene_revision;
   frame.width_px = drawn.picture.width_px;
   frame.height_px = drawn.picture.height_px;
+  frame.full_width_px = drawn.scene.output.width_px;
   frame.camera = drawn.scene.camera;
   frame.view = drawn.view;
   frame.sun = drawn.scene.sun;
@@ -101,7 +102,7 @@ std::vector<EncodedVideo> VideoOf(const EncodedFrame& described, Session& sessio
                                   const SerializeFrame& serialize) {
   std::vector<EncodedVideo> video;
   for (const VideoOrder& order :
-       session.hub().OrderVideo(described.width_px, described.at_rest, still_follows)) {
+       session.hub().OrderVideo(WidthOf(described), described.at_rest, still_follows)) {
     auto encoded = base::OrOutOfMemory([&] {
       return WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
     });

@@ -80,14 +80,14 @@ void FrameHub::SetLeastSteps(Time now) {
 }
 
 int FrameHub::JpegTier(const Watch& watch, const PublishedFrame& frame) {
-  const int for_window = TierForWindow(frame.Described().width_px, watch.wants.window_width_px);
+  const int for_window = TierForWindow(WidthOf(frame.Described()), watch.wants.window_width_px);
   const bool reduced = watch.wants.adapts && !frame.Rests();
   return reduced ? std::max(for_window, std::min(watch.link.step(), kTiers - 1)) : for_window;
 }
 
-std::optional<int> FrameHub::VideoTier(const Watch& watch, int width_px) {
+std::optional<int> FrameHub::VideoTier(const Watch& watch, const PictureWidth& width) {
   if (!TakesVideo(watch) || watch.link.step() == 0) return std::nullopt;
-  return std::max(TierForWindow(width_px, watch.wants.window_width_px), watch.link.step() - 1);
+  return std::max(TierForWindow(width, watch.wants.window_width_px), watch.link.step() - 1);
 }
 
 std::size_t FrameHub::MaxInFlight(const Watch& watch) {
@@ -111,8 +111,9 @@ std::optional<FrameHub::Offer> FrameHub::VideoFor(const Watch& watch, const Publ
   // The base picture that it has missed, without which it can take none of the newer ones.
   const VideoStream& stream = streams_[static_cast<std::size_t>(tier)];
   const VideoPicture& base = stream.NewestBase();
-  const bool missed = base.frame != nullptr && base.needs != 0 &&
-                      base.needs == watch.place.BaseOf(tier) &&
+  // It may be a key picture that nobody asked for, as where pictures have another size now.
+  const std::uint64_t has = watch.place.BaseOf(tier);
+  const bool missed = base.frame != nullptr && has != 0 && (base.needs == 0 || base.needs == has) &&
                       stream.NewestBaseSequence() > watch.last_sequence;
   if (missed) return Offer{stream.NewestBaseSequence(), form, base};
   return std::nullopt;
@@ -126,12 +127,12 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
     if (!is_new && !better) return std::nullopt;
     return Offer{described.sequence, form, {}};
   };
-  const int for_window = TierForWindow(described.width_px, watch.wants.window_width_px);
+  const int for_window = TierForWindow(WidthOf(described), watch.wants.window_width_px);
   if (watch.wants.takes_stills && frame.Still(for_window) != nullptr) {
     return if_wanted({FrameForm::Kind::kStill, for_window});
   }
   const FrameForm jpeg{FrameForm::Kind::kJpeg, JpegTier(watch, frame)};
-  const std::optional<int> video_tier = VideoTier(watch, described.width_px);
+  const std::optional<int> video_tier = VideoTier(watch, WidthOf(described));
   if (!video_tier.has_value()) return if_wanted(jpeg);
   const bool awaits_still = watch.wants.takes_stills && frame.StillFollows();
   if (frame.Rests() && !awaits_still) return if_wanted(jpeg);
@@ -202,7 +203,7 @@ bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
     watch.place.Took(offer.sequence, offer.picture, now);
   }
   const EncodedFrame& frame = is_video ? *offer.picture.frame : frame_->Described();
-  if (!VideoTier(watch, frame_->Described().width_px).has_value()) watch.place.Leave();
+  if (!VideoTier(watch, WidthOf(frame_->Described())).has_value()) watch.place.Leave();
   // A viewer who has just come has missed nothing; a better form of a frame is not another one.
   const bool has_had_any = watch.last_sequence > 0;
   if (has_had_any && offer.sequence > watch.last_sequence) {
@@ -278,12 +279,12 @@ void FrameHub::LoseVideo(std::uint64_t viewer_id, Time now) {
   if (found != watches_.end()) found->second.place.Lost(now);
 }
 
-std::vector<VideoOrder> FrameHub::OrderVideo(int width_px, bool at_rest, bool still_follows,
-                                             Time now) {
+std::vector<VideoOrder> FrameHub::OrderVideo(const PictureWidth& width, bool at_rest,
+                                             bool still_follows, Time now) {
   const std::lock_guard lock(mutex_);
   for (VideoStream& stream : streams_) stream.Begin();
   for (auto& [id, watch] : watches_) {
-    const std::optional<int> tier = VideoTier(watch, width_px);
+    const std::optional<int> tier = VideoTier(watch, width);
     const bool gets_jpeg = at_rest && !(still_follows && watch.wants.takes_stills);
     if (!tier.has_value() || gets_jpeg) continue;
     streams_[static_cast<std::size_t>(*tier)].Ask(
@@ -405,7 +406,8 @@ std::array<bool, kTiers> FrameHub::StillTiers(int width_px) const {
   const std::lock_guard lock(mutex_);
   for (const auto& [id, watch] : watches_) {
     if (!watch.wants.takes_stills) continue;
-    wanted[static_cast<std::size_t>(TierForWindow(width_px, watch.wants.window_width_px))] = true;
+    wanted[static_cast<std::size_t>(
+        TierForWindow({width_px, width_px}, watch.wants.window_width_px))] = true;
   }
   return wanted;
 }

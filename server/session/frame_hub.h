@@ -5,6 +5,7 @@
 // of video. Safe from any thread. Does not know how frames are drawn, encoded or sent.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -56,6 +57,10 @@ struct EncodedVideo {
   EncodedFrame frame;
 };
 
+inline PictureWidth WidthOf(const EncodedFrame& frame) {
+  return {frame.width_px, std::max(frame.full_width_px, frame.width_px)};
+}
+
 class FrameHub {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -95,7 +100,7 @@ class FrameHub {
 
   // The pictures of video to encode of a frame of that width before it is published. One at rest
   // whose stills follow is for those only who take them: others get it as JPEG.
-  std::vector<VideoOrder> OrderVideo(int width_px, bool at_rest, bool still_follows,
+  std::vector<VideoOrder> OrderVideo(const PictureWidth& width, bool at_rest, bool still_follows,
                                      Time now = std::chrono::steady_clock::now());
   // Replaces the newest frame, which has no picture yet, encoded in every tier that a viewer wants
   // now. Returns its sequence.
@@ -156,7 +161,7 @@ class FrameHub {
   static bool TakesVideo(const Watch& watch);
   static int JpegTier(const Watch& watch, const PublishedFrame& frame);
   // The tier of the stream that it follows, for a frame of that width; none if it gets JPEG.
-  static std::optional<int> VideoTier(const Watch& watch, int width_px);
+  static std::optional<int> VideoTier(const Watch& watch, const PictureWidth& width);
   static std::size_t MaxInFlight(const Watch& watch);
   static bool IsReady(const Watch& watch, Time now);
   // Need mutex_.

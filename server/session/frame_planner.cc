@@ -9,8 +9,8 @@
 namespace thunderhead::session {
 namespace {
 
-// Steps between the coarsest and full quality, a factor of 2^(1/4) apart, so that small changes of
-// the estimate do not change the size of the buffers.
+// Steps between the coarsest and full quality, all by the same factor, so that small changes of the
+// estimate do not change the size of the buffers.
 constexpr int kSteps = 8;
 
 // `quality` at one of the steps.
@@ -71,7 +71,10 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
     const bool large = output_scale < 1.0;
     FrameQuality moving;
     double speed_scale = 1.0;
-    if (whole_ms > (large ? targets_.coarse_ms : targets_.smooth_ms)) {
+    // Within a gesture only where it is clear: a change of size is seen.
+    const bool capped = !drawn_.refined && drawn_.quality.output_scale < 1.0;
+    const double longest_ms = large ? targets_.coarse_ms : targets_.smooth_ms;
+    if (whole_ms > (capped ? longest_ms / kKept : longest_ms)) {
       moving.sparse = accuracy::MovesSparsely(scene);
       speed_scale = SpeedScale(scene, moving);
       moving.output_scale = output_scale * speed_scale;

@@ -72,9 +72,11 @@ void LinkEstimate::ChangeTo(int step, Time now) {
   changed_at_ = now;
 }
 
-int TierForWindow(int picture_px, int window_px) {
+int TierForWindow(const PictureWidth& picture, int window_px) {
   int tier = 0;
-  while (window_px > 0 && tier < kTiers - 1 && (picture_px >> (tier + 1)) >= window_px) ++tier;
+  while (window_px > 0 && tier < kTiers - 1 && (picture.full_px >> (tier + 1)) >= window_px) ++tier;
+  while (tier > 0 && 2 * (picture.px >> tier) < std::min(window_px, picture.full_px >> tier))
+    --tier;
   return tier;
 }
 

@@ -61,8 +61,15 @@ class LinkEstimate {
   std::optional<Time> shrink_again_at_;
 };
 
-// The tier of a picture `picture_px` wide for a window: the smallest picture that fills it; 0 for a
-// window of unknown width, 0.
-int TierForWindow(int picture_px, int window_px);
+// Of a picture in pixels, and of the one at rest that it stands for, which may be wider.
+struct PictureWidth {
+  int px = 0;
+  int full_px = 0;
+};
+
+// The tier of a picture for a window: the smallest that fills it; 0 for a window of unknown width,
+// 0. One that moves has the tier that it will have at rest, unless it would have less than half of
+// the window's pixels.
+int TierForWindow(const PictureWidth& picture, int window_px);
 
 }  // namespace thunderhead::session

@@ -30,7 +30,8 @@ void VideoStream::Ask(int tier, const Follower& follower, Time now) {
   const std::uint64_t has = place.BaseOf(tier);
   const bool in_sequence = has != 0 && has == base_sequence_;
   // It can still take the newest base picture, and then the next.
-  const bool catches_up = has != 0 && has == base_.needs && base_sequence_ > follower.last_sequence;
+  const bool catches_up = has != 0 && base_sequence_ > follower.last_sequence &&
+                          (base_.needs == 0 || base_.needs == has);
   if (has != 0 && !in_sequence && !catches_up) place.Lost(now);
   if (in_sequence && follower.is_ready) {
     asked_.next = true;

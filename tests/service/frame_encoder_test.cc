@@ -37,6 +37,7 @@ class FrameEncoderTest : public ::testing::Test {
     drawn.session = session_;
     drawn.scene_revision = revision;
     drawn.picture.width_px = 64;
+    drawn.scene.output.width_px = 64;
     drawn.picture.height_px = 36;
     drawn.picture.rgb.assign(std::size_t{64} * 36 * 3, 100);
     encoder_.Encode(std::move(drawn));

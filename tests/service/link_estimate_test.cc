@@ -103,11 +103,16 @@ TEST(LinkEstimateTest, ALinkThatRecoversGetsFullPicturesAgain) {
 }
 
 TEST(LinkEstimateTest, WindowsGetTheSmallestPictureThatFillsThem) {
-  EXPECT_EQ(TierForWindow(1280, 0), 0);
-  EXPECT_EQ(TierForWindow(1280, 1280), 0);
-  EXPECT_EQ(TierForWindow(1280, 641), 0);
-  EXPECT_EQ(TierForWindow(1280, 640), 1);
-  EXPECT_EQ(TierForWindow(1280, 100), 2);
+  EXPECT_EQ(TierForWindow({1280, 1280}, 0), 0);
+  EXPECT_EQ(TierForWindow({1280, 1280}, 1280), 0);
+  EXPECT_EQ(TierForWindow({1280, 1280}, 641), 0);
+  EXPECT_EQ(TierForWindow({1280, 1280}, 640), 1);
+  EXPECT_EQ(TierForWindow({1280, 1280}, 100), 2);
+  // Of those that move, 0.84 and 0.5 times as wide, and much smaller.
+  EXPECT_EQ(TierForWindow({1076, 1280}, 640), 1);
+  EXPECT_EQ(TierForWindow({640, 1280}, 640), 1);
+  EXPECT_EQ(TierForWindow({640, 1280}, 1280), 0);
+  EXPECT_EQ(TierForWindow({1697, 8192}, 1280), 1);
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ class VideoHubTest : public ::testing::Test {
     frame.width_px = 1280;
     frame.at_rest = at_rest;
     std::vector<EncodedVideo> video;
-    for (const VideoOrder& order : hub_.OrderVideo(frame.width_px, at_rest, still_follows, now_)) {
+    for (VideoOrder order : hub_.OrderVideo(WidthOf(frame), at_rest, still_follows, now_)) {
+      if (resized_) order.kind = Vp9Kind::kKey;
       EncodedFrame picture = frame;
       picture.tier = order.tier;
       picture.key_frame = order.kind == Vp9Kind::kKey;
@@ -71,6 +72,7 @@ class VideoHubTest : public ::testing::Test {
   FrameHub hub_{[] {}};
   FrameHub::Time now_ = FrameHub::Time() + std::chrono::hours(1);
   std::uint64_t taken_ = 0;
+  bool resized_ = false;  // encoders make key pictures whatever is ordered
 };
 
 TEST_F(VideoHubTest, ANewcomerGetsAKeyPictureFirst) {
@@ -91,6 +93,23 @@ TEST_F(VideoHubTest, ANewcomerGetsAKeyPictureFirst) {
   EXPECT_EQ(seen, "key");
   Publish();
   EXPECT_EQ(TakeAndAcknowledge(newcomer), "base");
+}
+
+TEST_F(VideoHubTest, AKeyPictureThatNobodyAskedForThrowsNobodyOut) {
+  const auto quick = Join(kVideo);
+  const auto slow = Join(kVideo);
+  Publish();
+  EXPECT_EQ(TakeAndAcknowledge(quick), "key");
+  EXPECT_EQ(TakeAndAcknowledge(slow), "key");
+  resized_ = true;
+  Publish();
+  EXPECT_EQ(TakeAndAcknowledge(quick), "key");
+  resized_ = false;
+  Publish();
+  EXPECT_NE(TakeAndAcknowledge(quick), "jpeg");
+  EXPECT_EQ(TakeAndAcknowledge(slow), "key") << "which it has missed, and can take all the same";
+  Publish();
+  EXPECT_EQ(TakeAndAcknowledge(slow), "base");
 }
 
 TEST_F(VideoHubTest, ManyNewcomersDoNotMakeManyKeyPictures) {

@@ -21,7 +21,7 @@ void DrawStorm(Ui& ui, const v1::StormSummary& storm) {
       scene.clear_camera();
     });
   }
-  if (ImGui::IsItemHovered())
+  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
     ImGui::SetTooltip("%s\n%s", storm.title().c_str(), storm.id().c_str());
   const ImVec2 below = ImGui::GetCursorPos();
   ImGui::SetCursorPos({at.x + 8.0F * ui.scale, at.y + 3.0F * ui.scale});

@@ -52,7 +52,7 @@ export class CanvasPainter {
     const shownHeight = Math.round(box.height);
     const left = Math.floor((width - shownWidth) / 2);
     const top = Math.floor((height - shownHeight) / 2);
-    if (left > 0 || top > 0) {
+    if (shownWidth < width || shownHeight < height) {
       this.#context.fillStyle = "#05070a";
       this.#context.fillRect(0, 0, width, height);
     }

@@ -1,8 +1,13 @@
 #include "jobs/jobs.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <memory>
 #include <new>
@@ -18,15 +23,19 @@ namespace {
 // A picture that has no memory so many times: to be begun, then to be taken.
 class Picture final : public PictureInHand {
  public:
-  explicit Picture(std::atomic<int>& cannot_take) : cannot_take_(cannot_take) {}
+  explicit Picture(
+      std::atomic<int>& cannot_take, std::function<void()> before_take = [] {})
+      : cannot_take_(cannot_take), before_take_(std::move(before_take)) {}
   void Cancel() override {}
   absl::StatusOr<DrawnPicture> Take() override {
+    before_take_();
     if (cannot_take_-- > 0) throw std::bad_alloc();
     return DrawnPicture{"bytes", "png", "about", 1.0};
   }
 
  private:
   std::atomic<int>& cannot_take_;
+  const std::function<void()> before_take_;
 };
 
 TEST(JobsTest, APictureWithoutMemoryIsTriedAgainAndTakesNothingWithIt) {
@@ -70,22 +79,25 @@ class UnwrittenPictures : public ::testing::Test {
     jobs_ = *std::move(jobs);
     jobs_->Start([this](const PictureOrder&, const std::function<void()>& done) {
       ++begun_;
-      auto picture = std::make_unique<Picture>(cannot_take_);
+      auto picture = std::make_unique<Picture>(cannot_take_, [this] { may_take_.wait(false); });
       done();
       return picture;
     });
   }
 
-  // The results' folder cannot be written to, whoever runs the test.
-  void Block() {
-    std::filesystem::remove_all(results_);
-    std::ofstream(results_) << "in the way";
+  // Files have no room, as on a full disk.
+  static void Block() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    Limit(1);
   }
-
-  void Unblock() {
-    std::filesystem::remove(results_);
-    std::filesystem::create_directory(results_);
+  static void Unblock() { Limit(RLIM_INFINITY); }
+  static void Limit(rlim_t bytes) {
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    limit.rlim_cur = std::min(bytes, limit.rlim_max);
+    setrlimit(RLIMIT_FSIZE, &limit);
   }
+  void TearDown() override { Unblock(); }
 
   std::string Create(int pictures) {
     NewJob job;
@@ -107,6 +119,7 @@ class UnwrittenPictures : public ::testing::Test {
   const testing::TemporaryFolder folder_;
   const std::string results_ = folder_.File("jobs");
   std::atomic<int> cannot_take_{0};
+  std::atomic<bool> may_take_{true};
   std::atomic<int> begun_{0};
   std::unique_ptr<Jobs> jobs_;
 };
@@ -139,6 +152,19 @@ TEST_F(UnwrittenPictures, GoWithTheirJobAndHoldUpNoEnd) {
   jobs_->Stop();
   EXPECT_EQ(jobs_->Load().drawing, 0U);
   EXPECT_EQ(jobs_->Load().waiting, 2U) << "drawn again after the next start";
+}
+
+TEST_F(UnwrittenPictures, OfOneJobWhoseFolderIsSomebodyElsesHoldUpNoOtherJob) {
+  Open();
+  may_take_ = false;
+  const std::string first = Create(1);
+  ASSERT_TRUE(Await([this] { return begun_ > 0; }));
+  std::ofstream(results_ + "/" + first) << "in the way";
+  may_take_ = true;
+  may_take_.notify_all();
+  Create(3);
+  EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 15; }));
+  EXPECT_EQ(jobs_->Load().waiting, 1U);
 }
 
 }  // namespace
