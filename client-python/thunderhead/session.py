@@ -25,8 +25,9 @@ class Session:
         session                                          # shows it
         session.close()
 
-    A frame comes at once, coarse, and again ever finer while the scene rests. The session ends with `close`, with the
-    client, or some time after nobody has asked for it (the server says when).
+    A frame comes at once, coarse (above 640 x 360 pixels it may also be smaller), and again ever finer while the scene
+    rests. The session ends with `close`, with the client, or some time after nobody has asked for it (the server says
+    when).
     """
 
     def __init__(self, stub: Any, metadata: Tuple[Tuple[str, str], ...], scene: scene_pb2.Scene, timeout_s: float) -> None:

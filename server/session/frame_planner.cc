@@ -22,18 +22,22 @@ FrameQuality Step(int step, FrameQuality quality) {
   return quality;
 }
 
-// The least output_scale for the sake of speed, and by what factor another must be wanted for
-// frames of one gesture to change their size: that is seen, and costs video a key frame.
+// The least output_scale for the sake of speed, and the least pixels that it leaves: the cost of
+// smaller pictures is not of their pixels.
 constexpr double kLeastOutputScale = 0.5;
+constexpr double kLeastPixels = 640.0 * 360.0;
+// By what factor another must be wanted for frames of one gesture to change their size: that is
+// seen, and costs video a key frame.
 constexpr double kKept = 1.15;
 constexpr double kStep = 1.189207115;  // 2^(1/4)
 
-// Down to a step between 1 and the least.
-double OutputStep(double scale) {
+// Down to a step between 1 and the least for a picture of so many pixels.
+double OutputStep(double scale, double pixels) {
   constexpr double kRounding = 1e-6;
+  const double least = std::clamp(std::sqrt(kLeastPixels / pixels), kLeastOutputScale, 1.0);
   if (scale >= 1.0) return 1.0;
   const double steps = std::floor(std::log(scale) / std::log(kStep) + kRounding);
-  return std::max(std::pow(kStep, steps), kLeastOutputScale);
+  return std::max(std::pow(kStep, steps), least);
 }
 
 bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
@@ -89,13 +93,15 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
 
 double FramePlanner::SpeedScale(const scene::Scene& scene, const FrameQuality& moving) const {
   FrameQuality coarsest = Step(0, moving);
-  coarsest.output_scale = accuracy::MovingOutputScale(scene) * speed_scale_;
+  const double most = accuracy::MovingOutputScale(scene);
+  const double pixels = most * most * scene.output.width_px * scene.output.height_px;
+  coarsest.output_scale = most * speed_scale_;
   const double ms = costs_.FrameMs(view_, scene, coarsest, scene::Stage::kView);
   const double wanted = speed_scale_ * std::sqrt(targets_.whole_size_ms / ms);
   const bool gesture_begins = drawn_.refined;
-  if (gesture_begins || wanted <= speed_scale_ / kKept) return OutputStep(wanted);
+  if (gesture_begins || wanted <= speed_scale_ / kKept) return OutputStep(wanted, pixels);
   // A step at a time, as what is quick may have been so by chance.
-  return wanted >= speed_scale_ * kKept ? OutputStep(kStep * speed_scale_) : speed_scale_;
+  return wanted >= speed_scale_ * kKept ? OutputStep(kStep * speed_scale_, pixels) : speed_scale_;
 }
 
 Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,

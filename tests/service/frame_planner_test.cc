@@ -174,6 +174,13 @@ TEST_F(FramePlannerTest, CoarsestIsSomeShareOfHalfThePicture) {
   }
 }
 
+TEST_F(FramePlannerTest, SmallPicturesKeepTheirSize) {
+  scene_.output.width_px = 640;
+  scene_.output.height_px = 360;
+  Drag({0.0, 10'000.0}, 20);
+  EXPECT_EQ(last_plan_.quality.output_scale, 1.0);
+}
+
 // Of a machine whose coarsest frame takes 100 ms, nearly all of it for each pixel of the picture.
 TEST_F(FramePlannerTest, CoarseFramesThatTakeTooLongAreSmallerAndKeepTheirSizeWithinAGesture) {
   const double samples = accuracy::MegaSamples(Hd(), {kCoarsestSparse, kCoarsestSparse, true});
