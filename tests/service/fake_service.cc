@@ -82,9 +82,8 @@ void Watcher::Run() {
   end_ = end;
 }
 
-bool Watcher::Await(
-    const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted,
-    std::chrono::seconds patience) {
+bool Watcher::Await(const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted,
+                    std::chrono::seconds patience) {
   std::unique_lock lock(mutex_);
   return changed_.wait_for(lock, patience, [&] { return wanted(messages_); });
 }
