@@ -104,7 +104,7 @@ class Jobs {
   // Ends those too; they will be begun again.
   void CancelPictures();
   // Waits for the pictures, which whoever draws them must have ended, saves, and tells watchers.
-  // What cannot be written will be drawn again.
+  // Pictures that still cannot be written then are drawn again after the next start.
   // The destructor does it too.
   void Stop();
 

@@ -1,5 +1,5 @@
-// What gRPC's health checks are told. Its stream (Watch) is not offered, as gRPC's own service
-// does: it would stay open for people who need no token and are counted nowhere. Clients that ask
+// Answers gRPC's health checks. Their stream, Watch, is not offered, unlike by gRPC's own service:
+// its calls would stay open for clients who need no token and are counted nowhere. Clients that ask
 // for it take UNIMPLEMENTED for "serving".
 #pragma once
 

@@ -17,8 +17,8 @@ namespace thunderhead::session {
 
 struct PlannerTargets {
   double coarse_ms = 33.0;  // a frame while the scene changes
-  double whole_size_ms =
-      45.0;                 // the coarsest that has all its pixels; one that takes longer has fewer
+  // The coarsest frame with all its pixels; where it takes longer, frames have fewer.
+  double whole_size_ms = 45.0;
   double smooth_ms = 10.0;  // one that costs no more gets a ray for each pixel even then
   // The first frame at rest: with the delay, encoding and network it is shown within 300 ms.
   double refined_ms = 180.0;

@@ -1,4 +1,5 @@
-// What holds whatever the input: a fuzz target ends by it, and the input is kept.
+// A condition that must hold for every input of a fuzz target. Where it does not, the target ends,
+// and libFuzzer keeps the input.
 #pragma once
 
 #include <cstdlib>

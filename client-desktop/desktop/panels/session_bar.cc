@@ -97,11 +97,10 @@ Place PlaceOf(const Ui& ui, const Layout& layout) {
   const float right =
       layout.window.x -
       (ui.choices.panel == Panel::kNone ? 0.0F : layout.panel_width() + layout.margin);
+  const Place between{0.5F * (left + right), right - left - 2.0F * layout.margin};
   const float least = 260.0F * ui.scale;
-  if (right - left - 2.0F * layout.margin < least) {
-    return {0.5F * layout.window.x, layout.window.x - 2.0F * layout.margin};
-  }
-  return {0.5F * (left + right), right - left - 2.0F * layout.margin};
+  if (between.width >= least) return between;
+  return {0.5F * layout.window.x, layout.window.x - 2.0F * layout.margin};
 }
 
 }  // namespace
