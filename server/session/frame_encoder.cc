@@ -101,8 +101,7 @@ std::vector<EncodedVideo> VideoOf(const EncodedFrame& described, Session& sessio
                                   bool still_follows, Pictures& pictures,
                                   const SerializeFrame& serialize) {
   std::vector<EncodedVideo> video;
-  for (const VideoOrder& order :
-       session.hub().OrderVideo(WidthOf(described), described.at_rest, still_follows)) {
+  for (const VideoOrder& order : session.hub().OrderVideo(described, still_follows)) {
     auto encoded = base::OrOutOfMemory([&] {
       return WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
     });

@@ -90,6 +90,12 @@ std::optional<int> FrameHub::VideoTier(const Watch& watch, const PictureWidth& w
   return std::max(TierForWindow(width, watch.wants.window_width_px), watch.link.step() - 1);
 }
 
+bool FrameHub::KeepsStill(const Watch& watch, const EncodedFrame& next) {
+  const int for_window = TierForWindow(WidthOf(next), watch.wants.window_width_px);
+  return watch.last_form == FrameForm{FrameForm::Kind::kStill, for_window} &&
+         watch.last_revision == next.scene_revision && !next.refinement.has_value();
+}
+
 std::size_t FrameHub::MaxInFlight(const Watch& watch) {
   return watch.last_form.kind == FrameForm::Kind::kVideo ? watch.window.size() : kMaxInFlight;
 }
@@ -131,6 +137,7 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
   if (watch.wants.takes_stills && frame.Still(for_window) != nullptr) {
     return if_wanted({FrameForm::Kind::kStill, for_window});
   }
+  if (frame.StillFollows() && KeepsStill(watch, described)) return std::nullopt;
   const FrameForm jpeg{FrameForm::Kind::kJpeg, JpegTier(watch, frame)};
   const std::optional<int> video_tier = VideoTier(watch, WidthOf(described));
   if (!video_tier.has_value()) return if_wanted(jpeg);
@@ -279,14 +286,15 @@ void FrameHub::LoseVideo(std::uint64_t viewer_id, Time now) {
   if (found != watches_.end()) found->second.place.Lost(now);
 }
 
-std::vector<VideoOrder> FrameHub::OrderVideo(const PictureWidth& width, bool at_rest,
-                                             bool still_follows, Time now) {
+std::vector<VideoOrder> FrameHub::OrderVideo(const EncodedFrame& described, bool still_follows,
+                                             Time now) {
   const std::lock_guard lock(mutex_);
   for (VideoStream& stream : streams_) stream.Begin();
   for (auto& [id, watch] : watches_) {
-    const std::optional<int> tier = VideoTier(watch, width);
-    const bool gets_jpeg = at_rest && !(still_follows && watch.wants.takes_stills);
-    if (!tier.has_value() || gets_jpeg) continue;
+    const std::optional<int> tier = VideoTier(watch, WidthOf(described));
+    const bool gets_jpeg = described.at_rest && !(still_follows && watch.wants.takes_stills);
+    const bool waits = still_follows && KeepsStill(watch, described);
+    if (!tier.has_value() || gets_jpeg || waits) continue;
     streams_[static_cast<std::size_t>(*tier)].Ask(
         *tier, {&watch.place, IsReady(watch, now), watch.last_sequence}, now);
   }

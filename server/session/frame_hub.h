@@ -98,9 +98,9 @@ class FrameHub {
   // Returns when the next has.
   std::optional<Time> WakeWaiting(Time now);
 
-  // The pictures of video to encode of a frame of that width before it is published. One at rest
-  // whose stills follow is for those only who take them: others get it as JPEG.
-  std::vector<VideoOrder> OrderVideo(const PictureWidth& width, bool at_rest, bool still_follows,
+  // The pictures of video to encode of a frame before it is published. One at rest whose stills
+  // follow is for those only who take them, and have none of its scene: others get it as JPEG.
+  std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool still_follows,
                                      Time now = std::chrono::steady_clock::now());
   // Replaces the newest frame, which has no picture yet, encoded in every tier that a viewer wants
   // now. Returns its sequence.
@@ -162,6 +162,9 @@ class FrameHub {
   static int JpegTier(const Watch& watch, const PublishedFrame& frame);
   // The tier of the stream that it follows, for a frame of that width; none if it gets JPEG.
   static std::optional<int> VideoTier(const Watch& watch, const PictureWidth& width);
+  // Whether it has a still of the frame's scene, and waits for the frame's own: until then any
+  // other form would be worse. Frames of the reference come too fast for that.
+  static bool KeepsStill(const Watch& watch, const EncodedFrame& next);
   static std::size_t MaxInFlight(const Watch& watch);
   static bool IsReady(const Watch& watch, Time now);
   // Need mutex_.

@@ -568,6 +568,25 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
   await page.getByTestId("accuracy-section").locator("summary").click();
 });
 
+test("a number that is typed while frames come is kept", async () => {
+  await tool("light");
+  const number = page.getByTestId("turbidity-number");
+  const before = await number.inputValue();
+  await page.getByTestId("rate").selectOption("8");
+  await page.getByTestId("play").click();
+  await number.fill("4");
+  const first = Number((await canvasData()).sequence);
+  await until("three frames", async () => Number((await canvasData()).sequence) > first + 2);
+  assert.equal(await number.inputValue(), "4", "it is still there");
+  await number.press("Enter");
+  assert.equal(await number.inputValue(), "4", "and is taken");
+  await page.getByTestId("play").click();
+  await changing(async () => {
+    await number.fill(before);
+    await number.press("Enter");
+  });
+});
+
 test("play goes through the times and waits for each", async () => {
   const seen = new Set();
   await page.getByTestId("rate").selectOption("8");

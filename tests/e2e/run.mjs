@@ -1,6 +1,6 @@
-// Checks the prerequisites of the browser tests, reports missing ones, and runs the tests.
+// Checks the prerequisites of the browser tests, reports missing ones, and runs the files of tests that are named, or all.
 import { spawnSync } from "node:child_process";
-import { existsSync } from "node:fs";
+import { existsSync, readdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
@@ -17,19 +17,8 @@ const missing = needed.filter(([path]) => !existsSync(path));
 for (const [path, remedy] of missing) console.error(`The browser test needs ${path}: ${remedy}.`);
 if (missing.length > 0) process.exit(1);
 
-// Two files at a time, as tests mostly wait for pictures; the longest first.
-const files = [
-  "page.test.mjs",
-  "tools.test.mjs",
-  "class.test.mjs",
-  "manners.test.mjs",
-  "questions.test.mjs",
-  "video.test.mjs",
-  "operation.test.mjs",
-  "deploy.test.mjs",
-  "alerts.test.mjs",
-  "catalogue.test.mjs",
-  "sign_in.test.mjs",
-];
+// Those named, or all: two files at a time, as tests mostly wait for pictures.
+const named = process.argv.slice(2);
+const files = named.length > 0 ? named : readdirSync(here).filter((file) => file.endsWith(".test.mjs"));
 const run = spawnSync(process.execPath, ["--test", "--test-concurrency=2", ...files], { cwd: here, stdio: "inherit" });
 process.exit(run.status ?? 1);

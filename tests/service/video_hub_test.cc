@@ -31,11 +31,12 @@ class VideoHubTest : public ::testing::Test {
   std::uint64_t Publish(bool at_rest = false, bool still_follows = false) {
     now_ += milliseconds(33);
     EncodedFrame frame;
-    frame.scene_revision = 1;
+    frame.scene_revision = scene_revision_;
     frame.width_px = 1280;
     frame.at_rest = at_rest;
+    if (by_reference_) frame.refinement.emplace();
     std::vector<EncodedVideo> video;
-    for (VideoOrder order : hub_.OrderVideo(WidthOf(frame), at_rest, still_follows, now_)) {
+    for (VideoOrder order : hub_.OrderVideo(frame, still_follows, now_)) {
       if (resized_) order.kind = Vp9Kind::kKey;
       EncodedFrame picture = frame;
       picture.tier = order.tier;
@@ -72,6 +73,8 @@ class VideoHubTest : public ::testing::Test {
   FrameHub hub_{[] {}};
   FrameHub::Time now_ = FrameHub::Time() + std::chrono::hours(1);
   std::uint64_t taken_ = 0;
+  std::uint64_t scene_revision_ = 1;
+  bool by_reference_ = false;
   bool resized_ = false;  // encoders make key pictures whatever is ordered
 };
 
@@ -275,6 +278,48 @@ TEST_F(VideoHubTest, AtRestTheStillReplacesVideoAndComesOnce) {
   // The stream goes on.
   Publish();
   EXPECT_EQ(TakeAndAcknowledge(video), "base");
+}
+
+// As when traced light has become better, or the error is known.
+TEST_F(VideoHubTest, AStillIsReplacedByNothingButTheNextOneOfItsScene) {
+  const auto video = Join(kVideo);
+  const auto stills = Join({.takes_stills = true});
+  const auto jpeg = Join({});
+  const auto settle = [&] {
+    EncodedFrame still;
+    still.avif = "avif";
+    const std::uint64_t sequence = Publish(/*at_rest=*/true, /*still_follows=*/true);
+    for (const std::uint64_t viewer : {video, stills, jpeg}) TakeAndAcknowledge(viewer);
+    hub_.AddStill(sequence, 0, still);
+    EXPECT_EQ(TakeAndAcknowledge(video), "avif");
+    EXPECT_EQ(TakeAndAcknowledge(stills), "avif");
+    EXPECT_EQ(Take(jpeg), "nothing");
+  };
+  Publish();
+  EXPECT_EQ(TakeAndAcknowledge(video), "key");
+  settle();
+  for (int i = 0; i < 5; ++i) {
+    Publish(/*at_rest=*/true, /*still_follows=*/true);
+    EXPECT_EQ(Take(video), "nothing");
+    EXPECT_EQ(Take(stills), "nothing");
+    EXPECT_EQ(TakeAndAcknowledge(jpeg), "jpeg");
+  }
+  settle();
+  const std::uint64_t last = Publish(/*at_rest=*/true, /*still_follows=*/true);
+  EXPECT_EQ(Take(stills), "nothing");
+  hub_.NoStills(last);
+  EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg") << "there is nothing better";
+  settle();
+  by_reference_ = true;
+  Publish(/*at_rest=*/true, /*still_follows=*/true);
+  EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg") << "its pictures come too fast to wait";
+  EXPECT_EQ(TakeAndAcknowledge(video), "base");
+  by_reference_ = false;
+  settle();
+  ++scene_revision_;
+  Publish(/*at_rest=*/true, /*still_follows=*/true);
+  EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg");
+  EXPECT_EQ(TakeAndAcknowledge(video), "base") << "the stream goes on";
 }
 
 TEST_F(VideoHubTest, WithoutAStillJpegReplacesVideo) {

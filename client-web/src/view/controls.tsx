@@ -1,5 +1,5 @@
 // The panel's controls. Each shows one value and reports the user's changes.
-import type { ComponentChildren } from "preact";
+import type { ComponentChildren, TargetedEvent } from "preact";
 import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { clampToLimits, type Limits, positionOfValue, valueAtPosition } from "../core/limits";
 import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
@@ -41,6 +41,21 @@ function useHeld(onChange: (value: number) => void) {
   return { held, hold, release: () => tell.current() };
 }
 
+// The value and events of an input that keeps what is being typed in it when the page is drawn anew meanwhile, as it is by
+// each frame. `tell` gets the input on Enter, or when it is left.
+export function useTyped(value: string, tell: (input: HTMLInputElement) => void) {
+  const [typed, setTyped] = useState<string | undefined>(undefined);
+  return {
+    value: typed ?? value,
+    onInput: (event: TargetedEvent<HTMLInputElement>) => setTyped(event.currentTarget.value),
+    onChange: (event: TargetedEvent<HTMLInputElement>) => {
+      tell(event.currentTarget);
+      setTyped(undefined);
+    },
+    onBlur: () => setTyped(undefined),
+  };
+}
+
 // A number as a slider and as text, with its unit.
 export function Slider(props: SliderProps) {
   const { label, limits, initial, testId, afterRest, onChange } = props;
@@ -54,6 +69,13 @@ export function Slider(props: SliderProps) {
   const known = value !== undefined;
   const first = initial ?? limits.defaultValue;
   const changed = known && first !== undefined && !nearlyEqual(value, first);
+  const number = useTyped(known ? formatNumber(value * unit.factor) : "", (input) => {
+    const typed = input.valueAsNumber;
+    if (Number.isNaN(typed)) return;
+    const next = clampToLimits(typed / unit.factor, limits);
+    input.value = formatNumber(next * unit.factor);
+    onChange(next);
+  });
   return (
     <div class="slider">
       <label for={id}>{label}</label>
@@ -78,14 +100,7 @@ export function Slider(props: SliderProps) {
           min={limits.minimum * unit.factor}
           max={limits.maximum * unit.factor}
           step="any"
-          value={known ? formatNumber(value * unit.factor) : ""}
-          onChange={(event) => {
-            const typed = event.currentTarget.valueAsNumber;
-            if (Number.isNaN(typed)) return;
-            const next = clampToLimits(typed / unit.factor, limits);
-            event.currentTarget.value = formatNumber(next * unit.factor);
-            onChange(next);
-          }}
+          {...number}
         />
         <span class="unit" aria-hidden="true">
           {unit.symbol}
@@ -205,21 +220,31 @@ interface NumberInputProps {
 // A number without known limits.
 export function NumberInput({ label, value, testId, onChange }: NumberInputProps) {
   const id = useId();
+  const typed = useTyped(String(value), ({ valueAsNumber }) => {
+    if (!Number.isNaN(valueAsNumber)) onChange(valueAsNumber);
+  });
   return (
     <div class="choice">
       <label for={id}>{label}</label>
-      <input
-        id={id}
-        type="number"
-        class="number"
-        step="any"
-        data-testid={testId}
-        value={value}
-        onChange={(event) => {
-          const typed = event.currentTarget.valueAsNumber;
-          if (!Number.isNaN(typed)) onChange(typed);
-        }}
-      />
+      <input id={id} type="number" class="number" step="any" data-testid={testId} {...typed} />
+    </div>
+  );
+}
+
+interface TextInputProps {
+  readonly label: string;
+  readonly value: string;
+  readonly testId: string;
+  readonly onChange: (value: string) => void;
+}
+
+export function TextInput({ label, value, testId, onChange }: TextInputProps) {
+  const id = useId();
+  const typed = useTyped(value, (input) => onChange(input.value));
+  return (
+    <div class="choice">
+      <label for={id}>{label}</label>
+      <input id={id} type="text" data-testid={testId} {...typed} />
     </div>
   );
 }
@@ -235,18 +260,13 @@ interface TimeInputProps {
 // A date and time.
 export function TimeInput({ label, value, testId, onChange }: TimeInputProps) {
   const id = useId();
+  const typed = useTyped(value, (input) => {
+    if (input.value !== "") onChange(input.value);
+  });
   return (
     <div class="choice">
       <label for={id}>{label}</label>
-      <input
-        id={id}
-        type="datetime-local"
-        data-testid={testId}
-        value={value}
-        onChange={(event) => {
-          if (event.currentTarget.value !== "") onChange(event.currentTarget.value);
-        }}
-      />
+      <input id={id} type="datetime-local" data-testid={testId} {...typed} />
     </div>
   );
 }

@@ -5,7 +5,7 @@ import { type Parameter, parametersOf, parameterValue, withParameter } from "../
 import type { PageState } from "../core/state";
 import { formatQuantity } from "../core/units";
 import { COMMENTS } from "../gen/comments";
-import { Choice, Slider, Switch } from "./controls";
+import { Choice, Slider, Switch, TextInput } from "./controls";
 import type { SettingsProps } from "./drawer";
 
 // The page sets these itself.
@@ -99,15 +99,7 @@ function Setting({ state, parameter }: { state: PageState; parameter: Parameter 
         />
       )}
       {parameter.kind === "text" && (
-        <label class="choice">
-          {label}
-          <input
-            type="text"
-            data-testid={testId}
-            value={String(value ?? "")}
-            onChange={(event) => set(event.currentTarget.value)}
-          />
-        </label>
+        <TextInput label={label} value={String(value ?? "")} testId={testId} onChange={set} />
       )}
       <p class="quiet">{COMMENTS[parameter.fullName]}</p>
     </div>

@@ -16,7 +16,7 @@ import {
 } from "../core/sun_clock";
 import { describeSun } from "../core/words";
 import { Sun_Source, type SunClock } from "../gen/thunderhead/v1/scene_pb";
-import { Segments, Slider, TimeInput } from "./controls";
+import { Segments, Slider, TimeInput, useTyped } from "./controls";
 import { SunDome } from "./sun_dome";
 
 const SOURCES = [
@@ -99,22 +99,17 @@ function DaySlider({ state, here, byTime }: DayProps) {
       withSun(withSunClock(scene, { dateTime }), { source: Sun_Source.BY_TIME }),
     );
   };
+  const clock = useTyped(clockOfMinute(minute), ({ value }) => {
+    const [hours, minutes] = value.split(":").map(Number);
+    if (hours !== undefined && minutes !== undefined) set(60 * hours + minutes);
+  });
   const sky = `linear-gradient(90deg, ${sunHeightsDeg(here, zone, SKY_STEPS).map(skyColor).join(", ")})`;
   return (
     <div class={byTime ? "day" : "day off"}>
       <label for="day-time">
         Local time <strong>{localClock(here.instant, zone)}</strong>
       </label>
-      <input
-        type="time"
-        aria-label={`Local time, ${zone}`}
-        data-testid="day-clock"
-        value={clockOfMinute(minute)}
-        onChange={(event) => {
-          const [hours, minutes] = event.currentTarget.value.split(":").map(Number);
-          if (hours !== undefined && minutes !== undefined) set(60 * hours + minutes);
-        }}
-      />
+      <input type="time" aria-label={`Local time, ${zone}`} data-testid="day-clock" {...clock} />
       <input
         id="day-time"
         type="range"
