@@ -585,6 +585,7 @@ test("a number that is typed while frames come is kept", async () => {
     await number.fill(before);
     await number.press("Enter");
   });
+  await tool(undefined);
 });
 
 test("play goes through the times and waits for each", async () => {
