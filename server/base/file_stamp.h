@@ -15,6 +15,9 @@ struct FileStamp {
   std::int64_t modified_ns = 0;
   std::int64_t changed_ns = 0;  // contents, owner or permissions
 
+  // Tells it from other files, whatever is in it.
+  std::uint64_t Id() const { return inode ^ (device << 48U); }
+
   bool operator==(const FileStamp&) const = default;
 };
 

@@ -19,6 +19,12 @@ namespace {
 constexpr int kAttempts = 40;
 constexpr std::chrono::milliseconds kBetweenAttempts{50};
 
+// True if another file took the place of that with the time, which both have.
+bool IsReplaced(const volume::StormChange& change, std::size_t time) {
+  const std::vector<volume::StormTime>& before = change.before->times;
+  return time < before.size() && before[time].version != change.after->times[time].version;
+}
+
 }  // namespace
 
 std::optional<StormPlace> PlaceAfter(const volume::StormChange& change, std::uint32_t time_index) {
@@ -85,7 +91,9 @@ bool CatalogueFollower::Move(session::Session& session, const volume::CatalogueC
   });
   if (at == change.end()) return true;
   const std::optional<StormPlace> place = PlaceAfter(*at, scene.time_index());
-  if (!place.has_value() || *place == StormPlace{scene.storm_id(), scene.time_index()}) return true;
+  if (!place.has_value()) return true;
+  const bool moves = *place != StormPlace{scene.storm_id(), scene.time_index()};
+  if (!moves && !IsReplaced(*at, scene.time_index())) return true;
   scene.set_storm_id(place->storm_id);
   scene.set_time_index(place->time_index);
   if (const absl::Status ready = PrepareScene(store_, loop_.Techniques(), scene); !ready.ok()) {

@@ -23,6 +23,8 @@ namespace thunderhead::session {
 struct FieldsKey {
   std::string storm_id;
   int time_index = 0;
+  // volume::StormTime::version when it was asked for.
+  std::uint64_t version = 0;
 
   bool operator==(const FieldsKey&) const = default;
 };

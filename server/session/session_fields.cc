@@ -8,9 +8,22 @@ namespace {
 // A preparation that took less was already done.
 constexpr double kMinReported_ms = 1.0;
 
-FieldsKey KeyOf(const scene::Scene& scene) { return {scene.storm_id, scene.time_index}; }
+FieldsKey KeyOf(const volume::StormStore& store, const scene::Scene& scene) {
+  FieldsKey key{scene.storm_id, scene.time_index};
+  const volume::StormInfoPtr storm = store.Find(scene.storm_id);
+  const auto time = static_cast<std::size_t>(scene.time_index);
+  if (storm != nullptr && time < storm->times.size()) key.version = storm->times[time].version;
+  return key;
+}
 
 }  // namespace
+
+const FieldsKey& SessionFields::KeyFor(const NewestScene& newest) {
+  if (std::exchange(newest_revision_, newest.revision) != newest.revision) {
+    newest_key_ = KeyOf(access_.store, *newest.scene);
+  }
+  return newest_key_;
+}
 
 std::optional<SessionFields::Unreadable> SessionFields::TakeRead() {
   std::optional<FieldsRead> read = access_.reader.Take(id_);
@@ -21,7 +34,7 @@ std::optional<SessionFields::Unreadable> SessionFields::TakeRead() {
     return Unreadable{reading_for.revision, read->fields.status()};
   }
   fields_ = *std::move(read->fields);
-  key_ = KeyOf(*reading_for.scene);
+  key_ = reading_key_;
   arrived_for_ = reading_for;
   read_ms_ += read->milliseconds;
   prepare_ms_ += read->prepare_ms;
@@ -30,7 +43,7 @@ std::optional<SessionFields::Unreadable> SessionFields::TakeRead() {
 
 std::optional<NewestScene> SessionFields::Drawable(const NewestScene& newest,
                                                    std::uint64_t shown_revision) {
-  const FieldsKey key = KeyOf(*newest.scene);
+  const FieldsKey& key = KeyFor(newest);
   if (key_ == key && IsPrepared(*newest.scene, fields_)) return newest;
   if (unreadable_revision_ == newest.revision) return std::nullopt;
   if (auto cached = access_.store.Peek(key.storm_id, key.time_index);
@@ -44,6 +57,7 @@ std::optional<NewestScene> SessionFields::Drawable(const NewestScene& newest,
   }
   if (!reading_for_.has_value()) {
     reading_for_ = newest;
+    reading_key_ = key;
     Ask(newest);
   }
   const bool is_news = arrived_for_.has_value() && arrived_for_->revision > shown_revision;
@@ -63,11 +77,11 @@ void SessionFields::Ask(const NewestScene& newest) {
       return preparation->Prepare(*scene, fields);
     };
   }
-  access_.reader.Ask(id_, KeyOf(*newest.scene), std::move(prepare));
+  access_.reader.Ask(id_, reading_key_, std::move(prepare));
 }
 
 void SessionFields::PrepareNext(const scene::Scene& shown) {
-  const FieldsKey key = KeyOf(shown);
+  const FieldsKey key = KeyOf(access_.store, shown);
   const std::optional<FieldsKey> before = std::exchange(drawn_key_, key);
   const bool goes_on = before.has_value() && before->storm_id == key.storm_id &&
                        before->time_index + 1 == key.time_index;
@@ -76,7 +90,7 @@ void SessionFields::PrepareNext(const scene::Scene& shown) {
   if (storm == nullptr || key.time_index + 1 >= static_cast<int>(storm->times.size())) return;
   auto next = std::make_shared<scene::Scene>(shown);
   ++next->time_index;
-  access_.reader.AskAhead(id_, KeyOf(*next),
+  access_.reader.AskAhead(id_, KeyOf(access_.store, *next),
                           [preparation = access_.preparation, next](const auto& fields) {
                             return preparation->Prepare(*next, fields);
                           });

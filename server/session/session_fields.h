@@ -66,9 +66,15 @@ class SessionFields {
 
   const FieldsAccess& access_;
   const std::string id_;
+  // The key of the newest scene. A file that is replaced brings a revision of its own.
+  const FieldsKey& KeyFor(const NewestScene& newest);
+
+  std::uint64_t newest_revision_ = 0;
+  FieldsKey newest_key_;  // of that revision
   std::optional<FieldsKey> key_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   std::optional<NewestScene> reading_for_;  // the scene whose fields are being read
+  FieldsKey reading_key_;
   std::optional<NewestScene> arrived_for_;  // the scene whose fields have just been read
   std::uint64_t unreadable_revision_ = 0;
   std::optional<FieldsKey> drawn_key_;

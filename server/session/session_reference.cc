@@ -19,8 +19,13 @@ void SessionReference::EndUnless(const scene::Scene& newest) {
 
 absl::StatusOr<bool> SessionReference::Trace(
     const NewestScene& shown, const std::shared_ptr<const volume::HydrometeorFields>& fields) {
+  // Of a file that another has taken the place of.
+  if (traced_.has_value() && traced_->fields.lock() != fields) {
+    tracer_.Stop(id_);
+    traced_.reset();
+  }
   if (!traced_.has_value()) {
-    traced_ = Traced{shown, nullptr, false};
+    traced_ = Traced{shown, fields, nullptr, false};
     THUNDERHEAD_RETURN_IF_ERROR(tracer_.Trace(id_, shown.scene, fields));
     return false;
   }

@@ -36,6 +36,7 @@ class SessionReference {
  private:
   struct Traced {
     NewestScene shown;
+    std::weak_ptr<const volume::HydrometeorFields> fields;
     std::shared_ptr<const TruthPicture> picture;  // none yet
     bool is_new = false;
   };

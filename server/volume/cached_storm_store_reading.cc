@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/file_stamp.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 #include "volume/cached_storm_store.h"
@@ -21,6 +22,9 @@ using std::chrono::steady_clock;
 
 // When to try again what a storage that hangs has not given.
 constexpr std::chrono::seconds kRetryAfter{10};
+
+// Or one whose file has just been replaced: longer than it takes a file to settle.
+constexpr std::chrono::seconds kReplacedRetryAfter{4};
 
 // Saturates.
 std::size_t SaturatingProduct(std::size_t a, std::size_t b) {
@@ -55,6 +59,18 @@ absl::Status Hangs(const HungRead& hung) {
           absl::StrCat(hung.file, ": nothing has come for ", std::lround(hung.seconds),
                        " s, its storage does not answer; what is in memory can still be shown")),
       {.reason = "STORAGE_HANGS", .metadata = {{"file", hung.file}}, .retry_after = kRetryAfter});
+}
+
+// What is read must not be of another file than the one described: its times may be others.
+absl::Status CheckNotReplaced(const StormFile& file) {
+  const std::optional<base::FileStamp> now = file.id != 0 ? base::StampOf(file.path) : std::nullopt;
+  if (!now.has_value() || now->Id() == file.id) return absl::OkStatus();
+  return base::WithDetails(
+      absl::UnavailableError(absl::StrCat(
+          file.path, ": another file has taken its place and is not described yet; try again")),
+      {.reason = "FILE_REPLACED",
+       .metadata = {{"file", file.path}},
+       .retry_after = kReplacedRetryAfter});
 }
 
 // Fields with their share of the budget, which lasts as long as somebody holds them.
@@ -231,10 +247,12 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
       THUNDERHEAD_ASSIGN_OR_RETURN(
           scratch, memory.Reserve(base::MemoryUse::kReading, needs.scratch, what, urgency));
     }
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file));
     THUNDERHEAD_ASSIGN_OR_RETURN(counted->fields,
                                  file.reader->Read(source.record, grid, [&](double share) {
                                    return Checkpoint(read, activity, share);
                                  }));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file));
     if (options_.memory != nullptr) {
       scratch = {};
       THUNDERHEAD_RETURN_IF_ERROR(

@@ -16,8 +16,7 @@ std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& pa
   const base::SlowCall call(path);
   const std::optional<base::FileStamp> found = base::StampOf(path);
   if (!found.has_value()) return std::nullopt;
-  return Stamp{found->inode ^ (found->device << 48U), static_cast<std::uint64_t>(found->size_bytes),
-               found->modified_ns};
+  return Stamp{found->Id(), static_cast<std::uint64_t>(found->size_bytes), found->modified_ns};
 }
 
 absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
@@ -81,13 +80,14 @@ absl::StatusOr<StormFile> CatalogueScan::Describe(const std::string& path, Time 
 void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, Known& known) {
   const bool fresh = known.scan == 0;
   if (fresh || known.stamp != stamp) {
-    // A file that only grows keeps its description.
-    const bool grows = known.stamp.file == stamp.file && known.stamp.size_bytes <= stamp.size_bytes;
-    if (fresh || !grows) {
-      changed_ = changed_ || known.description.has_value();
-      known.description.reset();
-      known.version = ++versions_;
-    }
+    const bool same_file = !fresh && known.stamp.file == stamp.file;
+    const bool grows = same_file && known.stamp.size_bytes <= stamp.size_bytes;
+    // The times of a file whose place another has taken are there until that is read. One that is
+    // still being written then was not moved here whole: until it is complete there are none.
+    const bool written = same_file && known.replaces;
+    if ((same_file && !grows) || written) Lose(known);
+    known.replaces = !same_file && known.description.has_value();
+    if (!grows) known.version = ++versions_;
     known.stamp = stamp;
     known.unchanged_since = now;
     // A file that was there before the first scan may have rested for long. Those that have not are
@@ -120,17 +120,25 @@ void CatalogueScan::Open(const std::string& path, Time now, Known& known) {
   }
   if (file.ok()) {
     file->version = known.version;
+    file->id = known.stamp.file;
     known.description = *std::move(file);
+    known.replaces = false;
     known.complaint.clear();
     changed_ = true;
     return;
   }
+  if (std::exchange(known.replaces, false)) Lose(known);
   const std::string complaint(file.status().message());
   if (complaint == known.complaint) return;
   known.complaint = complaint;
   // A file of another kind, such as a read-me, is normal.
   const bool other = absl::IsInvalidArgument(file.status());
   spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}", complaint);
+}
+
+void CatalogueScan::Lose(Known& known) {
+  changed_ = changed_ || known.description.has_value();
+  known.description.reset();
 }
 
 void CatalogueScan::LookAgainAt(Time time) {

@@ -52,7 +52,8 @@ class CatalogueScan {
 
   // Files of the first scan are complete if they are older than the settling time; what comes
   // later must have been seen unchanged for so long. A file that grows keeps the description that
-  // it had, until it is complete again. An error, such as a folder that cannot be listed, says
+  // it had, until it is complete again, and so does one whose place another took in one step. An
+  // error, such as a folder that cannot be listed, says
   // nothing about which storms there are.
   absl::StatusOr<Result> Scan(Time now);
 
@@ -72,6 +73,7 @@ class CatalogueScan {
     bool settled = false;
     std::optional<Time> tried_at;          // with this stamp
     std::optional<StormFile> description;  // perhaps of an earlier, shorter state
+    bool replaces = false;                 // the file that the description is of
     std::string complaint;                 // logged last
     std::uint64_t version = 0;
     std::uint64_t scan = 0;  // that saw it last
@@ -83,6 +85,7 @@ class CatalogueScan {
   absl::StatusOr<StormFile> Describe(const std::string& path, Time now);
   void Look(const std::string& path, const Stamp& stamp, Time now, Known& known);
   void Open(const std::string& path, Time now, Known& known);
+  void Lose(Known& known);  // its description
   void LookAgainAt(Time time);
 
   const Options options_;

@@ -238,9 +238,11 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
   StormInfo& info = storm.info;
   info.id = IdFrom(name);
   for (const auto& [time, source] : sources) {
-    info.times.push_back({FormatValidTime(time),
-                          absl::ToDoubleSeconds(time - sources.begin()->first), false,
-                          files[source.file].path});
+    const StormFile& file = files[source.file];
+    info.times.push_back({.valid_time = FormatValidTime(time),
+                          .elapsed_s = absl::ToDoubleSeconds(time - sources.begin()->first),
+                          .file = file.path,
+                          .version = file.version});
     storm.sources.push_back(source);
   }
   for (const StormFile& file : files) info.files.push_back(file.path);

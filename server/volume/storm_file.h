@@ -54,6 +54,8 @@ struct StormFile {
   std::shared_ptr<const RecordReader> reader;
   // Another one if another file took its place; the same while it only grows.
   std::uint64_t version = 0;
+  // Which file was described (base::FileStamp::Id), where somebody watches its path; 0 elsewhere.
+  std::uint64_t id = 0;
 };
 
 }  // namespace thunderhead::volume

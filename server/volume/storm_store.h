@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -28,6 +29,8 @@ struct StormTime {
   // Its file is gone, but somebody still looks at what is in memory.
   bool deleted = false;
   std::string file = {};  // the path; empty for a storm without files
+  // StormFile::version of that file; 0 for a storm without files.
+  std::uint64_t version = 0;
 
   bool operator==(const StormTime&) const = default;
 };

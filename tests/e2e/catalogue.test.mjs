@@ -1,12 +1,13 @@
 // End-to-end test of a folder that a model still writes to: new times appear on the time bar by themselves.
 import assert from "node:assert/strict";
-import { appendFileSync, mkdtempSync, rmSync, unlinkSync, writeFileSync } from "node:fs";
+import { appendFileSync, mkdtempSync, renameSync, rmSync, unlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { cloudFile } from "./cloud_file.mjs";
-import { launchBrowser, listenForErrors, PICTURE_TIMEOUT_MS, screenshot } from "./driver.mjs";
+import { canvasData, launchBrowser, listenForErrors, PICTURE_TIMEOUT_MS, rested, screenshot, until } from "./driver.mjs";
+import { difference, grabCanvas } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 const SETTLE_MS = 500;
@@ -68,6 +69,21 @@ test("a session with a time selected keeps it when others come", async () => {
   await awaitValidTime(/02:00.*2 of 4/s);
   writeFileSync(fileOf(0), cloudFile(0));
   await awaitValidTime(/02:00.*3 of 5/s);
+});
+
+test("a file that is replaced keeps its time, and its picture comes by itself", async () => {
+  await rested(page);
+  const before = await grabCanvas(page);
+  const { revision } = await canvasData(page);
+  const fresh = `${folder}.nc`;
+  writeFileSync(fresh, cloudFile(2, 1200));
+  renameSync(fresh, fileOf(2));
+  await until("its picture", async () => {
+    assert.match(await validTime(), /02:00.*3 of 5/s, "at any time");
+    return Number((await canvasData(page)).revision) > Number(revision);
+  });
+  await rested(page);
+  assert.ok(difference(before, await grabCanvas(page)) > 1, "a smaller cloud is seen");
 });
 
 test("a time that is deleted while it is shown says so, and others that are deleted go", async () => {

@@ -73,7 +73,7 @@ const MIDDLE = (CELLS / 2) * SPACING_M;
 const ball = (radiusM, inside) =>
   UP.flatMap((z) => SIDE.flatMap((y) => SIDE.map((x) => (Math.hypot(x, y, z - MIDDLE) < radiusM ? inside : 0))));
 
-export function cloudFile(hour) {
+export function cloudFile(hour, radiusM = RADIUS_M) {
   const dimensions = [
     ["time", 1],
     ["z", CELLS],
@@ -85,7 +85,7 @@ export function cloudFile(hour) {
     ["z", [1], { units: "m", axis: "Z", positive: "up" }, TYPE.double, UP],
     ["y", [2], { units: "m", axis: "Y" }, TYPE.double, SIDE],
     ["x", [3], { units: "m", axis: "X" }, TYPE.double, SIDE],
-    ["lwc", [0, 1, 2, 3], { units: "kg m-3" }, TYPE.float, ball(RADIUS_M, 1e-3)],
+    ["lwc", [0, 1, 2, 3], { units: "kg m-3" }, TYPE.float, ball(radiusM, 1e-3)],
   ]);
 }
 

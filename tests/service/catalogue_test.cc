@@ -99,6 +99,22 @@ TEST_F(ChangingCatalogue, KeepsTheCameraOfWhoFollows) {
   EXPECT_EQ(after.camera().SerializeAsString(), before.camera().SerializeAsString());
 }
 
+TEST_F(ChangingCatalogue, ATimeWhoseFileIsReplacedIsDrawnAgainWhereItIsShown) {
+  Interacting there(service_.stub(), Create(1));
+  Interacting elsewhere(service_.stub(), Create(2));
+  const std::uint64_t before = there.AwaitNewest(Response::kFrame).frame().scene_revision();
+  const std::uint64_t kept = elsewhere.AwaitNewest(Response::kFrame).frame().scene_revision();
+  service_.store->Become("anvil", [](volume::StormInfo& storm) { ++storm.times[1].version; });
+  EXPECT_TRUE(there.Await([&](const Interacting::Messages& messages) {
+    return std::ranges::any_of(messages, [&](const Response& message) {
+      return message.has_frame() && message.frame().scene_revision() > before;
+    });
+  }));
+  EXPECT_EQ(TimeOf(there), 1U);
+  EXPECT_TRUE(elsewhere.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
+  EXPECT_EQ(elsewhere.AwaitNewest(Response::kScene).scene().scene_revision(), kept);
+}
+
 TEST_F(ChangingCatalogue, TellsOnlyWhatIsNew) {
   AddTime("0001-01-01T02:00:00Z");
   Interacting late(service_.stub(), Create(0));

@@ -2,6 +2,7 @@
 import { ConnectError } from "@connectrpc/connect";
 import { effect } from "@preact/signals-core";
 import type { PageState } from "../core/state";
+import type { StormSummary } from "../gen/thunderhead/v1/storm_pb";
 import type { ServerCalls } from "../transport/server_calls";
 
 const REST_MS = 300;
@@ -12,6 +13,7 @@ export class StormMap {
   readonly #stop: () => void;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #asked = "";
+  #storms: readonly StormSummary[] = [];
 
   constructor(calls: ServerCalls, state: PageState) {
     this.#calls = calls;
@@ -21,10 +23,12 @@ export class StormMap {
       const live = state.connection.value.kind === "live";
       const stormId = state.stormId.value;
       const timeIndex = state.timeIndex.value;
+      // Fetched again when a file was replaced or deleted.
+      const storms = state.storms.value;
       clearTimeout(this.#timer);
       if (!wanted || !live || stormId === "") return;
       if (state.stormMap.peek()?.stormId !== stormId) state.stormMap.value = undefined;
-      this.#timer = setTimeout(() => void this.#fetch(stormId, timeIndex), REST_MS);
+      this.#timer = setTimeout(() => void this.#fetch(stormId, timeIndex, storms), REST_MS);
     });
   }
 
@@ -33,10 +37,12 @@ export class StormMap {
     clearTimeout(this.#timer);
   }
 
-  async #fetch(stormId: string, timeIndex: number): Promise<void> {
+  async #fetch(stormId: string, timeIndex: number, storms: readonly StormSummary[]): Promise<void> {
     const asked = `${stormId} ${timeIndex}`;
-    if (this.#asked === asked && this.#state.stormMap.peek() !== undefined) return;
+    const known = this.#asked === asked && this.#storms === storms;
+    if (known && this.#state.stormMap.peek() !== undefined) return;
     this.#asked = asked;
+    this.#storms = storms;
     try {
       const map = await this.#calls.stormMap(stormId, timeIndex);
       if (this.#asked !== asked) return;

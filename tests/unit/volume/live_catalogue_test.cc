@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "absl/strings/str_format.h"
+#include "base/error_details.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
 #include "volume/catalogue_scan.h"
@@ -346,6 +347,56 @@ TEST_F(LiveFolder, ADeletedStormStaysWhileItIsLookedAt) {
   EXPECT_TRUE(Eventually([&] { return store->Storms().empty(); }));
   EXPECT_EQ(store->Get(id, 0, {}).status().code(), absl::StatusCode::kNotFound);
   EXPECT_EQ(store->CachedBytes(), 0U);
+}
+
+TEST_F(LiveFolder, AFileThatIsReplacedKeepsItsTimesUntilTheOtherIsRead) {
+  PutOld(File(0), WrfBytes({0, 1}));
+  CatalogueScan scan = Scanner();
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(2));
+  MoveInto(File(0), WrfBytes({1, 2, 3}));
+  EXPECT_THAT(TimesAt(scan, seconds(1)), ElementsAre(2));
+  MoveInto(File(0), WrfBytes({2, 3, 4}));
+  EXPECT_THAT(TimesAt(scan, seconds(3)), ElementsAre(2)) << "replaced once more";
+  EXPECT_THAT(TimesAt(scan, seconds(6)), ElementsAre(3));
+  MoveInto(File(0), "no storm");
+  EXPECT_THAT(TimesAt(scan, seconds(7)), ElementsAre(3));
+  EXPECT_THAT(TimesAt(scan, seconds(10)), ElementsAre());
+}
+
+// It was not moved there whole.
+TEST_F(LiveFolder, AFileThatIsWrittenInTheOthersPlaceHasNoTimesUntilItIsComplete) {
+  PutOld(File(0), WrfBytes({0}));
+  CatalogueScan scan = Scanner();
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1));
+  const std::string whole = WrfBytes({0});
+  MoveInto(File(0), whole.substr(0, whole.size() / 2));
+  EXPECT_THAT(TimesAt(scan, seconds(1)), ElementsAre(1)) << "it may be whole";
+  Put(File(0), whole);
+  EXPECT_THAT(TimesAt(scan, seconds(2)), ElementsAre());
+  EXPECT_THAT(TimesAt(scan, seconds(5)), ElementsAre(1));
+}
+
+TEST_F(LiveFolder, NothingIsReadOfAFileThatIsNotTheOneDescribed) {
+  PutOld(File(0), WrfBytes({0}, 1e-3));
+  PutOld(File(1), WrfBytes({1}, 2e-3));
+  StormStoreOptions options;
+  options.read_ahead = 0;
+  options.live = LiveCatalogueOptions{.rescan = std::chrono::hours(1), .settle = seconds(2)};
+  const auto store = *StormStore::Open({data_}, options);
+  const auto shown = store->Get("series", 0, {});
+  ASSERT_TRUE(shown.ok());
+  MoveInto(File(0), WrfBytes({0}, 4e-3));
+  MoveInto(File(1), WrfBytes({1}, 4e-3));
+  EXPECT_EQ(*store->Get("series", 0, {}), *shown) << "it is in memory";
+  const auto refused = store->Get("series", 1, {});
+  EXPECT_EQ(refused.status().code(), absl::StatusCode::kUnavailable) << refused.status();
+  EXPECT_TRUE(base::DetailsOf(refused.status()).retry_after.has_value());
+  EXPECT_EQ(TimesOf(*store), 2);
+  EXPECT_TRUE(Eventually([&] {
+    EXPECT_EQ(TimesOf(*store), 2) << "at any time";
+    const auto fields = store->Get("series", 1, {});
+    return fields.ok() && (*fields)->fields[0].statistics.maximum > 3e-3;
+  }));
 }
 
 TEST_F(LiveFolder, AFileThatIsReplacedIsReadAgain) {
