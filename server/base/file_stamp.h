@@ -14,9 +14,10 @@ struct FileStamp {
   std::int64_t size_bytes = 0;
   std::int64_t modified_ns = 0;
   std::int64_t changed_ns = 0;  // contents, owner or permissions
+  std::int64_t born_ns = 0;     // 0 where the file system does not know
 
-  // Tells it from other files, whatever is in it.
-  std::uint64_t Id() const { return inode ^ (device << 48U); }
+  // Tells it from other files, whatever is in it: a new file may get the inode of one that is gone.
+  std::uint64_t Id() const;
 
   bool operator==(const FileStamp&) const = default;
 };

@@ -21,6 +21,7 @@ constexpr std::chrono::milliseconds kBetweenAttempts{50};
 
 // True if another file took the place of that with the time, which both have.
 bool IsReplaced(const volume::StormChange& change, std::size_t time) {
+  if (change.before == nullptr) return true;
   const std::vector<volume::StormTime>& before = change.before->times;
   return time < before.size() && before[time].version != change.after->times[time].version;
 }
@@ -29,8 +30,12 @@ bool IsReplaced(const volume::StormChange& change, std::size_t time) {
 
 std::optional<StormPlace> PlaceAfter(const volume::StormChange& change, std::uint32_t time_index) {
   if (change.after == nullptr) return std::nullopt;
-  const std::vector<volume::StormTime>& before = change.before->times;
   const std::vector<volume::StormTime>& after = change.after->times;
+  if (change.before == nullptr) {
+    const auto last = static_cast<std::uint32_t>(after.size() - 1);
+    return StormPlace{change.after->id, std::min(time_index, last)};
+  }
+  const std::vector<volume::StormTime>& before = change.before->times;
   const auto place = [&](std::size_t index) {
     return StormPlace{change.after->id, static_cast<std::uint32_t>(index)};
   };
@@ -86,8 +91,9 @@ bool CatalogueFollower::Move(session::Session& session, const volume::CatalogueC
   absl::StatusOr<ReadScene> newest = NewestSceneOf(session);
   if (!newest.ok()) return true;
   v1::Scene& scene = newest->scene;
+  // A storm that was gone comes back by its id, to those who could not be shown it.
   const auto at = std::ranges::find_if(change, [&](const volume::StormChange& storm) {
-    return storm.before != nullptr && storm.before->id == scene.storm_id();
+    return (storm.before != nullptr ? storm.before : storm.after)->id == scene.storm_id();
   });
   if (at == change.end()) return true;
   const std::optional<StormPlace> place = PlaceAfter(*at, scene.time_index());

@@ -26,8 +26,8 @@ struct StormPlace {
 };
 
 // Where a scene that shows that time of the storm before a change belongs after it: at the last
-// time if it was there, else at the same time, or where that is gone at the one before. Nothing if
-// the storm is gone.
+// time if it was there, else at the same time, or where that is gone at the one before; in a storm
+// that was gone at the same index, or the last. Nothing if the storm is gone.
 std::optional<StormPlace> PlaceAfter(const volume::StormChange& change, std::uint32_t time_index);
 
 class CatalogueFollower {

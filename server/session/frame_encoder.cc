@@ -143,11 +143,15 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, StillMa
       described, JpegEncoder(session, pictures, drawn.scene.output.jpeg_quality, serialize),
       std::move(video), still_follows);
   if (!drawn.refined) return;
-  StillToMake still{session, sequence, described, drawn.rests_at, nullptr};
-  if (still_follows) {
-    still.fine = std::make_shared<PictureSizes<frame::FineImage>>(*std::move(drawn.fine));
-  }
-  stills.Make(std::move(still));
+  const absl::Status made = base::OrOutOfMemory([&] {
+    StillToMake still{session, sequence, described, drawn.rests_at, nullptr};
+    if (still_follows) {
+      still.fine = std::make_shared<PictureSizes<frame::FineImage>>(*std::move(drawn.fine));
+    }
+    stills.Make(std::move(still));
+    return absl::OkStatus();
+  });
+  if (!made.ok()) session->hub().NoStills(sequence);  // the picture is there
 }
 
 }  // namespace

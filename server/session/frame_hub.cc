@@ -90,10 +90,13 @@ std::optional<int> FrameHub::VideoTier(const Watch& watch, const PictureWidth& w
   return std::max(TierForWindow(width, watch.wants.window_width_px), watch.link.step() - 1);
 }
 
-bool FrameHub::KeepsStill(const Watch& watch, const EncodedFrame& next) {
+bool FrameHub::KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const {
+  // The reference's frames come too fast to wait, and on a busy machine any may.
+  if (next.refinement.has_value()) return false;
+  if (stills_due_since_.has_value() && now - *stills_due_since_ > kLongestForStill) return false;
   const int for_window = TierForWindow(WidthOf(next), watch.wants.window_width_px);
-  return watch.last_form == FrameForm{FrameForm::Kind::kStill, for_window} &&
-         watch.last_revision == next.scene_revision && !next.refinement.has_value();
+  return watch.wants.takes_stills && watch.last_revision == next.scene_revision &&
+         watch.last_form == FrameForm{FrameForm::Kind::kStill, for_window};
 }
 
 std::size_t FrameHub::MaxInFlight(const Watch& watch) {
@@ -125,7 +128,8 @@ std::optional<FrameHub::Offer> FrameHub::VideoFor(const Watch& watch, const Publ
   return std::nullopt;
 }
 
-std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedFrame& frame) const {
+std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedFrame& frame,
+                                                  Time now) const {
   const EncodedFrame& described = frame.Described();
   const bool is_new = described.sequence > watch.last_sequence;
   const auto if_wanted = [&](const FrameForm& form) -> std::optional<Offer> {
@@ -137,7 +141,7 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
   if (watch.wants.takes_stills && frame.Still(for_window) != nullptr) {
     return if_wanted({FrameForm::Kind::kStill, for_window});
   }
-  if (frame.StillFollows() && KeepsStill(watch, described)) return std::nullopt;
+  if (frame.StillFollows() && KeepsStill(watch, described, now)) return std::nullopt;
   const FrameForm jpeg{FrameForm::Kind::kJpeg, JpegTier(watch, frame)};
   const std::optional<int> video_tier = VideoTier(watch, WidthOf(described));
   if (!video_tier.has_value()) return if_wanted(jpeg);
@@ -154,7 +158,7 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
 
 std::optional<FrameHub::Offer> FrameHub::NextFor(const Watch& watch, Time now) const {
   if (frame_ == nullptr || !IsReady(watch, now)) return std::nullopt;
-  return OfferFor(watch, *frame_);
+  return OfferFor(watch, *frame_, now);
 }
 
 bool FrameHub::HasFor(const Watch& watch, Time now) const {
@@ -293,7 +297,7 @@ std::vector<VideoOrder> FrameHub::OrderVideo(const EncodedFrame& described, bool
   for (auto& [id, watch] : watches_) {
     const std::optional<int> tier = VideoTier(watch, WidthOf(described));
     const bool gets_jpeg = described.at_rest && !(still_follows && watch.wants.takes_stills);
-    const bool waits = still_follows && KeepsStill(watch, described);
+    const bool waits = still_follows && KeepsStill(watch, described, now);
     if (!tier.has_value() || gets_jpeg || waits) continue;
     streams_[static_cast<std::size_t>(*tier)].Ask(
         *tier, {&watch.place, IsReady(watch, now), watch.last_sequence}, now);
@@ -316,6 +320,10 @@ std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
     const std::lock_guard lock(mutex_);
     sequence = ++frame_count_;
     described.sequence = sequence;
+    const bool goes_on =
+        still_follows && frame_ != nullptr && frame_->Described().scene_revision == scene_revision;
+    if (!goes_on) stills_due_since_.reset();
+    if (still_follows && !stills_due_since_.has_value()) stills_due_since_ = now;
     VideoPictures pictures;
     for (EncodedVideo& one : video) {
       one.frame.sequence = sequence;
@@ -327,7 +335,7 @@ std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
     published = std::make_shared<PublishedFrame>(std::move(described), std::move(encode),
                                                  std::move(pictures), still_follows);
     for (const auto& [id, watch] : watches_) {
-      const auto offer = OfferFor(watch, *published);
+      const auto offer = OfferFor(watch, *published, now);
       if (offer.has_value() && offer->form.kind == FrameForm::Kind::kJpeg) {
         wanted[static_cast<std::size_t>(offer->form.tier)] = true;
       }
@@ -358,6 +366,7 @@ void FrameHub::AddStill(std::uint64_t sequence, int tier, EncodedFrame still) {
   if (frame == nullptr) return;
   still.sequence = sequence;
   frame->SetStill(tier, std::move(still));
+  StillsCame();
   frame->Rest();
   WakeAll();
 }
@@ -366,7 +375,13 @@ void FrameHub::NoStills(std::uint64_t sequence) {
   const auto frame = Newest(sequence);
   if (frame == nullptr) return;
   frame->NoStills();
+  StillsCame();
   WakeAll();
+}
+
+void FrameHub::StillsCame() {
+  const std::lock_guard lock(mutex_);
+  stills_due_since_.reset();
 }
 
 void FrameHub::Rest(std::uint64_t sequence) {
@@ -409,13 +424,12 @@ bool FrameHub::HasViewers() const {
   return !watches_.empty();
 }
 
-std::array<bool, kTiers> FrameHub::StillTiers(int width_px) const {
+std::array<bool, kTiers> FrameHub::StillTiers(const PictureWidth& width) const {
   std::array<bool, kTiers> wanted{};
   const std::lock_guard lock(mutex_);
   for (const auto& [id, watch] : watches_) {
     if (!watch.wants.takes_stills) continue;
-    wanted[static_cast<std::size_t>(
-        TierForWindow({width_px, width_px}, watch.wants.window_width_px))] = true;
+    wanted[static_cast<std::size_t>(TierForWindow(width, watch.wants.window_width_px))] = true;
   }
   return wanted;
 }

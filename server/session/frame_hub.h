@@ -70,6 +70,8 @@ class FrameHub {
   // From so many viewers on who can decode video, all of them get it: then one encoding costs less
   // than sending JPEG to all.
   static constexpr int kManyForVideo = 12;
+  // A viewer with a still waits at most so long for the next of the same scene.
+  static constexpr std::chrono::seconds kLongestForStill{2};
 
   // `on_demand` is called, without the lock, whenever a viewer joins, leaves or becomes ready for
   // another frame. `on_wait` is called, without the lock, when WakeWaiting is to be called in time.
@@ -124,8 +126,8 @@ class FrameHub {
   std::size_t Viewers() const;
   // True if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
-  // The tiers in which viewers of a frame of that width take stills.
-  std::array<bool, kTiers> StillTiers(int width_px) const;
+  // The tiers in which viewers of a frame of that width take stills now.
+  std::array<bool, kTiers> StillTiers(const PictureWidth& width) const;
   bool IsNewest(std::uint64_t sequence) const;
 
  private:
@@ -162,13 +164,13 @@ class FrameHub {
   static int JpegTier(const Watch& watch, const PublishedFrame& frame);
   // The tier of the stream that it follows, for a frame of that width; none if it gets JPEG.
   static std::optional<int> VideoTier(const Watch& watch, const PictureWidth& width);
-  // Whether it has a still of the frame's scene, and waits for the frame's own: until then any
-  // other form would be worse. Frames of the reference come too fast for that.
-  static bool KeepsStill(const Watch& watch, const EncodedFrame& next);
   static std::size_t MaxInFlight(const Watch& watch);
   static bool IsReady(const Watch& watch, Time now);
   // Need mutex_.
-  std::optional<Offer> OfferFor(const Watch& watch, PublishedFrame& frame) const;
+  // Whether it has a still of the frame's scene, and waits for the frame's own: until then any
+  // other form would be worse.
+  bool KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const;
+  std::optional<Offer> OfferFor(const Watch& watch, PublishedFrame& frame, Time now) const;
   std::optional<Offer> VideoFor(const Watch& watch, const PublishedFrame& frame, int tier) const;
   std::optional<Offer> NextFor(const Watch& watch, Time now) const;
   bool HasFor(const Watch& watch, Time now) const;
@@ -177,6 +179,7 @@ class FrameHub {
   bool Took(Watch& watch, const Offer& offer, Time now);
   void SetLeastSteps(Time now);
   std::shared_ptr<PublishedFrame> Newest(std::uint64_t sequence) const;
+  void StillsCame();
   void WakeAll();
 
   const std::function<void()> on_demand_;
@@ -184,6 +187,8 @@ class FrameHub {
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;
+  // Since when frames of its scene have been published whose stills have not come.
+  std::optional<Time> stills_due_since_;
   std::array<VideoStream, kTiers> streams_;
   std::optional<Problem> problem_;
   std::uint64_t problem_count_ = 0;

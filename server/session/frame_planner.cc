@@ -50,6 +50,12 @@ scene::Stage FirstDirtyAtRest(const std::optional<LastDrawn>& last_drawn,
 
 }  // namespace
 
+const std::optional<LastDrawn>& IfOf(const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                     const std::optional<LastDrawn>& last_drawn) {
+  static const std::optional<LastDrawn> kNone;
+  return last_drawn.has_value() && last_drawn->fields.lock() == fields ? last_drawn : kNone;
+}
+
 scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene) {
   if (!last_drawn.has_value()) return scene::Stage::kStorm;
   return scene::FirstDirtyStage(last_drawn->scene, scene);

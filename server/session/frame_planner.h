@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -55,7 +56,12 @@ inline constexpr double kCoarsestSparse = 0.353553390593;
 struct LastDrawn {
   scene::Scene scene;
   FrameQuality quality;
+  std::weak_ptr<const volume::HydrometeorFields> fields{};
 };
+
+// `last_drawn` if it shows these fields: those of a time become others when its file is replaced.
+const std::optional<LastDrawn>& IfOf(const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                                     const std::optional<LastDrawn>& last_drawn);
 
 // The first stage that drawing `scene` would rerun; all of them after no frame.
 scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene);

@@ -29,7 +29,7 @@ absl::StatusOr<DisplayFrame> MeasuredSource::Draw(const std::string& view,
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::OrOutOfMemory([&] {
                                  return source_->Draw(scene, fields, quality);
                                }));
-  last_drawn_ = LastDrawn{scene, quality};
+  last_drawn_ = LastDrawn{scene, quality, fields};
   Report(view, {scene, quality, stopwatch.ElapsedMs(), frame.stages}, evidence, &frame);
   return frame;
 }
@@ -41,7 +41,7 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
   THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, base::OrOutOfMemory([&] {
                                  return source_->DrawChecked(scene, fields);
                                }));
-  last_drawn_ = LastDrawn{scene, FrameQuality{}};
+  last_drawn_ = LastDrawn{scene, FrameQuality{}, fields};
   Report(view, {scene, FrameQuality{}, TotalMs(checked.frame), checked.frame.stages},
          {.discretisation_error = checked.discretisation_error}, &checked.frame);
   return checked;

@@ -239,7 +239,9 @@ SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest)
   if (turn.kept.view.TriesAgain(now)) turn.kept.fields.TryAgain();
   if (const auto rests = turn.kept.view.Resting(**decided, now)) return *rests;
   const auto drawable = turn.kept.fields.Drawable(**decided, turn.kept.view.shown_revision());
-  return Placed(turn, newest, drawable, turn.kept.view.Next(newest, drawable, now, source_.Last()));
+  return Placed(
+      turn, newest, drawable,
+      turn.kept.view.Next(newest, drawable, now, IfOf(turn.kept.fields.Fields(), source_.Last())));
 }
 
 SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
@@ -254,16 +256,20 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
     const auto has_light = [&](const std::optional<LastDrawn>& last) {
       return FirstDirty(last, scene) >= scene::Stage::kTone;
     };
-    if (!lane_.IsFree() || !has_light(lane_.Last())) return work;
-    const bool is_finer = !has_light(source_.Last()) ||
-                          source_.Last()->quality.Scale() < lane_.Last()->quality.Scale();
+    const auto& fields = turn.kept.fields.Fields();
+    const std::optional<LastDrawn>& in_lane = IfOf(fields, lane_.Last());
+    const std::optional<LastDrawn>& in_loop = IfOf(fields, source_.Last());
+    if (!lane_.IsFree() || !has_light(in_lane)) return work;
+    const bool is_finer =
+        !has_light(in_loop) || in_loop->quality.Scale() < in_lane->quality.Scale();
     if (!is_finer) return work;
   } else if (!IsLong(turn, work)) {
     return work;
   }
   turn.kept.in_lane = true;
   if (draw == nullptr) return work;
-  return turn.kept.view.Next(newest, drawable, Clock::now(), lane_.Last());
+  return turn.kept.view.Next(newest, drawable, Clock::now(),
+                             IfOf(turn.kept.fields.Fields(), lane_.Last()));
 }
 
 bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
@@ -273,7 +279,8 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   // Without room, others would have to give up memory for a second copy.
   if (!lane_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
-      std::min(FirstDirty(source_.Last(), *shown->scene), scene::Stage::kView);
+      std::min(FirstDirty(IfOf(turn.kept.fields.Fields(), source_.Last()), *shown->scene),
+               scene::Stage::kView);
   double ms =
       source_.Costs().FrameMs(turn.session->id(), *shown->scene, QualityOf(work), first_dirty);
   if (std::holds_alternative<CheckSlices>(work)) ms *= kCheckedShare;
@@ -415,7 +422,7 @@ absl::Status SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& show
 }
 
 bool SessionDrawer::WantsFine(Session& session, int width_px) {
-  const auto still_tiers = session.hub().StillTiers(width_px);
+  const auto still_tiers = session.hub().StillTiers({width_px, width_px});
   return std::ranges::find(still_tiers, true) != still_tiers.end();
 }
 

@@ -54,7 +54,9 @@ std::optional<absl::StatusOr<SessionLane::Picture>> SessionLane::Take() {
   if (IsFree() || !lane_.IsIdle()) return std::nullopt;
   const std::shared_ptr<Outcome> outcome = std::exchange(outcome_, nullptr);
   const std::lock_guard lock(outcome->mutex);
-  if (outcome->picture->ok()) last_drawn_ = LastDrawn{*request_.scene, request_.quality};
+  if (outcome->picture->ok()) {
+    last_drawn_ = LastDrawn{*request_.scene, request_.quality, request_.fields};
+  }
   request_.fields.reset();
   return std::move(outcome->picture);
 }

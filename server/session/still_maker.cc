@@ -33,9 +33,14 @@ void StillMaker::Make(StillToMake still) {
   const auto session = still.session.lock();
   if (session == nullptr) return;
   const Time now = Clock::now();
-  const Time due = still.described.at_rest ? now : std::max(now + kRestsAfter, still.rests_at);
+  Time due = still.described.at_rest ? now : std::max(now + kRestsAfter, still.rests_at);
   {
     const std::lock_guard lock(mutex_);
+    // A better one of a picture at rest takes the turn of the one before.
+    const auto before = waiting_.find(session.get());
+    if (still.described.at_rest && before != waiting_.end()) {
+      due = std::min(due, before->second.due);
+    }
     waiting_[session.get()] = {std::move(still), due};
   }
   changed_.notify_all();
@@ -80,7 +85,7 @@ void StillMaker::MakeNow(const StillToMake& still) const {
   if (session == nullptr || !session->hub().IsNewest(still.sequence)) return;
   session->hub().Rest(still.sequence);
   if (still.fine == nullptr) return;
-  const std::array<bool, kTiers> wanted = session->hub().StillTiers(still.described.width_px);
+  const std::array<bool, kTiers> wanted = session->hub().StillTiers(WidthOf(still.described));
   for (int tier = 0; tier < kTiers; ++tier) {
     if (!wanted[static_cast<std::size_t>(tier)]) continue;
     if (!session->hub().IsNewest(still.sequence)) return;
@@ -91,6 +96,8 @@ void StillMaker::MakeNow(const StillToMake& still) const {
     }
     session->hub().AddStill(still.sequence, tier, *std::move(frame));
   }
+  // Whoever wants another tier by now waits in vain.
+  session->hub().NoStills(still.sequence);
 }
 
 }  // namespace thunderhead::session

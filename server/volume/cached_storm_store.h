@@ -77,13 +77,20 @@ class CachedStormStore final : public StormStore,
     bool told_of_hang = false;
   };
 
+  // The height grid of a storm, and the file of its first time when it was chosen.
+  struct ChosenGrid {
+    VerticalGrid grid;
+    std::string path;
+    std::uint64_t version = 0;
+  };
+
   // A storm and what the store keeps of it.
   struct Held {
     std::shared_ptr<const CataloguedStorm> storm;  // null: removed
     std::vector<int> numbers;                      // one for each time, never used again
     int next_number = 0;
-    bool added = false;                // by Add, so not in the paths
-    std::optional<VerticalGrid> grid;  // the same for all times
+    bool added = false;              // by Add, so not in the paths
+    std::optional<ChosenGrid> grid;  // the same for all times
 
     StormInfoPtr Info() const { return {storm, &storm->info}; }
   };
@@ -117,13 +124,17 @@ class CachedStormStore final : public StormStore,
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
                  const ReadProgress& progress);
   std::optional<HungRead> HungIn(const Activity& activity) const;
-  std::optional<VerticalGrid> VerticalGridOf(Lock& lock, const Place& place);
+  absl::StatusOr<std::optional<VerticalGrid>> VerticalGridOf(Lock& lock, const Place& place);
+  // Makes it the storm's, if that has none.
+  void Choose(const Place& place, const VerticalGrid& grid);
   void WantAfter(const Place& place);
   std::optional<Place> NextWanted();
   bool IsWanted(const TimeKey& key) const;
   StormChange Replace(std::size_t place, std::optional<CataloguedStorm> found);
   std::string FreeId(const std::string& wanted, std::size_t place) const;
 
+  // When a file that has just been replaced may be described.
+  std::chrono::milliseconds ReplacedRetryAfter() const;
   absl::Status Checkpoint(PendingRead& read, Activity& activity, double share);
   void ReadAsked();
   void ReadAhead();

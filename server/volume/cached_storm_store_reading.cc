@@ -23,8 +23,10 @@ using std::chrono::steady_clock;
 // When to try again what a storage that hangs has not given.
 constexpr std::chrono::seconds kRetryAfter{10};
 
-// Or one whose file has just been replaced: longer than it takes a file to settle.
-constexpr std::chrono::seconds kReplacedRetryAfter{4};
+// Reading and describing a file that has settled.
+constexpr std::chrono::seconds kToDescribe{1};
+
+constexpr std::string_view kReplaced = "FILE_REPLACED";
 
 // Saturates.
 std::size_t SaturatingProduct(std::size_t a, std::size_t b) {
@@ -62,15 +64,15 @@ absl::Status Hangs(const HungRead& hung) {
 }
 
 // What is read must not be of another file than the one described: its times may be others.
-absl::Status CheckNotReplaced(const StormFile& file) {
+absl::Status CheckNotReplaced(const StormFile& file, std::chrono::milliseconds retry_after) {
   const std::optional<base::FileStamp> now = file.id != 0 ? base::StampOf(file.path) : std::nullopt;
   if (!now.has_value() || now->Id() == file.id) return absl::OkStatus();
   return base::WithDetails(
       absl::UnavailableError(absl::StrCat(
           file.path, ": another file has taken its place and is not described yet; try again")),
-      {.reason = "FILE_REPLACED",
+      {.reason = std::string(kReplaced),
        .metadata = {{"file", file.path}},
-       .retry_after = kReplacedRetryAfter});
+       .retry_after = retry_after});
 }
 
 // Fields with their share of the budget, which lasts as long as somebody holds them.
@@ -84,7 +86,7 @@ struct CountedFields {
 absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
     std::string_view id, int time_index, const ReadProgress& progress) {
   Lock lock(mutex_);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Place place, PlaceOf(id, time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(Place place, PlaceOf(id, time_index));
   while (true) {
     Fields fields = cache_.Use(place.key);
     if (*fields == nullptr) {
@@ -94,6 +96,13 @@ absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
     }
     // The read may have been a read-ahead that was cancelled just now: try again.
     if (absl::IsCancelled(fields.status()) && !ending_) continue;
+    if (base::DetailsOf(fields.status()).reason == kReplaced) {
+      // The other file may have been described while this one was being read.
+      THUNDERHEAD_ASSIGN_OR_RETURN(Place now, PlaceOf(id, time_index));
+      const bool described = now.key != place.key;
+      place = std::move(now);
+      if (described) continue;
+    }
     if (fields.ok()) {
       cache_.Use(place.key);
       WantAfter(place);
@@ -228,7 +237,10 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   const Place& place = read.place;
   const TimeSource source = place.storm->sources[place.time];
   const StormFile& file = place.storm->files[source.file];
-  const std::optional<VerticalGrid> grid = VerticalGridOf(lock, place);
+  if (place.storm->info.times[place.time].deleted) {
+    return absl::NotFoundError(absl::StrCat(file.path, ": the file of this time is gone"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<VerticalGrid> grid, VerticalGridOf(lock, place));
   activity.went_on = steady_clock::now();
   const auto urgency = read.purpose == Purpose::kAsked ? base::MemoryBudget::Urgency::kPatient
                                                        : base::MemoryBudget::Urgency::kAhead;
@@ -247,12 +259,12 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
       THUNDERHEAD_ASSIGN_OR_RETURN(
           scratch, memory.Reserve(base::MemoryUse::kReading, needs.scratch, what, urgency));
     }
-    THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file, ReplacedRetryAfter()));
     THUNDERHEAD_ASSIGN_OR_RETURN(counted->fields,
                                  file.reader->Read(source.record, grid, [&](double share) {
                                    return Checkpoint(read, activity, share);
                                  }));
-    THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file, ReplacedRetryAfter()));
     if (options_.memory != nullptr) {
       scratch = {};
       THUNDERHEAD_RETURN_IF_ERROR(
@@ -263,33 +275,48 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   Fields fields = read_counted();
   lock.lock();
   if (!fields.ok()) return fields;
-  std::optional<VerticalGrid>& chosen = storms_[place.key.storm].grid;
-  if (!chosen.has_value()) {
-    const RegularGrid& used = (*fields)->grid;
-    chosen = VerticalGrid{used.low_corner_m.z, used.spacing_m.z, used.cells.z};
-  }
+  const RegularGrid& used = (*fields)->grid;
+  Choose(place, {used.low_corner_m.z, used.spacing_m.z, used.cells.z});
   return fields;
 }
 
 // The storm's height grid comes from its first time, whichever time is read first, so that a time's
 // picture does not depend on which times were viewed before. It stays when an earlier time arrives
 // later. Nothing if this is the first time itself, or if the first cannot be read.
-std::optional<VerticalGrid> CachedStormStore::VerticalGridOf(Lock& lock, const Place& place) {
-  std::optional<VerticalGrid>& grid = storms_[place.key.storm].grid;
-  if (grid.has_value() || place.time == 0) return grid;
+absl::StatusOr<std::optional<VerticalGrid>> CachedStormStore::VerticalGridOf(Lock& lock,
+                                                                             const Place& place) {
+  const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;
+  if (known.has_value()) return known->grid;
+  if (place.time == 0) return std::nullopt;
   const CataloguedStorm& storm = *place.storm;
   const TimeSource first = storm.sources.front();
+  const StormFile& file = storm.files[first.file];
   lock.unlock();
-  const absl::StatusOr<VerticalGrid> chosen =
-      storm.files[first.file].reader->ReadVerticalGrid(first.record);
+  const absl::StatusOr<VerticalGrid> chosen = file.reader->ReadVerticalGrid(first.record);
+  const absl::Status replaced = CheckNotReplaced(file, ReplacedRetryAfter());
   lock.lock();
+  THUNDERHEAD_RETURN_IF_ERROR(replaced);
   if (!chosen.ok()) {
     spdlog::warn("the first time of {} cannot be read: {}", storm.info.id,
                  std::string(chosen.status().message()));
-  } else if (!grid.has_value()) {
-    grid = *chosen;
+    return std::nullopt;
   }
-  return grid;
+  Choose(place, *chosen);
+  return *chosen;
+}
+
+void CachedStormStore::Choose(const Place& place, const VerticalGrid& grid) {
+  std::optional<ChosenGrid>& chosen = storms_[place.key.storm].grid;
+  // Of a storm that has been replaced meanwhile it is not that of what is there now.
+  if (chosen.has_value() || !PlaceOf(place.key).has_value()) return;
+  const CataloguedStorm& storm = *place.storm;
+  const StormFile& first = storm.files[storm.sources.front().file];
+  chosen = {grid, first.path, first.version};
+}
+
+std::chrono::milliseconds CachedStormStore::ReplacedRetryAfter() const {
+  return kToDescribe +
+         (options_.live.has_value() ? options_.live->settle : std::chrono::milliseconds(0));
 }
 
 absl::Status CachedStormStore::Checkpoint(PendingRead& read, Activity& activity, double share) {

@@ -135,6 +135,13 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
     cache_.Remove({place, number});
     std::erase(wanted_, TimeKey{place, number});
   }
+  // Another run may have other levels.
+  const auto is_first = [&](const StormFile& file) {
+    return file.path == held.grid->path && file.version != held.grid->version;
+  };
+  if (held.grid.has_value() && found.has_value() && std::ranges::any_of(found->files, is_first)) {
+    held.grid.reset();
+  }
   held.numbers = std::move(numbers);
   held.storm =
       found.has_value() ? std::make_shared<const CataloguedStorm>(*std::move(found)) : nullptr;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -11,6 +12,15 @@
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::volume {
+namespace {
+
+// True if the same file has got more times. With the same ones it was written anew.
+bool GoesOn(const StormFile& before, const StormFile& after) {
+  return after.times.size() > before.times.size() &&
+         std::ranges::equal(before.times, std::span(after.times).first(before.times.size()));
+}
+
+}  // namespace
 
 std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& path) {
   const base::SlowCall call(path);
@@ -87,7 +97,6 @@ void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, 
     const bool written = same_file && known.replaces;
     if ((same_file && !grows) || written) Lose(known);
     known.replaces = !same_file && known.description.has_value();
-    if (!grows) known.version = ++versions_;
     known.stamp = stamp;
     known.unchanged_since = now;
     // A file that was there before the first scan may have rested for long. Those that have not are
@@ -119,7 +128,9 @@ void CatalogueScan::Open(const std::string& path, Time now, Known& known) {
     return LookAgainAt(now + options_.settle);
   }
   if (file.ok()) {
-    file->version = known.version;
+    const bool goes_on =
+        known.description.has_value() && !known.replaces && GoesOn(*known.description, *file);
+    file->version = goes_on ? known.description->version : ++versions_;
     file->id = known.stamp.file;
     known.description = *std::move(file);
     known.replaces = false;

@@ -75,8 +75,7 @@ class CatalogueScan {
     std::optional<StormFile> description;  // perhaps of an earlier, shorter state
     bool replaces = false;                 // the file that the description is of
     std::string complaint;                 // logged last
-    std::uint64_t version = 0;
-    std::uint64_t scan = 0;  // that saw it last
+    std::uint64_t scan = 0;                // that saw it last
   };
 
   // False while the path's storage hangs.

@@ -52,7 +52,8 @@ struct StormFile {
   std::optional<double> longitude_deg;
   std::string projection;  // of the grid, as PROJ writes it; empty if it has none
   std::shared_ptr<const RecordReader> reader;
-  // Another one if another file took its place; the same while it only grows.
+  // Another one if another file took its place, or it was written anew; the same while it only gets
+  // more times.
   std::uint64_t version = 0;
   // Which file was described (base::FileStamp::Id), where somebody watches its path; 0 elsewhere.
   std::uint64_t id = 0;

@@ -42,15 +42,14 @@ function useHeld(onChange: (value: number) => void) {
 }
 
 // The value and events of an input that keeps what is being typed in it when the page is drawn anew meanwhile, as it is by
-// each frame. `tell` gets the input on Enter, or when it is left.
-export function useTyped(value: string, tell: (input: HTMLInputElement) => void) {
+// each frame. `tell` gets the input on Enter, or when it is left; false if that is nothing to be told, such as half a date.
+export function useTyped(value: string, tell: (input: HTMLInputElement) => boolean) {
   const [typed, setTyped] = useState<string | undefined>(undefined);
   return {
     value: typed ?? value,
     onInput: (event: TargetedEvent<HTMLInputElement>) => setTyped(event.currentTarget.value),
     onChange: (event: TargetedEvent<HTMLInputElement>) => {
-      tell(event.currentTarget);
-      setTyped(undefined);
+      if (tell(event.currentTarget)) setTyped(undefined);
     },
     onBlur: () => setTyped(undefined),
   };
@@ -71,10 +70,11 @@ export function Slider(props: SliderProps) {
   const changed = known && first !== undefined && !nearlyEqual(value, first);
   const number = useTyped(known ? formatNumber(value * unit.factor) : "", (input) => {
     const typed = input.valueAsNumber;
-    if (Number.isNaN(typed)) return;
+    if (Number.isNaN(typed)) return false;
     const next = clampToLimits(typed / unit.factor, limits);
     input.value = formatNumber(next * unit.factor);
     onChange(next);
+    return true;
   });
   return (
     <div class="slider">
@@ -221,7 +221,9 @@ interface NumberInputProps {
 export function NumberInput({ label, value, testId, onChange }: NumberInputProps) {
   const id = useId();
   const typed = useTyped(String(value), ({ valueAsNumber }) => {
-    if (!Number.isNaN(valueAsNumber)) onChange(valueAsNumber);
+    if (Number.isNaN(valueAsNumber)) return false;
+    onChange(valueAsNumber);
+    return true;
   });
   return (
     <div class="choice">
@@ -240,7 +242,10 @@ interface TextInputProps {
 
 export function TextInput({ label, value, testId, onChange }: TextInputProps) {
   const id = useId();
-  const typed = useTyped(value, (input) => onChange(input.value));
+  const typed = useTyped(value, (input) => {
+    onChange(input.value);
+    return true;
+  });
   return (
     <div class="choice">
       <label for={id}>{label}</label>
@@ -261,7 +266,9 @@ interface TimeInputProps {
 export function TimeInput({ label, value, testId, onChange }: TimeInputProps) {
   const id = useId();
   const typed = useTyped(value, (input) => {
-    if (input.value !== "") onChange(input.value);
+    if (input.value === "") return false;
+    onChange(input.value);
+    return true;
   });
   return (
     <div class="choice">

@@ -7,13 +7,19 @@ import type { ServerCalls } from "../transport/server_calls";
 
 const REST_MS = 300;
 
+interface Asked {
+  readonly stormId: string;
+  readonly timeIndex: number;
+  readonly storms: readonly StormSummary[];
+}
+
 export class StormMap {
   readonly #calls: ServerCalls;
   readonly #state: PageState;
   readonly #stop: () => void;
   #timer: ReturnType<typeof setTimeout> | undefined;
-  #asked = "";
-  #storms: readonly StormSummary[] = [];
+  // The newest request: an older one's answer counts no more.
+  #asked: Asked | undefined;
 
   constructor(calls: ServerCalls, state: PageState) {
     this.#calls = calls;
@@ -38,11 +44,12 @@ export class StormMap {
   }
 
   async #fetch(stormId: string, timeIndex: number, storms: readonly StormSummary[]): Promise<void> {
-    const asked = `${stormId} ${timeIndex}`;
-    const known = this.#asked === asked && this.#storms === storms;
+    const last = this.#asked;
+    const known =
+      last?.stormId === stormId && last.timeIndex === timeIndex && last.storms === storms;
     if (known && this.#state.stormMap.peek() !== undefined) return;
+    const asked = { stormId, timeIndex, storms };
     this.#asked = asked;
-    this.#storms = storms;
     try {
       const map = await this.#calls.stormMap(stormId, timeIndex);
       if (this.#asked !== asked) return;
@@ -50,7 +57,7 @@ export class StormMap {
       this.#state.mapProblem.value = undefined;
     } catch (error) {
       if (this.#asked !== asked) return;
-      this.#asked = "";
+      this.#asked = undefined;
       // Of another time or storm.
       this.#state.stormMap.value = undefined;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);

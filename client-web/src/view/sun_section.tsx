@@ -101,7 +101,9 @@ function DaySlider({ state, here, byTime }: DayProps) {
   };
   const clock = useTyped(clockOfMinute(minute), ({ value }) => {
     const [hours, minutes] = value.split(":").map(Number);
-    if (hours !== undefined && minutes !== undefined) set(60 * hours + minutes);
+    if (hours === undefined || minutes === undefined) return false;
+    set(60 * hours + minutes);
+    return true;
   });
   const sky = `linear-gradient(90deg, ${sunHeightsDeg(here, zone, SKY_STEPS).map(skyColor).join(", ")})`;
   return (

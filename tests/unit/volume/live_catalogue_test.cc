@@ -51,6 +51,7 @@ class LiveFolder : public ::testing::Test {
   // The bytes of a file with those hours, with that much cloud water in it.
   std::string WrfBytes(const std::vector<int>& hours, double cloud = 1e-3) {
     SyntheticWrf file;
+    file.top_m = top_m_;
     for (file.times.clear(); const int hour : hours) {
       file.times.push_back(absl::StrFormat("2013-05-20_%02d:00:00", hour));
     }
@@ -119,6 +120,7 @@ class LiveFolder : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
+  double top_m_ = SyntheticWrf().top_m;
   const std::string data_ = folder_.File("series");
   const std::string elsewhere_ = folder_.File("elsewhere");
 };
@@ -381,7 +383,7 @@ TEST_F(LiveFolder, NothingIsReadOfAFileThatIsNotTheOneDescribed) {
   PutOld(File(1), WrfBytes({1}, 2e-3));
   StormStoreOptions options;
   options.read_ahead = 0;
-  options.live = LiveCatalogueOptions{.rescan = std::chrono::hours(1), .settle = seconds(2)};
+  options.live = LiveCatalogueOptions{.rescan = std::chrono::hours(1), .settle = seconds(5)};
   const auto store = *StormStore::Open({data_}, options);
   const auto shown = store->Get("series", 0, {});
   ASSERT_TRUE(shown.ok());
@@ -396,6 +398,36 @@ TEST_F(LiveFolder, NothingIsReadOfAFileThatIsNotTheOneDescribed) {
     EXPECT_EQ(TimesOf(*store), 2) << "at any time";
     const auto fields = store->Get("series", 1, {});
     return fields.ok() && (*fields)->fields[0].statistics.maximum > 3e-3;
+  }));
+}
+
+// As WRF does it that is started once more: the file stays the same, and so may its size.
+TEST_F(LiveFolder, AFileThatIsWrittenAnewIsReadAgain) {
+  PutOld(File(0), WrfBytes({0}, 1e-3));
+  const auto store = Open();
+  const std::string id = store->Storms()[0]->id;
+  const auto shown = store->Get(id, 0, {});
+  ASSERT_TRUE(shown.ok());
+  const std::uint64_t version = store->Find(id)->times[0].version;
+  Put(File(0), WrfBytes({0}, 4e-3));
+  EXPECT_TRUE(Eventually([&] {
+    const auto fields = store->Get(id, 0, {});
+    return fields.ok() && (*fields)->fields[0].statistics.maximum > 3e-3;
+  }));
+  EXPECT_NE(store->Find(id)->times[0].version, version);
+}
+
+TEST_F(LiveFolder, AnotherRunMayHaveOtherLevels) {
+  PutOld(File(0), WrfBytes({0, 1}));
+  const auto store = Open();
+  const std::string id = store->Storms()[0]->id;
+  const auto before = store->Get(id, 1, {});
+  ASSERT_TRUE(before.ok()) << before.status();
+  top_m_ *= 3.0;
+  MoveInto(File(0), WrfBytes({0, 1}));
+  EXPECT_TRUE(Eventually([&] {
+    const auto after = store->Get(id, 1, {});
+    return after.ok() && (*after)->grid.spacing_m.z > 2.0 * (*before)->grid.spacing_m.z;
   }));
 }
 
