@@ -146,6 +146,7 @@ class RenderLoopTest : public ::testing::Test {
   std::shared_ptr<EagerViewer> Watch(const std::shared_ptr<Session>& session) {
     auto viewer = std::make_shared<EagerViewer>(session);
     viewer->Join();
+    const std::lock_guard lock(viewers_mutex_);
     viewers_.push_back(viewer);
     return viewer;
   }
@@ -205,6 +206,7 @@ class RenderLoopTest : public ::testing::Test {
   FakeStormStore store_;
   const std::shared_ptr<FakeMachine> machine_ = std::make_shared<FakeMachine>();
   Sessions sessions_{SessionsOptions{}, {[this] { wake_.Notify(); }, [] {}}};
+  std::mutex viewers_mutex_;  // tests with threads watch from all of them
   std::vector<std::shared_ptr<EagerViewer>> viewers_;
   std::unique_ptr<RenderLoop> loop_;
 };
