@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <future>
+#include <mutex>
 
 #include "base/error_details.h"
 #include "base/memory_budget.h"
