@@ -63,12 +63,12 @@ class SessionFields {
   bool IsPrepared(const scene::Scene& scene,
                   const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
   void Ask(const NewestScene& newest);
+  // The key of the newest scene, looked up once for its revision: who follows the catalogue gives
+  // scenes whose file was replaced another one.
+  const FieldsKey& KeyFor(const NewestScene& newest);
 
   const FieldsAccess& access_;
   const std::string id_;
-  // The key of the newest scene. A file that is replaced brings a revision of its own.
-  const FieldsKey& KeyFor(const NewestScene& newest);
-
   std::uint64_t newest_revision_ = 0;
   FieldsKey newest_key_;  // of that revision
   std::optional<FieldsKey> key_;

@@ -53,8 +53,7 @@ class CatalogueScan {
   // Files of the first scan are complete if they are older than the settling time; what comes
   // later must have been seen unchanged for so long. A file that grows keeps the description that
   // it had, until it is complete again, and so does one whose place another took in one step. An
-  // error, such as a folder that cannot be listed, says
-  // nothing about which storms there are.
+  // error, such as a folder that cannot be listed, says nothing about which storms there are.
   absl::StatusOr<Result> Scan(Time now);
 
  private:
