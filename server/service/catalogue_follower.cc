@@ -19,7 +19,8 @@ namespace {
 constexpr int kAttempts = 40;
 constexpr std::chrono::milliseconds kBetweenAttempts{50};
 
-// True if another file took the place of that with the time, which both have.
+// True if what that time shows is another file's than before the change, or the storm has come
+// back.
 bool IsReplaced(const volume::StormChange& change, std::size_t time) {
   if (change.before == nullptr) return true;
   const std::vector<volume::StormTime>& before = change.before->times;

@@ -167,8 +167,8 @@ class FrameHub {
   static std::size_t MaxInFlight(const Watch& watch);
   static bool IsReady(const Watch& watch, Time now);
   // Need mutex_.
-  // Whether it has a still of the frame's scene, and waits for the frame's own: until then any
-  // other form would be worse.
+  // True if the viewer has a still of the frame's scene and waits for the frame's own still: any
+  // other form of the frame would be worse.
   bool KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const;
   std::optional<Offer> OfferFor(const Watch& watch, PublishedFrame& frame, Time now) const;
   std::optional<Offer> VideoFor(const Watch& watch, const PublishedFrame& frame, int tier) const;

@@ -50,8 +50,9 @@ scene::Stage FirstDirtyAtRest(const std::optional<LastDrawn>& last_drawn,
 
 }  // namespace
 
-const std::optional<LastDrawn>& IfOf(const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                     const std::optional<LastDrawn>& last_drawn) {
+const std::optional<LastDrawn>& IfDrawnFrom(
+    const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const std::optional<LastDrawn>& last_drawn) {
   static const std::optional<LastDrawn> kNone;
   return last_drawn.has_value() && last_drawn->fields.lock() == fields ? last_drawn : kNone;
 }

@@ -60,8 +60,9 @@ struct LastDrawn {
 };
 
 // `last_drawn` if it shows these fields: those of a time become others when its file is replaced.
-const std::optional<LastDrawn>& IfOf(const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                     const std::optional<LastDrawn>& last_drawn);
+const std::optional<LastDrawn>& IfDrawnFrom(
+    const std::shared_ptr<const volume::HydrometeorFields>& fields,
+    const std::optional<LastDrawn>& last_drawn);
 
 // The first stage that drawing `scene` would rerun; all of them after no frame.
 scene::Stage FirstDirty(const std::optional<LastDrawn>& last_drawn, const scene::Scene& scene);

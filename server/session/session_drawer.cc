@@ -239,9 +239,9 @@ SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest)
   if (turn.kept.view.TriesAgain(now)) turn.kept.fields.TryAgain();
   if (const auto rests = turn.kept.view.Resting(**decided, now)) return *rests;
   const auto drawable = turn.kept.fields.Drawable(**decided, turn.kept.view.shown_revision());
-  return Placed(
-      turn, newest, drawable,
-      turn.kept.view.Next(newest, drawable, now, IfOf(turn.kept.fields.Fields(), source_.Last())));
+  return Placed(turn, newest, drawable,
+                turn.kept.view.Next(newest, drawable, now,
+                                    IfDrawnFrom(turn.kept.fields.Fields(), source_.Last())));
 }
 
 SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
@@ -257,8 +257,8 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
       return FirstDirty(last, scene) >= scene::Stage::kTone;
     };
     const auto& fields = turn.kept.fields.Fields();
-    const std::optional<LastDrawn>& in_lane = IfOf(fields, lane_.Last());
-    const std::optional<LastDrawn>& in_loop = IfOf(fields, source_.Last());
+    const std::optional<LastDrawn>& in_lane = IfDrawnFrom(fields, lane_.Last());
+    const std::optional<LastDrawn>& in_loop = IfDrawnFrom(fields, source_.Last());
     if (!lane_.IsFree() || !has_light(in_lane)) return work;
     const bool is_finer =
         !has_light(in_loop) || in_loop->quality.Scale() < in_lane->quality.Scale();
@@ -269,7 +269,7 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
   turn.kept.in_lane = true;
   if (draw == nullptr) return work;
   return turn.kept.view.Next(newest, drawable, Clock::now(),
-                             IfOf(turn.kept.fields.Fields(), lane_.Last()));
+                             IfDrawnFrom(turn.kept.fields.Fields(), lane_.Last()));
 }
 
 bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
@@ -279,7 +279,7 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   // Without room, others would have to give up memory for a second copy.
   if (!lane_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
-      std::min(FirstDirty(IfOf(turn.kept.fields.Fields(), source_.Last()), *shown->scene),
+      std::min(FirstDirty(IfDrawnFrom(turn.kept.fields.Fields(), source_.Last()), *shown->scene),
                scene::Stage::kView);
   double ms =
       source_.Costs().FrameMs(turn.session->id(), *shown->scene, QualityOf(work), first_dirty);

@@ -63,7 +63,8 @@ absl::Status Hangs(const HungRead& hung) {
       {.reason = "STORAGE_HANGS", .metadata = {{"file", hung.file}}, .retry_after = kRetryAfter});
 }
 
-// What is read must not be of another file than the one described: its times may be others.
+// An error if the path leads to another file than the one that was described, whose times may be
+// others.
 absl::Status CheckNotReplaced(const StormFile& file, std::chrono::milliseconds retry_after) {
   const std::optional<base::FileStamp> now = file.id != 0 ? base::StampOf(file.path) : std::nullopt;
   if (!now.has_value() || now->Id() == file.id) return absl::OkStatus();

@@ -55,6 +55,12 @@ class VideoHubTest : public ::testing::Test {
     return hub_.Publish(frame, jpeg, std::move(video), still_follows, now_);
   }
 
+  void AddStill(std::uint64_t sequence) {
+    EncodedFrame still;
+    still.avif = "avif";
+    hub_.AddStill(sequence, 0, still);
+  }
+
   // The picture that the viewer takes now, in whichever encoding, or "nothing".
   std::string Take(std::uint64_t viewer) {
     const auto event = hub_.Take(viewer, now_);
@@ -269,9 +275,7 @@ TEST_F(VideoHubTest, AtRestTheStillReplacesVideoAndComesOnce) {
   EXPECT_EQ(TakeAndAcknowledge(video), "base") << "at once, before the still is made";
   EXPECT_EQ(TakeAndAcknowledge(jpeg), "jpeg");
   EXPECT_EQ(Take(video), "nothing");
-  EncodedFrame still;
-  still.avif = "avif";
-  hub_.AddStill(sequence, 0, still);
+  AddStill(sequence);
   EXPECT_EQ(TakeAndAcknowledge(video), "avif");
   EXPECT_EQ(Take(video), "nothing");
   EXPECT_EQ(Take(jpeg), "nothing");
@@ -286,11 +290,9 @@ TEST_F(VideoHubTest, AStillIsReplacedByNothingButTheNextOneOfItsScene) {
   const auto stills = Join({.takes_stills = true});
   const auto jpeg = Join({});
   const auto settle = [&] {
-    EncodedFrame still;
-    still.avif = "avif";
     const std::uint64_t sequence = Publish(/*at_rest=*/true, /*still_follows=*/true);
     for (const std::uint64_t viewer : {video, stills, jpeg}) TakeAndAcknowledge(viewer);
-    hub_.AddStill(sequence, 0, still);
+    AddStill(sequence);
     EXPECT_EQ(TakeAndAcknowledge(video), "avif");
     EXPECT_EQ(TakeAndAcknowledge(stills), "avif");
     EXPECT_EQ(Take(jpeg), "nothing");
@@ -354,9 +356,7 @@ TEST_F(VideoHubTest, AStillOfAnOlderFrameIsDropped) {
   const std::uint64_t older = Publish(/*at_rest=*/true, /*still_follows=*/true);
   TakeAndAcknowledge(viewer);
   Publish();
-  EncodedFrame still;
-  still.avif = "avif";
-  hub_.AddStill(older, 0, still);
+  AddStill(older);
   EXPECT_EQ(Take(viewer), "base");
 }
 
