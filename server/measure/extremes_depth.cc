@@ -1,11 +1,13 @@
 // Extreme optical depths, numbers of slices, particle radii.
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "measure/extremes_internal.h"
+#include "measure/soundness.h"
 #include "renderers/group_weights.h"
 #include "renderers/medium.h"
 
@@ -126,10 +128,21 @@ Extreme LightEnergy(const accuracy::PlainTechnique& plain,
             scene::MediumSettingsOf(&scene.rendering.technique)->theta_f_deg = 90.0;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({.optical_depth = 100.0}), {}));
+            // The eye sees the light scattered many times that goes back towards the sun, which no
+            // cloud sends more of than one that is deep and loses none. The paper's radiances are
+            // in a unit of its own.
+            const double most = transport.value == scene::Transport::kPaper
+                                    ? std::numeric_limits<double>::infinity()
+                                    : kMaxFluence / (4.0 * std::numbers::pi);
             // Some light must be lost, or there would be no medium.
-            const bool lit = seen.least_light < 0.999;
-            return Sound(seen, {"light and transmittance within 0 to 1, not all is left",
-                                absl::StrFormat("least light %g", seen.least_light), lit});
+            const bool lit = seen.least_light < 0.999 && seen.radiance > 0.0;
+            return Sound(
+                seen,
+                {absl::StrFormat("light and transmittance within 0 to 1, not all is left, some is "
+                                 "seen and at most %g",
+                                 most),
+                 absl::StrFormat("least light %g, seen %g", seen.least_light, seen.radiance),
+                 lit && seen.radiance <= most});
           }};
 }
 

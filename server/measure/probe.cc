@@ -9,6 +9,7 @@
 #include "frame/tone_map.h"
 #include "glm/geometric.hpp"
 #include "measure/soundness.h"
+#include "renderers/group_weights.h"
 #include "renderers/half_angle/half_angle_renderer.h"
 #include "renderers/light_volume/light_volume_renderer.h"
 #include "renderers/metaball/ball_fit.h"
@@ -120,6 +121,12 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
     renderers::LightVolumeRenderer renderer(programs_);
     THUNDERHEAD_RETURN_IF_ERROR(renderer.CarryLight(medium, settings));
     light = LightVolumeSoundness(renderer);
+    if (settings.Medium().transport == scene::Transport::kDiffusion) {
+      const renderers::GroupWeights weights(medium.Content(), settings.Medium());
+      const Soundness diffuse =
+          DiffusionSoundness(renderer, weights.transport.front() / weights.eye.front());
+      if (light.unsound.empty()) light.unsound = diffuse.unsound;
+    }
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(medium, settings));
     seen.eye = frame::ReadLinear(renderer.Eye());
   } else {

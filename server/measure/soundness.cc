@@ -5,23 +5,21 @@
 #include <numbers>
 
 #include "absl/strings/str_format.h"
+#include "physics/optics.h"
 
 namespace thunderhead::measure {
 namespace {
 
-// Mean intensity of multiply scattered light, over the sun's irradiance: deep in an infinite
-// conservative cloud with the sun in the zenith the fluence is five times the incident flux
-// (Eddington).
-constexpr double kMaxMeanIntensity = 5.0 / (4.0 * std::numbers::pi);
-
-// Two floats a texel, x fastest.
-std::vector<float> TwoChannels(const gl::Texture3D& texture) {
+// `channels` floats a texel, as many as `format` has; x fastest.
+std::vector<float> Texels(const gl::Texture3D& texture, GLenum format, std::size_t channels) {
   const glm::ivec3 size = texture.Size();
-  std::vector<float> texels(2 * static_cast<std::size_t>(size.x) *
+  std::vector<float> texels(channels * static_cast<std::size_t>(size.x) *
                             static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
-  texture.Download(GL_RG, GL_FLOAT, texels.size() * sizeof(float), texels.data());
+  texture.Download(format, GL_FLOAT, texels.size() * sizeof(float), texels.data());
   return texels;
 }
+
+std::vector<float> TwoChannels(const gl::Texture3D& texture) { return Texels(texture, GL_RG, 2); }
 
 void InspectRoot(float root, const char* where, Soundness* found) {
   const double depth = static_cast<double>(root) * root;
@@ -82,12 +80,29 @@ Soundness LightVolumeSoundness(const renderers::LightVolumeRenderer& renderer) {
     InspectRoot(arrived[i], "at a cell", &found);
     const float mean_intensity = arrived[i + 1];
     if (std::isfinite(mean_intensity) && mean_intensity >= 0.0F &&
-        mean_intensity <= kMaxMeanIntensity) {
+        mean_intensity <= kMaxFluence / (4.0 * std::numbers::pi)) {
       continue;
     }
     if (found.unsound.empty()) {
       found.unsound = absl::StrFormat("mean intensity %g at a cell", mean_intensity);
     }
+  }
+  return found;
+}
+
+Soundness DiffusionSoundness(const renderers::LightVolumeRenderer& renderer,
+                             double transport_share) {
+  Soundness found;
+  const std::vector<float> arrived = TwoChannels(renderer.Arrived());
+  const std::vector<float> exits = Texels(renderer.Diffusion().Exits(), GL_RGBA, 4);
+  const std::vector<float> inward = Texels(renderer.Diffusion().NetInward(), GL_RGBA, 4);
+  for (std::size_t i = 0; i < exits.size() && found.unsound.empty(); i += 4) {
+    const float exit = exits[i] * exits[i];
+    const float sun_depth = arrived[i / 2] * arrived[i / 2];
+    const float fluence = physics::glsl::diffuse_fluence(
+        exit, sun_depth, static_cast<float>(transport_share) * exit, inward[i], inward[i + 1]);
+    if (std::isfinite(fluence) && fluence <= kMaxFluence) continue;
+    found.unsound = absl::StrFormat("fluence %g of diffuse light in cell %d", fluence, i / 4);
   }
   return found;
 }

@@ -12,6 +12,10 @@ namespace thunderhead::measure {
 // 1 plus tolerance: a ray's transmittance is a product of rounded factors.
 inline constexpr float kMaxShare = 1.0F + 1e-5F;
 
+// Fluence of light scattered many times, over the sun's irradiance: deep in an infinite
+// conservative cloud with the sun in the zenith (Eddington).
+inline constexpr double kMaxFluence = 5.0;
+
 // The result of a check.
 struct Soundness {
   std::string unsound;       // the first invalid value; empty if there is none
@@ -28,5 +32,11 @@ Soundness LightBufferSoundness(const std::vector<float>& light);
 // Checks the light volume after carry.comp and arrive.comp: the optical depth of sunlight is
 // nowhere below 0 and does not fall along any ray of the sun.
 Soundness LightVolumeSoundness(const renderers::LightVolumeRenderer& renderer);
+
+// Checks the solution of diffusion transport, in as many cells as the medium's: the fluence of
+// sunlight is nowhere more than that deep in an infinite conservative cloud. `transport_share` is
+// the similarity-scaled extinction over the eye's.
+Soundness DiffusionSoundness(const renderers::LightVolumeRenderer& renderer,
+                             double transport_share);
 
 }  // namespace thunderhead::measure

@@ -35,6 +35,10 @@ class DiffusionPass {
   // For march.frag.
   void Bind() const;
 
+  // The result of the last Solve, for checks.
+  const gl::Texture3D& Exits() const { return exits_; }
+  const gl::Texture3D& NetInward() const { return net_inward_; }
+
   std::size_t Bytes() const {
     return sampled_cells_.Bytes() + sampled_light_.Bytes() + exits_.Bytes() + net_inward_.Bytes();
   }

@@ -49,6 +49,8 @@ class LightVolumeRenderer {
   // medium's cells, as carry.comp and arrive.comp write them.
   const gl::Texture3D& Carried() const { return carried_; }
   const gl::Texture3D& Arrived() const { return arrived_; }
+  // Of diffusion transport alone.
+  const DiffusionPass& Diffusion() const { return diffusion_; }
 
   // Draws `medium` with the light of the last CarryLight, which must have had the same medium, sun
   // and rendering.
