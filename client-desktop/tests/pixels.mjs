@@ -1,4 +1,4 @@
-// What a screen shows: measures of its pixels, and buttons found by their colour.
+// Measures of a screen's pixels, and buttons found by their colour.
 import assert from "node:assert/strict";
 import { setTimeout as sleep } from "node:timers/promises";
 

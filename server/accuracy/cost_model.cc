@@ -11,9 +11,10 @@ namespace {
 constexpr double kForgetting = 0.8;
 // Below this variance of x (relative to its mean square) a and b cannot be determined separately.
 constexpr double kMinRelativeVariance = 1e-3;
-// The line holds up to so many times the size of the frames that it was fitted to: a full frame has
-// 64 times that of the coarsest with all its pixels. Those of a server's start have a hundredth of
-// a million samples and mostly fixed cost: by their line a still of 3840 x 2160 would take an hour.
+// The line holds up to this multiple of the size of the frames that it was fitted to: a full frame
+// has 64 times that of the coarsest with all its pixels. Those of a server's start have a hundredth
+// of a million samples and mostly fixed cost: by their line a still of 3840 x 2160 would take an
+// hour.
 constexpr double kReach = 100.0;
 
 bool IsPreparation(const scene::StageTime& cost) {

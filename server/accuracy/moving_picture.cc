@@ -57,7 +57,7 @@ double Sum_ms(const renderers::StageTimes& times) {
 
 double MovingOutputScale(const scene::Scene& scene) {
   const double pixels = 1.0 * scene.output.width_px * scene.output.height_px;
-  return std::min(std::sqrt(kMostMovingPixels / pixels), 1.0);
+  return std::min(std::sqrt(kMaxMovingPixels / pixels), 1.0);
 }
 
 scene::Scene WithOutputScale(const scene::Scene& scene, double output_scale) {

@@ -24,7 +24,7 @@ inline constexpr double kMovingLightTolerance = 4e-3;
 
 // Frames of a moving scene that asks for more pixels have so many: the work that is done for each
 // of a picture's pixels, however few have rays, holds up all others (docs/reliability.md).
-inline constexpr double kMostMovingPixels = 1600.0 * 900.0;
+inline constexpr double kMaxMovingPixels = 1600.0 * 900.0;
 
 // FrameQuality::output_scale of the scene's frames while it moves.
 double MovingOutputScale(const scene::Scene& scene);

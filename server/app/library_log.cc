@@ -13,11 +13,11 @@
 namespace thunderhead::app {
 namespace {
 
-constexpr int kMostLinesPerSecond = 10;
+constexpr int kMaxLinesPerSecond = 10;
 
 void Tell(spdlog::level::level_enum level, const std::string& text) {
   static std::mutex mutex;
-  static base::LineLimit limit(kMostLinesPerSecond);
+  static base::LineLimit limit(kMaxLinesPerSecond);
   const std::lock_guard lock(mutex);
   const auto left_out = limit.Take(std::chrono::system_clock::now());
   if (!left_out.has_value()) return;

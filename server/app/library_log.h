@@ -1,5 +1,5 @@
-// What gRPC and protobuf log by themselves goes to the log, as any other line, and no more than
-// some lines a second: a client's bytes cause them.
+// Sends the lines that gRPC and protobuf write by themselves to the log, at most a few a second: a
+// client's bytes cause them.
 #pragma once
 
 namespace thunderhead::app {

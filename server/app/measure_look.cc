@@ -137,7 +137,7 @@ Command AddMeasureLook(CLI::App& measure) {
                    "Prefix of pictures to write (.CAMERA.png, and .regions.png with the tower red "
                    "and the base blue); by default none");
   look->add_option("--spp", flags->samples_per_pixel,
-                   "Also trace the reference with so many samples a pixel")
+                   "Also trace the reference with this many samples a pixel")
       ->check(CLI::Range(1, 1 << 20));
   look->add_option("--peak-cut", flags->light.peak_cut_deg, "As in thunderhead render")
       ->check(CLI::Range(0.0, 30.0))

@@ -175,8 +175,8 @@ Command AddMeasureTrade(CLI::App& measure) {
   trade
       ->add_option(
           "--error-seconds", flags->error_seconds,
-          "Also estimate each picture's error for so many seconds, as a server does that has "
-          "no truth; 0: not")
+          "Seconds for which to estimate each picture's error as well, as a server does that "
+          "has no truth; 0: not")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
   trade->add_flag("--transports-alone", flags->transports_alone,

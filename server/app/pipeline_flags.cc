@@ -113,7 +113,7 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
       ->capture_default_str();
   command
       .add_option("--error-seconds", flags.error_seconds,
-                  "Measure each picture's error by tracing for at most so many seconds, in this "
+                  "Seconds at most for which to measure each picture's error by tracing, in this "
                   "process alone; 0: take it from a table")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();

@@ -203,9 +203,10 @@ Command AddRender(CLI::App& app) {
   render->add_option("--max-milliseconds", flags->scene.max_milliseconds,
                      "Draw with the most accurate setting of at most this time a frame");
   render
-      ->add_option("--error-seconds", flags->error_seconds,
-                   "Measure the picture's error by tracing for at most so many seconds; 0: take it "
-                   "from a table")
+      ->add_option(
+          "--error-seconds", flags->error_seconds,
+          "Seconds at most for which to measure the picture's error by tracing; 0: take it "
+          "from a table")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   render->add_option("--spp", flags->reference.samples_per_pixel,
@@ -223,8 +224,8 @@ Command AddRender(CLI::App& app) {
                      "Reference: leave out light that is scattered more often; by default none");
   render
       ->add_option("--detail", flags->reference.light.detail_voxels_per_cell,
-                   "Reference: trace the turbulent detail that the light volume draws, on so many "
-                   "voxels along a cell's edge; by default without detail")
+                   "Reference: trace the turbulent detail that the light volume draws, on this "
+                   "many voxels along a cell's edge; by default without detail")
       ->check(CLI::Range(1, 8));
   render->add_flag(
       "--no-air{false}", flags->reference.light.air,

@@ -300,7 +300,7 @@ Command AddWatch(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--until", flags->until,
-                   "End after so many files (12 or '12 files'), drawn or found bad, or at a time "
+                   "End after this many files (12 or '12 files'), drawn or found bad, or at a time "
                    "(2030-05-20T06:00:00Z), or at the earlier of both; by default never")
       ->expected(1, 3);
   AddPipelineOptions(*command, flags->pipeline);

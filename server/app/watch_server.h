@@ -16,7 +16,7 @@ namespace thunderhead::app {
 
 struct ServerWatch {
   std::string storm;
-  // True once so many times are drawn, or it is late enough.
+  // Whether to end, once `times` are drawn.
   std::function<bool(int times)> is_over;
   // Called with the pictures of all times after new ones were made.
   std::function<absl::Status(const std::vector<PlannedPicture>&)> after_new;

@@ -5,7 +5,7 @@
 
 namespace thunderhead::base {
 
-// So many words of 32 random bits of the operating system, each as 8 hexadecimal digits.
+// `words` times 32 random bits of the operating system, each as 8 hexadecimal digits.
 std::string RandomHex(int words);
 
 }  // namespace thunderhead::base

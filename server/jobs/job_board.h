@@ -84,7 +84,7 @@ struct ResultFile {
 
 class JobBoard {
  public:
-  // A picture that was begun so often without an end is not begun again.
+  // A picture that was begun this many times without an end is not begun again.
   static constexpr int kMaxAttempts = 5;
 
   explicit JobBoard(const JobLimits& limits) : limits_(limits) {}

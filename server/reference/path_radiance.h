@@ -19,7 +19,7 @@ struct PathEstimate {
 struct PathOptions {
   // Light scattered by the medium more often is left out; 0: no limit.
   int max_scatterings = 0;
-  // After so many scatterings a path goes on in Optics::kSimilar, which the medium must have; 0:
+  // After this many scatterings a path goes on in Optics::kSimilar, which the medium must have; 0:
   // never. What it then finds is biased.
   int similar_after = 0;
 };

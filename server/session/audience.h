@@ -1,6 +1,6 @@
 // The people of a session with their connections: changes the roster and the board under a lock,
 // and tells everybody the outcome. What is told is turned into bytes once for all of them, at most
-// so often a second, the newest only. Safe from any thread; knows no messages.
+// some times a second, the newest only. Safe from any thread; knows no messages.
 #pragma once
 
 #include <chrono>

@@ -22,7 +22,7 @@ class DeviceLosses {
   explicit DeviceLosses(const LossLimits& limits) : limits_(limits) {}
 
   // The device was lost, or could not be made ready. When to try it; none to give up: a device that
-  // is lost so often needs somebody else's help.
+  // is lost again and again needs somebody else's help.
   std::optional<Time> Lost(Time now);
 
  private:

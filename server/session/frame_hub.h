@@ -67,10 +67,10 @@ class FrameHub {
 
   // Of JPEG; for video FlightWindow.
   static constexpr std::size_t kMaxInFlight = 2;
-  // From so many viewers on who can decode video, all of them get it: then one encoding costs less
-  // than sending JPEG to all.
+  // From this many viewers on who can decode video, all of them get it: then one encoding costs
+  // less than sending JPEG to all.
   static constexpr int kManyForVideo = 12;
-  // A viewer with a still waits at most so long for the next of the same scene.
+  // The longest that a viewer with a still waits for the next of the same scene.
   static constexpr std::chrono::seconds kLongestForStill{2};
 
   // `on_demand` is called, without the lock, whenever a viewer joins, leaves or becomes ready for

@@ -31,7 +31,7 @@ constexpr double kLeastPixels = 640.0 * 360.0;
 constexpr double kKept = 1.15;
 constexpr double kStep = 1.189207115;  // 2^(1/4)
 
-// Down to a step between 1 and the least for a picture of so many pixels.
+// Down to a step between 1 and the least for a picture of that many pixels.
 double OutputStep(double scale, double pixels) {
   constexpr double kRounding = 1e-6;
   const double least = std::clamp(std::sqrt(kLeastPixels / pixels), kLeastOutputScale, 1.0);

@@ -18,7 +18,7 @@ namespace {
 constexpr double kQuick_ms = 5e3;
 // Pictures that hold their fields while their light is traced.
 constexpr std::ptrdiff_t kMaxTraced = 8;
-// A picture may take so many times what a prediction may be: predictions are not exact.
+// The time that a picture may take, over the longest that is predicted: predictions are not exact.
 constexpr double kPatience = 2.0;
 
 bool AwaitsLight(const scene::Scene& scene) {

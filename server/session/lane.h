@@ -98,7 +98,7 @@ class Lane {
   std::condition_variable changed_;
   bool stopping_ = false;
   bool source_is_lost_ = false;
-  std::optional<double> frees_;  // what is unused for so many seconds
+  std::optional<double> frees_;  // what is unused for this many seconds
   Work work_;
   Limits limits_;
   bool busy_ = false;

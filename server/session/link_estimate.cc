@@ -8,7 +8,7 @@ namespace {
 // Before a step is left, and before one on trial is judged.
 constexpr int kFewestSamples = 4;
 // A smaller picture must arrive in at most this share of the time to be worth it, and a larger one
-// may take so many times as long.
+// may take this many times as long.
 constexpr double kWorthIt = 0.8;
 constexpr double kBearable = 1.25;
 

@@ -25,7 +25,7 @@ class LinkEstimate {
   static constexpr std::chrono::seconds kShortestWait{4};
   static constexpr std::chrono::seconds kLongestWait{64};
 
-  // Of so many steps, each with fewer bytes than the one before: the tiers, unless the viewer can
+  // `steps` in all, each with fewer bytes than the one before: the tiers, unless the viewer can
   // be reduced otherwise as well.
   explicit LinkEstimate(int steps = kTiers) : steps_(steps) {}
 

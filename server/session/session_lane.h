@@ -22,8 +22,8 @@ namespace thunderhead::session {
 
 class SessionLane {
  public:
-  // `has_room` says whether so many bytes more may be taken on the device without asking others for
-  // theirs. The lane must outlive it, and its work must have ended before this does.
+  // `has_room` says whether that many bytes more may be taken on the device without asking others
+  // for theirs. The lane must outlive it, and its work must have ended before this does.
   SessionLane(Lane& lane, std::function<bool(std::uint64_t bytes)> has_room)
       : lane_(lane), has_room_(std::move(has_room)) {}
 

@@ -66,9 +66,9 @@ class VideoStream {
  public:
   using Time = VideoPlace::Time;
 
-  // Key pictures that viewers ask for come at most so often.
+  // The least time between key pictures that viewers ask for.
   static constexpr std::chrono::seconds kKeyPause{1};
-  // At most so many pictures in a row that no other needs, for viewers who cannot take all.
+  // Pictures in a row that no other needs, for viewers who cannot take all.
   static constexpr int kMaxDroppable = 3;
 
   // A viewer of the stream, when a picture is drawn.

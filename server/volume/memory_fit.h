@@ -10,8 +10,9 @@
 
 namespace thunderhead::volume {
 
-// The product of `lengths`. RESOURCE_EXHAUSTED if so many values of `bytes_each` are more than this
-// machine's memory, or this process's limit; `what` begins the message, e.g. "wrfout_d01: QCLOUD".
+// The product of `lengths`. RESOURCE_EXHAUSTED if that many values of `bytes_each` are more than
+// this machine's memory, or this process's limit; `what` begins the message, e.g. "wrfout_d01:
+// QCLOUD".
 absl::StatusOr<std::size_t> CountThatFits(const std::string& what,
                                           const std::vector<std::size_t>& lengths,
                                           std::size_t bytes_each);

@@ -202,8 +202,8 @@ TEST(MovingSize, PicturesUpToTheLimitKeepTheirsAndLargerOnesTheirShape) {
   scene.output.height_px = 4096;
   const scene::Scene moving = WithOutputScale(scene, MovingOutputScale(scene));
   EXPECT_NEAR(moving.output.width_px, 2.0 * moving.output.height_px, 1.0);
-  EXPECT_NEAR(1.0 * moving.output.width_px * moving.output.height_px, kMostMovingPixels,
-              0.002 * kMostMovingPixels);
+  EXPECT_NEAR(1.0 * moving.output.width_px * moving.output.height_px, kMaxMovingPixels,
+              0.002 * kMaxMovingPixels);
 }
 
 TEST_F(MovingPictureTest, AtRestThePictureIsAsIfNothingHadMoved) {

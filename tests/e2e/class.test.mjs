@@ -630,7 +630,7 @@ test("no error reached the browsers' consoles", () => {
   assert.deepEqual(complaints, []);
 });
 
-// What happens in the room while one student's Wi-Fi fails is seen when it is back, and what the student did meanwhile counts.
+// A student whose Wi-Fi fails sees what happened meanwhile once it is back, and what the student did meanwhile counts.
 for (const [how, fail] of Object.entries({
   "breaks": (link) => link.cut(),
   "falls silent": (link) => link.silence(),

@@ -1,4 +1,4 @@
-// What a server that speaks TLS and wants tokens is given.
+// Certificates and tokens for a server that asks for them.
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 

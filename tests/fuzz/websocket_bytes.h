@@ -1,4 +1,4 @@
-// What a client sends after the upgrade to a WebSocket, of a fuzzer's input.
+// Turns a fuzzer's input into the bytes that a client sends after the upgrade to a WebSocket.
 #pragma once
 
 #include <algorithm>

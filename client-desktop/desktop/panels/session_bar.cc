@@ -43,11 +43,11 @@ void ControlButton(Ui& ui) {
 // Who asks to steer, for the one who answers: as many as fit into a line of `room`, then below.
 void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;
-  constexpr int kMostShown = 3;
+  constexpr int kMaxShown = 3;
   const float longest_name = std::min(200.0F * ui.scale, 0.4F * room);
   int asking = 0;
   for (const v1::Person& person : ui.state.presence.people()) {
-    if (!person.asks_control() || ++asking > kMostShown) continue;
+    if (!person.asks_control() || ++asking > kMaxShown) continue;
     const std::string give =
         absl::StrCat("Give to ", Shortened(ui.state.NameOf(person), longest_name));
     ImGui::PushID(static_cast<int>(person.viewer_id()));
@@ -57,8 +57,8 @@ void Asking(Ui& ui, float room) {
     if (ImGui::Button("No")) ui.session.RefuseControl(person.viewer_id());
     ImGui::PopID();
   }
-  if (asking <= kMostShown) return;
-  const std::string more = absl::StrCat("and ", asking - kMostShown, " more");
+  if (asking <= kMaxShown) return;
+  const std::string more = absl::StrCat("and ", asking - kMaxShown, " more");
   SameLineIfRoom(ButtonWidth(more), room);
   if (ImGui::Button(more.c_str())) ui.choices.panel = Panel::kPeople;
 }
