@@ -6,6 +6,7 @@ import { Code, ConnectError, createRouterTransport } from "@connectrpc/connect";
 import { describe, expect, test } from "vitest";
 import { BackOff } from "../src/core/back_off";
 import { cameraOfPose, type OrbitPose, poseOfCamera, type SpotterPose } from "../src/core/camera";
+import { isSameDomain } from "../src/core/domain";
 import { History } from "../src/core/history";
 import { cameraPath, type MovieDraft, movieScenes, pictureCount } from "../src/core/movie_plan";
 import { RememberedMovies } from "../src/core/movie_work";
@@ -15,6 +16,7 @@ import { withDisplay, withField, withSun, withSunClock, withTime } from "../src/
 import { sceneOfFile, sceneToText, withScene } from "../src/core/scene_file";
 import { RenderJobPictureState_State, RenderJobService } from "../src/gen/thunderhead/v1/job_pb";
 import { Hydrometeor, type Scene, SceneSchema, ToneMap } from "../src/gen/thunderhead/v1/scene_pb";
+import { StormDescriptionSchema, StormTimeSchema } from "../src/gen/thunderhead/v1/storm_pb";
 import { type DrawnPicture, RenderCalls } from "../src/transport/render_calls";
 
 const ORBIT: OrbitPose = {
@@ -152,23 +154,25 @@ test("what an edit has added goes again where nobody put more into it", () => {
   expect(undone?.sun?.clock).toBeUndefined();
 });
 
-test("named views are kept for their storm", () => {
+test("named views are kept for their domain", () => {
   const stored = new Map<string, string>();
   const store = {
     getItem: (key: string) => stored.get(key) ?? null,
     setItem: (key: string, value: string) => void stored.set(key, value),
   };
-  let stormId = "a";
-  const views = new NamedViews(store, () => stormId);
+  let domain = "a";
+  const views = new NamedViews(store, () => domain);
   views.load();
   expect(views.freeName()).toBe("View 1");
-  views.keep({ name: "View 1", camera: cameraOfPose(ORBIT), timeIndex: 1, picture: "" });
+  const time = { validTime: "2013-05-20_20:10:00", timeIndex: 1 };
+  const kept = views.keep({ name: "View 1", camera: cameraOfPose(ORBIT), ...time, picture: "" });
+  expect(kept).toBe(true);
   expect(views.freeName()).toBe("View 2");
-  stormId = "b";
+  domain = "b";
   views.load();
   expect(views.all.value).toEqual([]);
-  stormId = "a";
-  const again = new NamedViews(store, () => stormId);
+  domain = "a";
+  const again = new NamedViews(store, () => domain);
   again.load();
   expect(again.all.value.map(({ name }) => name)).toEqual(["View 1"]);
   expect(poseOfCamera(again.all.value[0]?.camera)).toEqual(ORBIT);
@@ -182,8 +186,9 @@ test("named views are kept for their storm", () => {
 test("two views of one name are two views", () => {
   const views = new NamedViews(undefined, () => "a");
   views.load();
-  const view = { camera: cameraOfPose(ORBIT), picture: "" };
-  views.keep({ ...view, name: "Inflow", timeIndex: 1 });
+  const view = { camera: cameraOfPose(ORBIT), picture: "", validTime: "" };
+  // Without storage it does not outlast the page.
+  expect(views.keep({ ...view, name: "Inflow", timeIndex: 1 })).toBe(false);
   views.keep({ ...view, name: "Inflow", timeIndex: 2 });
   expect(views.all.value.map(({ name }) => name)).toEqual(["Inflow", "Inflow 2"]);
   views.forget("Inflow");
@@ -195,6 +200,40 @@ test("two views of one name are two views", () => {
   const old = new NamedViews({ getItem: () => stored, setItem: () => undefined }, () => "a");
   old.load();
   expect(old.all.value.map(({ name }) => name)).toEqual(["x", "x 2"]);
+});
+
+test("a named view finds its time again where times came before it, and in another run", () => {
+  const times = (...clocks: string[]) =>
+    clocks.map((clock) => create(StormTimeSchema, { validTime: `2013-05-20_${clock}:00` }));
+  const views = new NamedViews(undefined, () => "a");
+  const camera = cameraOfPose(ORBIT);
+  views.keep({ name: "x", camera, validTime: "2013-05-20_20:10:00", timeIndex: 1, picture: "" });
+  const index = (...clocks: string[]) => views.at(times(...clocks))[0]?.timeIndex;
+  expect(index("20:00", "20:10", "20:20")).toBe(1);
+  expect(index("19:50", "20:00", "20:10", "20:20")).toBe(2);
+  expect(index("20:05", "20:15", "20:45")).toBe(0);
+  // Nothing near: the same number, as far as there are times.
+  expect(
+    views.at([create(StormTimeSchema, { validTime: "1999-05-03_00:00:00" })])[0]?.timeIndex,
+  ).toBe(0);
+});
+
+test("storms of one domain share views, whatever their files are called", () => {
+  const grid = {
+    nx: 200,
+    ny: 160,
+    nz: 60,
+    dxM: 1000,
+    dyM: 1000,
+    low: { xM: -1e5, yM: -8e4, zM: 0 },
+  };
+  const here = { latitudeDeg: 35.2, longitudeDeg: -97.4 };
+  const storm = (change: object) => create(StormDescriptionSchema, { grid, ...here, ...change });
+  const a = storm({ id: "wrfout_1" });
+  expect(isSameDomain(a, storm({ id: "run42", grid: { ...grid, nz: 80 } }))).toBe(true);
+  expect(isSameDomain(a, storm({ grid: { ...grid, dxM: 500 } }))).toBe(false);
+  expect(isSameDomain(a, storm({ latitudeDeg: 36.2 }))).toBe(false);
+  expect(isSameDomain(undefined, undefined)).toBe(false);
 });
 
 const DRAFT: MovieDraft = {
@@ -221,6 +260,7 @@ test("a camera path goes the shorter way around, and through every view", () => 
   const view = (pose: OrbitPose | SpotterPose, timeIndex: number) => ({
     name: "",
     camera: cameraOfPose(pose),
+    validTime: "",
     timeIndex,
     picture: "",
   });

@@ -396,27 +396,44 @@ describe("the session client", () => {
     expect(network.joins).toBe(2);
   });
 
-  it("tries at once when told that the network is back", async () => {
+  it("tries soon, but not all at once, when the network is back", async () => {
     const { start, network } = setUp();
-    const { seen, client } = start();
-    await pass(300);
+    const class_ = [0.9, 0.1].map((random) => start(undefined, random));
+    await pass(2_500);
     network.down = true;
     network.break();
-    await pass(5_000);
+    await pass(9_000);
     network.down = false;
-    client.retryNow();
-    await pass(1);
+    for (const { client } of class_) client.networkIsBack();
+    await pass(50);
+    expect(class_.map(({ seen }) => seen.joined.length)).toEqual([1, 1]);
+    await pass(100);
+    expect(class_.map(({ seen }) => seen.joined.length)).toEqual([1, 2]);
+    await pass(1_000);
+    expect(class_.map(({ seen }) => seen.joined.length)).toEqual([2, 2]);
+  });
+
+  it("keeps to the delay of a server that restarts, also when the network is back", async () => {
+    const { start, service, session } = setUp();
+    const { seen, client } = start();
+    await pass(2_500);
+    service.end(session(), "The server restarts", 3_000);
+    await pass(1_000);
+    client.networkIsBack();
+    await pass(1_990);
+    expect(seen.joined).toHaveLength(1);
+    await pass(1_100);
     expect(seen.joined).toHaveLength(2);
   });
 
-  it("tries at once to open its first session too", async () => {
+  it("tries soon to open its first session too", async () => {
     const { start, network } = setUp();
     network.down = true;
     const { seen, client } = start();
     await pass(10_000);
     network.down = false;
-    client.retryNow();
-    await pass(1);
+    client.networkIsBack();
+    await pass(1_100);
     expect(seen.joined).toHaveLength(1);
   });
 

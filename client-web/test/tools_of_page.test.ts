@@ -59,10 +59,10 @@ it("what the probe found goes with the time and with the storm", async () => {
   page.showTime(1);
   expect(page.state.probes.value).toEqual([]);
   await probe();
-  page.showStorm("single");
+  await page.showStorm("single");
   expect(page.state.probes.value).toEqual([]);
   const late = page.probing.through({ x: 0, y: 0 });
-  page.showStorm("supercell");
+  await page.showStorm("supercell");
   await late;
   expect(page.state.probes.value).toEqual([]);
 });
@@ -112,7 +112,7 @@ it("the fields of a storm that is switched to are completed as the technique is"
   const { page } = await visits.visit();
   const count = page.state.fields.value.length;
   expect(count).toBeGreaterThan(0);
-  page.showStorm("single");
+  await page.showStorm("single");
   expect(page.state.fields.value).toHaveLength(0);
   await pass(1000);
   expect(page.state.fields.value).toHaveLength(count);
@@ -142,11 +142,12 @@ it("a named view brings its time back too; who looks around gets its camera", as
   if (camera === undefined) throw new Error("there is no camera");
   teacher.page.showTime(0);
   await pass(500);
-  viewer.page.showView({ name: "a", camera, timeIndex: 2, picture: "" });
+  const view = { name: "a", camera, validTime: "", picture: "" };
+  viewer.page.showView({ ...view, timeIndex: 2 });
   await pass(500);
   expect(viewer.page.state.session.lookingAround.value).toBe(true);
   expect(visits.session.scene.timeIndex ?? 0).toBe(0);
-  teacher.page.showView({ name: "a", camera, timeIndex: 99, picture: "" });
+  teacher.page.showView({ ...view, timeIndex: 99 });
   await pass(500);
   expect(visits.session.scene.timeIndex).toBe(3);
 });
@@ -172,6 +173,7 @@ it("units and what is written over the picture outlast the page", async () => {
 it("B waits for its storm's times, and says where they do not come", async () => {
   const { page } = await visits.visit();
   vi.stubGlobal("window", { devicePixelRatio: 1 });
+  vi.stubGlobal("document", { hidden: false });
   page.comparing.attach(new FakeCanvas() as never);
   page.comparing.change({ stormId: "single" });
   expect(visits.service.sessions).toHaveLength(1);

@@ -2,8 +2,9 @@
 
 import type { Camera, Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
-import { secondsBetween } from "./moment";
-import { withCamera, withOutput, withStorm, withTime } from "./scene";
+import { isSameDomain } from "./domain";
+import { nearestTime, timeLike } from "./nearest_time";
+import { withCamera, withOutput, withRun, withStorm } from "./scene";
 import { formatElapsed } from "./units";
 
 export interface ComparisonChoice {
@@ -29,8 +30,9 @@ export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWit
   const stormId = choice.stormId ?? a.stormId;
   const base = choice.settings ?? a;
   const timeIndex = timeOfB(a, choice, w).index;
-  const storm =
-    base.stormId === stormId ? withTime(base, timeIndex) : withStorm(base, stormId, timeIndex);
+  // The fields' settings go along to another run of the same model.
+  const related = base.stormId === stormId || isSameDomain(w.storm, w.other);
+  const storm = related ? withRun(base, stormId, timeIndex) : withStorm(base, stormId, timeIndex);
   const seen = w.camera === undefined ? storm : withCamera(storm, w.camera);
   return withOutput(seen, { ...w.size, jpegQuality: a.output?.jpegQuality });
 }
@@ -50,27 +52,13 @@ export function timeOfB(
   if (choice.timeIndex !== undefined) return { index: choice.timeIndex, awayS: 0 };
   const index = a.timeIndex ?? 0;
   const stormId = choice.stormId ?? a.stormId;
-  return stormId === a.stormId ? { index, awayS: 0 } : nearestTime(index, w);
-}
-
-// Runs farther apart have no times in common, such as an idealised one and a real one.
-const FARTHEST_S = 2 * 86_400;
-
-// The other storm's time with the nearest date; the one with the same index where no date is near.
-function nearestTime(
-  index: number,
-  { storm, other }: Pick<ComparedWith, "storm" | "other">,
-): TimeOfB {
-  const date = storm?.times[index]?.validTime ?? "";
-  const times = other?.times ?? [];
-  let nearest: TimeOfB | undefined;
-  times.forEach(({ validTime }, at) => {
-    const awayS = date === validTime ? 0 : secondsBetween(date, validTime);
-    if (awayS === undefined || Math.abs(awayS) > FARTHEST_S) return;
-    if (Math.abs(awayS) < Math.abs(nearest?.awayS ?? Infinity)) nearest = { index: at, awayS };
-  });
-  const last = other === undefined ? index : Math.max(0, times.length - 1);
-  return nearest ?? { index: Math.min(index, last), awayS: undefined };
+  if (stormId === a.stormId) return { index, awayS: 0 };
+  // Until B's storm is described, it is asked for the time of the same number.
+  if (w.other === undefined) return { index, awayS: undefined };
+  const { times } = w.other;
+  const validTime = w.storm?.times[index]?.validTime ?? "";
+  const nearest = nearestTime(validTime, times);
+  return nearest ?? { index: timeLike(validTime, index, times), awayS: undefined };
 }
 
 // A sentence about B's time; undefined where it is A's, or one that was chosen.

@@ -35,7 +35,7 @@ export interface MarkingSteps {
 }
 
 const POINT_EVERY_MS = 34;
-// A mark is sent so often at most, while the server is busy with the one before.
+// Attempts at sending a mark, while the server is busy with the one before.
 const MAX_SENDINGS = 25;
 const MAX_REMEMBERED = 64;
 const MAX_CORNERS = 64;

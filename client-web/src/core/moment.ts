@@ -1,5 +1,7 @@
 // A valid time as people read it: the day, the clock in UTC, and the local clock where the storm has a place.
 
+import { formatElapsed } from "./units";
+
 export interface Moment {
   // "2013-05-20"; "day 1" of an idealised run, which starts in year 1; empty where only the elapsed time is known.
   readonly date: string;
@@ -91,4 +93,13 @@ export function minutesAhead(instant: Date, zone: string): number {
     part("minute"),
   );
   return Math.round((local - instant.getTime()) / 60_000);
+}
+
+// "2000-05-20 21:40Z", or what the storm's file has in its place.
+export function timeInWords(
+  time: { readonly validTime: string; readonly elapsedS: number } | undefined,
+): string {
+  if (time === undefined) return "";
+  const { date, clock } = momentOf(time.validTime, formatElapsed(time.elapsedS), undefined);
+  return `${date} ${clock}`.trim();
 }

@@ -1,44 +1,56 @@
-// Cameras with names, kept for each storm in the browser's storage.
+// Cameras with names, kept for each domain in the browser's storage.
 import { fromJson, toJson } from "@bufbuild/protobuf";
 import { signal } from "@preact/signals-core";
 import { type Camera, CameraSchema } from "../gen/thunderhead/v1/scene_pb";
+import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
+import { timeLike } from "./nearest_time";
 import type { TextStore } from "./own_keys";
 
 export interface NamedView {
   readonly name: string;
   readonly camera: Camera;
-  // Of the storm's times.
+  // Of the time that it was kept at: what a storm's times are counted from may change.
+  readonly validTime: string;
   readonly timeIndex: number;
   // A small picture as a data URL; may be empty.
   readonly picture: string;
 }
 
-const KEY = "thunderhead.views";
-const MAX_VIEWS = 24;
+export const VIEWS_ITEM = "thunderhead.views";
+export const MAX_VIEWS = 24;
 
 export class NamedViews {
   readonly #storage: TextStore | undefined;
-  readonly #stormId: () => string;
+  readonly #domain: () => string;
   readonly all = signal<readonly NamedView[]>([]);
 
-  constructor(storage: TextStore | undefined, stormId: () => string) {
+  // `domain` tells which one is shown.
+  constructor(storage: TextStore | undefined, domain: () => string) {
     this.#storage = storage;
-    this.#stormId = stormId;
+    this.#domain = domain;
   }
 
-  // Another storm is shown.
+  // Another domain is shown, or another tab has kept or forgotten a view.
   load(): void {
-    const stored = this.#read()[this.#stormId()];
+    const stored = this.#read()[this.#domain()];
     this.all.value = (Array.isArray(stored) ? stored.flatMap(viewOf) : []).reduce(withView, []);
   }
 
-  // A name that is taken gets a number.
-  keep(view: NamedView): void {
-    this.#write(withView(this.all.peek(), view).slice(-MAX_VIEWS));
+  // A name that is taken gets a number; MAX_VIEWS are kept. False if the view will not outlast the page, for want of storage.
+  keep(view: NamedView): boolean {
+    return this.#write(withView(this.all.peek(), view).slice(-MAX_VIEWS));
   }
 
   forget(name: string): void {
     this.#write(this.all.peek().filter((view) => view.name !== name));
+  }
+
+  // With their times as numbers of these.
+  at(times: readonly StormTime[]): readonly NamedView[] {
+    return this.all.value.map((view) => ({
+      ...view,
+      timeIndex: timeLike(view.validTime, view.timeIndex, times),
+    }));
   }
 
   // "View 3".
@@ -49,19 +61,22 @@ export class NamedViews {
     return `View ${number}`;
   }
 
-  #write(views: readonly NamedView[]): void {
+  #write(views: readonly NamedView[]): boolean {
     this.all.value = views;
     const stored = views.map((view) => ({ ...view, camera: toJson(CameraSchema, view.camera) }));
     try {
-      this.#storage?.setItem(KEY, JSON.stringify({ ...this.#read(), [this.#stormId()]: stored }));
+      const all = { ...this.#read(), [this.#domain()]: stored };
+      this.#storage?.setItem(VIEWS_ITEM, JSON.stringify(all));
+      return this.#storage !== undefined;
     } catch {
-      // Full: they last as long as the page.
+      // Full.
+      return false;
     }
   }
 
   #read(): Record<string, unknown> {
     try {
-      const parsed = JSON.parse(this.#storage?.getItem(KEY) ?? "{}");
+      const parsed = JSON.parse(this.#storage?.getItem(VIEWS_ITEM) ?? "{}");
       return typeof parsed === "object" && parsed !== null ? parsed : {};
     } catch {
       return {};
@@ -78,12 +93,13 @@ function withView(views: readonly NamedView[], view: NamedView): readonly NamedV
 
 // Nothing for what another version of the page wrote.
 function viewOf(stored: unknown): NamedView[] {
-  const { name, camera, timeIndex, picture } = (stored ?? {}) as Record<string, never>;
+  const { name, camera, validTime, timeIndex, picture } = (stored ?? {}) as Record<string, never>;
   try {
     return [
       {
         name: String(name),
         camera: fromJson(CameraSchema, camera ?? null),
+        validTime: typeof validTime === "string" ? validTime : "",
         timeIndex: Number(timeIndex) || 0,
         picture: typeof picture === "string" ? picture : "",
       },

@@ -50,8 +50,9 @@ export class Playback {
     this.#withdrawPaint = undefined;
   }
 
-  // One time forward or back, wrapping around at the ends.
+  // One time forward or back, wrapping around at the ends. Ends play: this time is to stay.
   step(by: number): void {
+    this.pause();
     this.#step(by, false);
   }
 

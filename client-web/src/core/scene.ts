@@ -237,6 +237,11 @@ export function withStorm(scene: Scene, stormId: string, timeIndex: number): Sce
   return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 
+// Shows a time of another run of the same model, from the same place and with the same settings.
+export function withRun(scene: Scene, stormId: string, timeIndex: number): Scene {
+  return changed(scene, { stormId, timeIndex });
+}
+
 // Where the sizes of a field's particles come from: a radius that is given comes first, then the field's own choice,
 // then the scene's.
 function sizesOf(scene: Scene, set: FieldParameters | undefined): ParticleSizes {

@@ -29,6 +29,7 @@ import type {
 import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
+import { domainOf } from "./domain";
 import { type Encoding, encodingOf, pictureBytes } from "./encoding";
 import { History } from "./history";
 import { type Moment, momentOf, secondsBetween } from "./moment";
@@ -215,6 +216,8 @@ export class PageState {
     const storm = this.storm.value;
     return storm?.id === this.stormId.value ? storm : undefined;
   });
+  // Which domain is shown; empty until its storm is described.
+  readonly domain = computed(() => domainOf(this.#describedStorm.value));
   readonly timeCount = computed(() => this.#describedStorm.value?.times.length ?? 0);
   // The camera of the frame on the screen.
   readonly shownCamera = computed(() => {

@@ -118,6 +118,9 @@ export class SessionClient {
   #gone = false;
   #disposed = false;
   #wake: (() => void) | undefined;
+  // Of the wait that goes on.
+  #reschedule: ((delayMs: number) => void) | undefined;
+  #shortenWait: (() => void) | undefined;
 
   // Joins the session of `sessionKey`, or without one opens a new session.
   constructor(
@@ -145,7 +148,7 @@ export class SessionClient {
         const retryInMs = this.#backOff.next(outcome.leastMs);
         const { attempts } = this.#backOff;
         this.#listener.connection({ kind: "lost", reason: outcome.reason, attempts, retryInMs });
-        await this.#wait(retryInMs);
+        await this.#waitFor(retryInMs, outcome.leastMs);
       } else if (outcome.kind === "locked") {
         this.#listener.connection(outcome);
         await this.#wait();
@@ -171,6 +174,12 @@ export class SessionClient {
   // Ends the wait before the next attempt, if there is one.
   retryNow(): void {
     if (!this.#gone) this.#wake?.();
+  }
+
+  // Waits only a little longer, and as long as the server asked for. Whoever lost the same network has it back at the same
+  // moment, so that the attempts are spread again.
+  networkIsBack(): void {
+    this.#shortenWait?.();
   }
 
   // Rejects if the connection is lost; the caller must send the scene again after joined().
@@ -360,16 +369,34 @@ export class SessionClient {
     }
   }
 
+  // Waits for `delayMs`; once the network is back, for a short time, which does not end before `leastMs` of it.
+  async #waitFor(delayMs: number, leastMs: number): Promise<void> {
+    const startedAtMs = performance.now();
+    this.#shortenWait = () => {
+      const passedMs = performance.now() - startedAtMs;
+      this.#backOff.reset();
+      const shorterMs = this.#backOff.next(Math.max(0, leastMs - passedMs));
+      if (passedMs + shorterMs < delayMs) this.#reschedule?.(shorterMs);
+    };
+    await this.#wait(delayMs);
+    this.#shortenWait = undefined;
+  }
+
   // For ever, without a time.
   async #wait(delayMs?: number): Promise<void> {
     await new Promise<void>((resolve) => {
-      const timer = delayMs === undefined ? undefined : setTimeout(resolve, delayMs);
+      let timer = delayMs === undefined ? undefined : setTimeout(resolve, delayMs);
       this.#wake = () => {
         clearTimeout(timer);
         resolve();
       };
+      this.#reschedule = (laterMs) => {
+        clearTimeout(timer);
+        timer = setTimeout(resolve, laterMs);
+      };
     });
     this.#wake = undefined;
+    this.#reschedule = undefined;
   }
 }
 

@@ -11,12 +11,12 @@ import {
 } from "../core/annotations";
 import type { Pose } from "../core/camera";
 import { hexOfColor } from "../core/color";
-import { momentOf } from "../core/moment";
+import { timeInWords } from "../core/moment";
 import { nameOfHydrometeor } from "../core/names";
 import type { Projection } from "../core/projection";
 import { effectiveField } from "../core/scene";
 import type { PageState } from "../core/state";
-import { formatElapsed } from "../core/units";
+import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
 
 // The part that the page's own bars cover.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
@@ -32,7 +32,7 @@ const SHEET_SHARE = 0.46;
 
 export function Annotations({ state }: { state: PageState }) {
   const box = state.pictureBox.value;
-  const content = annotated(state);
+  const content = annotated(labelsOf(state), state.frame.value ?? {}, state.shownTime.value);
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
   // It covers the picture.
@@ -114,30 +114,33 @@ function Drawn({ shape }: { shape: Shape }) {
 
 type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
 
-// A picture other than the one on the screen: its camera and time.
-interface OtherPicture {
-  readonly projection: Projection | undefined;
-  readonly pose: Pose | undefined;
-  readonly timeIndex: number | undefined;
+// What the pictures of a storm and its settings have in common.
+export interface Labels {
+  readonly title: string;
+  readonly times: readonly StormTime[];
+  // Height of the ground above sea level.
+  readonly groundM: number;
+  readonly legend: readonly LegendEntry[];
 }
 
-// Texts over the picture that is shown, or over another one of its scene.
-export function annotated(state: PageState, other?: OtherPicture): Content | undefined {
-  const { projection, pose } = other ?? state.frame.value ?? {};
-  if (projection === undefined) return undefined;
-  const time =
-    other?.timeIndex === undefined
-      ? state.shownTime.value
-      : state.storm.value?.times[other.timeIndex];
-  const moment = time && momentOf(time.validTime, formatElapsed(time.elapsedS), undefined);
+// Of what is shown now. A file that takes a while keeps those of its beginning: another storm may be shown before it is done.
+export function labelsOf(state: PageState): Labels {
   return {
-    projection,
-    pose,
-    groundM: state.storm.value?.grid?.low?.zM ?? 0,
     title: [state.title.value, state.run.value].filter((part) => part !== "").join(" · "),
-    time: moment === undefined ? "" : `${moment.date} ${moment.clock}`.trim(),
+    times: state.storm.value?.times ?? [],
+    groundM: state.storm.value?.grid?.low?.zM ?? 0,
     legend: state.falseColorsShown.value ? legendOf(state) : [],
   };
+}
+
+// Texts over a picture of that camera and time; none without a camera.
+export function annotated(
+  { title, groundM, legend }: Labels,
+  { projection, pose }: { readonly projection?: Projection; readonly pose?: Pose },
+  time: StormTime | undefined,
+): Content | undefined {
+  if (projection === undefined) return undefined;
+  return { projection, pose, groundM, title, time: timeInWords(time), legend };
 }
 
 function legendOf(state: PageState): LegendEntry[] {

@@ -6,15 +6,17 @@ import { effect, untracked } from "@preact/signals-core";
 import { AccessToken } from "../core/access_token";
 import { BackOff } from "../core/back_off";
 import type { CameraKind, Pose } from "../core/camera";
+import { isSameDomain } from "../core/domain";
 import { Marking } from "../core/marking";
-import { type NamedView, NamedViews } from "../core/named_views";
+import { type NamedView, NamedViews, VIEWS_ITEM } from "../core/named_views";
+import { timeLike } from "../core/nearest_time";
 import type { Later } from "../core/newest";
 import { OwnKeys, type TextStore } from "../core/own_keys";
 import { Participant } from "../core/participant";
 import { Playback } from "../core/playback";
 import { keepPreferences, loadPreferences } from "../core/preferences";
 import { RevisionLedger } from "../core/revision_ledger";
-import { withCamera, withStorm, withTime } from "../core/scene";
+import { withCamera, withRun, withStorm, withTime } from "../core/scene";
 import type { Tool } from "../core/session_state";
 import { PageState } from "../core/state";
 import type { PanelName, ToolName } from "../core/tools";
@@ -65,6 +67,8 @@ export class Page {
   readonly #listening = new AbortController();
   readonly #disposals: (() => void)[] = [];
   #running = false;
+  // The last that was asked for.
+  #nextStorm = "";
 
   constructor(
     transport: Transport,
@@ -103,8 +107,17 @@ export class Page {
     this.#storms = new StormsOnServer(this.calls, state);
     this.#map = new StormMap(this.calls, state);
     this.probing = new Probing(this.calls, state);
-    this.views = new NamedViews(store, () => state.stormId.peek());
-    this.keeper = new Keeper(transport, state, this.notes, () => this.views.all.peek(), tabStore);
+    this.views = new NamedViews(store, () => state.domain.peek());
+    this.keeper = new Keeper(
+      transport,
+      state,
+      this.notes,
+      {
+        views: () => this.views.at(state.storm.peek()?.times ?? []),
+        pausePlayback: () => this.playback.pause(),
+      },
+      tabStore,
+    );
     this.addresses = new Addresses(window, state, keys);
     this.addresses.adoptPresentersLink();
     this.#life = new SessionLife({
@@ -208,15 +221,15 @@ export class Page {
   }
 
   // The camera and the time; who looks around has the session's time.
-  showView({ camera, timeIndex }: NamedView): void {
+  showView({ camera, validTime, timeIndex }: NamedView): void {
     const { state } = this;
     if (state.session.editBlock.peek() !== undefined) {
       this.viewpoint.show(camera);
       return;
     }
     this.playback.pause();
-    const last = Math.max(0, state.timeCount.peek() - 1);
-    state.edit((scene) => withCamera(withTime(scene, Math.min(timeIndex, last)), camera));
+    const time = timeLike(validTime, timeIndex, state.storm.peek()?.times ?? []);
+    state.edit((scene) => withCamera(withTime(scene, time), camera));
   }
 
   home(): void {
@@ -239,19 +252,32 @@ export class Page {
     this.state.edit((scene) => withTime(scene, index), record);
   }
 
-  // Shows a storm's last time, as the server does by default.
-  showStorm(stormId: string): void {
+  // Shows another storm: another run of the same model from the same place, with the same settings and at the same valid time,
+  // any other at its last time, as the server does by default.
+  async showStorm(stormId: string): Promise<void> {
     this.playback.pause();
-    const shown = this.state.storms.value.find((storm) => storm.id === stormId);
-    const last = (shown?.timeCount ?? 1) - 1;
-    this.state.edit((scene) => withStorm(scene, stormId, last));
+    const { state } = this;
+    const from = state.storm.peek();
+    this.#nextStorm = stormId;
+    const other = await this.#storms.description(stormId);
+    // Yet another was chosen meanwhile.
+    if (this.#nextStorm !== stormId) return;
+    if (other !== undefined && isSameDomain(from, other)) {
+      const index = state.timeIndex.peek();
+      const time = timeLike(from?.times[index]?.validTime ?? "", index, other.times);
+      state.edit((scene) => withRun(scene, stormId, time));
+      return;
+    }
+    const listed = state.storms.value.find((storm) => storm.id === stormId);
+    const count = other?.times.length ?? listed?.timeCount ?? 1;
+    state.edit((scene) => withStorm(scene, stormId, Math.max(0, count - 1)));
   }
 
   // Asks the server to make the cloud set in the panel, and shows it.
   async makeCloud(): Promise<void> {
     const stormId = await this.#storms.makeCloud();
     if (stormId === undefined) return;
-    this.showStorm(stormId);
+    await this.showStorm(stormId);
     this.home();
   }
 
@@ -264,7 +290,7 @@ export class Page {
     const { storms, stormId } = this.state;
     const deleted = stormId.value;
     const other = storms.value.find((storm) => storm.id !== deleted);
-    if (other !== undefined) this.showStorm(other.id);
+    if (other !== undefined) await this.showStorm(other.id);
     await this.#storms.deleteCloud(deleted);
   }
 
@@ -364,8 +390,16 @@ export class Page {
       () => this.addresses.adoptPresentersLink() && window.location.reload(),
       options,
     );
-    window.addEventListener("online", () => this.#client.retryNow(), options);
-    window.document.addEventListener("visibilitychange", () => this.#life.sendWindow(), options);
+    window.addEventListener("online", () => this.#client.networkIsBack(), options);
+    const sendWindows = () => {
+      this.#life.sendWindow();
+      this.comparing.sendWindow();
+    };
+    window.document.addEventListener("visibilitychange", sendWindows, options);
+    const storage = (event: StorageEvent) => {
+      if (event.key === VIEWS_ITEM) this.views.load();
+    };
+    window.addEventListener("storage", storage, options);
     this.keeper.listen(window, options);
     this.#disposals.push(
       effect(() => {
@@ -374,7 +408,7 @@ export class Page {
       }),
     );
     const stillHere = setInterval(() => {
-      if (!window.document.hidden) this.#life.sendWindow();
+      if (!window.document.hidden) sendWindows();
     }, STILL_HERE_EVERY_MS);
     this.#disposals.push(
       () => clearInterval(stillHere),
@@ -397,7 +431,7 @@ export class Page {
         escape: () => this.#escape(),
       }),
       effect(() => {
-        if (this.state.stormId.value !== "") untracked(() => this.views.load());
+        if (this.state.domain.value !== "") untracked(() => this.views.load());
       }),
       followZones(this.state),
       effect(() => this.#storms.describeAfterRest(this.playback.playing.value)),

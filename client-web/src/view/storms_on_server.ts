@@ -2,6 +2,7 @@
 import { ConnectError } from "@connectrpc/connect";
 import { requestOfCloud } from "../core/cloud";
 import type { PageState } from "../core/state";
+import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
 import type { ServerCalls } from "../transport/server_calls";
 
 const DESCRIBE_REST_MS = 400;
@@ -55,6 +56,15 @@ export class StormsOnServer {
       this.#state.storms.value = await this.#calls.storms();
     } catch {
       // As above.
+    }
+  }
+
+  // Undefined where the server cannot tell now: it says so where the storm is asked for.
+  async description(stormId: string): Promise<StormDescription | undefined> {
+    try {
+      return await this.#calls.describeStorm(stormId, 0);
+    } catch {
+      return undefined;
     }
   }
 

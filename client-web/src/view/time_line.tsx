@@ -92,10 +92,7 @@ function StepButton({ page: { playback }, by, fixed }: StepButtonProps) {
       aria-label={label}
       title={`${label} (${key})`}
       disabled={fixed}
-      onClick={() => {
-        playback.pause();
-        playback.step(by);
-      }}
+      onClick={() => playback.step(by)}
     >
       <Icon name={name} />
     </button>
@@ -114,7 +111,6 @@ function Steps({ page, times, index, fixed }: StepsProps) {
   const { state, playback } = page;
   const last = times.length - 1;
   const every = Math.ceil(times.length / MAX_LABELS);
-  const time = times[index];
   const spoken = state.moment.value;
   return (
     <div class="steps">
@@ -145,7 +141,7 @@ function Steps({ page, times, index, fixed }: StepsProps) {
         type="range"
         data-testid="time"
         aria-label="Valid time"
-        aria-valuetext={`${spoken?.date ?? ""} ${spoken?.clock ?? ""} ${time === undefined ? "" : formatElapsed(time.elapsedS)}`}
+        aria-valuetext={`${spoken?.date ?? ""} ${spoken?.clock ?? ""} ${formatElapsed(state.leadS.value)}`}
         min={0}
         max={last}
         step={1}

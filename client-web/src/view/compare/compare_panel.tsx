@@ -1,7 +1,6 @@
 // Chooses what to compare with: another time, another storm or run, or the settings as they are now.
 import { awayInWords } from "../../core/comparison";
-import { momentOf } from "../../core/moment";
-import { formatElapsed } from "../../core/units";
+import { timeInWords } from "../../core/moment";
 import { Choice, Segments } from "../controls";
 import type { Page } from "../page";
 import { Popover } from "../popover";
@@ -38,11 +37,7 @@ export function Compare({ page }: { page: Page }) {
         value={choice?.timeIndex ?? SAME}
         options={[
           [SAME, "as A"] as const,
-          ...(times ?? []).map((time, at) => {
-            const elapsed = formatElapsed(time.elapsedS);
-            const { date, clock } = momentOf(time.validTime, elapsed, undefined);
-            return [at, `${date} ${clock}`.trim()] as const;
-          }),
+          ...(times ?? []).map((time, at) => [at, timeInWords(time)] as const),
         ]}
         onChange={(at) => comparing.change({ timeIndex: at === SAME ? undefined : at })}
       />

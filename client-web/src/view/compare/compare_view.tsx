@@ -1,8 +1,7 @@
 // B's picture beside or over A's, what each is, and the handle between them.
 import { useEffect, useRef } from "preact/hooks";
-import { momentOf } from "../../core/moment";
+import { timeInWords } from "../../core/moment";
 import { nameOfStorm } from "../../core/storm_names";
-import { formatElapsed } from "../../core/units";
 import type { StormDescription } from "../../gen/thunderhead/v1/storm_pb";
 import type { Page } from "../page";
 
@@ -39,6 +38,7 @@ export function CompareView({ page }: { page: Page }) {
       <div class="half" style={{ clipPath: `inset(0 0 0 ${edge})` }}>
         <p class="compared-name b" data-testid="name-b">
           B · {names.b}
+          <Missing page={page} />
         </p>
       </div>
       {swipes && (
@@ -60,28 +60,32 @@ export function CompareView({ page }: { page: Page }) {
   );
 }
 
+// Why B is not what it should be.
+function Missing({ page: { comparing } }: { page: Page }) {
+  const why = comparing.interrupted.value ?? comparing.problem.value;
+  if (why === undefined) return null;
+  return (
+    <span class="unmet" role="status" data-testid="missing-b">
+      {why}
+    </span>
+  );
+}
+
 // Of what is different, in words.
 function namesOf({ state, comparing }: Page): { readonly a: string; readonly b: string } {
   const choice = comparing.choice.value;
   const index = comparing.time.value.index;
-  const aTime = timeName(state.storm.value, state.timeIndex.value);
+  const aTime = timeInWords(state.storm.value?.times[state.timeIndex.value]);
   const settings = choice?.settings === undefined ? "" : ", kept settings";
   if (choice?.stormId === undefined)
-    return { a: aTime, b: `${timeName(state.storm.value, index)}${settings}` };
+    return { a: aTime, b: `${timeInWords(state.storm.value?.times[index])}${settings}` };
   const named = (storm: StormDescription | undefined, id: string) =>
     storm === undefined ? id : nameOfStorm(storm);
   const other = comparing.other.value;
   const a = { storm: named(state.storm.value, state.stormId.value), time: aTime };
-  const b = { storm: named(other, choice.stormId), time: timeName(other, index) };
+  const b = { storm: named(other, choice.stormId), time: timeInWords(other?.times[index]) };
   return {
     a: `${a.storm}, ${a.time}`,
     b: `${b.storm}${b.time === "" ? "" : `, ${b.time}`}${settings}`,
   };
-}
-
-function timeName(storm: StormDescription | undefined, index: number): string {
-  const time = storm?.times[index];
-  if (time === undefined) return "";
-  const { date, clock } = momentOf(time.validTime, formatElapsed(time.elapsedS), undefined);
-  return `${date} ${clock}`.trim();
 }

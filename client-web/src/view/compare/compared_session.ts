@@ -2,6 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import type { Later } from "../../core/newest";
 import { SceneSync } from "../../core/scene_sync";
+import type { Connection } from "../../core/state";
 import type { Frame } from "../../gen/thunderhead/v1/frame_pb";
 import { Codec, type InteractResponse, type Joined } from "../../gen/thunderhead/v1/interact_pb";
 import { type Scene, SceneSchema } from "../../gen/thunderhead/v1/scene_pb";
@@ -21,6 +22,8 @@ export interface ComparedSteps {
   painted(frame: Frame): void;
   // Something that B cannot show.
   problem(text: string | undefined): void;
+  // Why nothing comes from B's session; undefined once it is there.
+  interrupted(reason: string | undefined): void;
   onNextPaint(callback: () => void): () => void;
   later: Later;
 }
@@ -87,7 +90,12 @@ export class ComparedSession implements SessionListener {
 
   resized(sizePx: { readonly widthPx: number; readonly heightPx: number }): void {
     this.#sizePx = sizePx;
-    this.#client.send({ case: "window", value: { ...sizePx, hidden: false } });
+    this.sendWindow();
+  }
+
+  // A hidden page is sent no pictures.
+  sendWindow(): void {
+    this.#client.send({ case: "window", value: this.#window() });
   }
 
   dispose(): void {
@@ -115,7 +123,7 @@ export class ComparedSession implements SessionListener {
   }
 
   joining(): JoinDetails {
-    return { name: "", window: { ...this.#sizePx, hidden: false }, codecs: [Codec.JPEG] };
+    return { name: "", window: this.#window(), codecs: [Codec.JPEG] };
   }
 
   joined(joined: Joined): void {
@@ -124,8 +132,9 @@ export class ComparedSession implements SessionListener {
     this.#flow.startCall();
   }
 
-  connection(connection: { readonly kind: string }): void {
+  connection(connection: Connection): void {
     if (connection.kind !== "live") this.#sync.hold();
+    this.#steps.interrupted("reason" in connection ? connection.reason : undefined);
   }
 
   message(message: InteractResponse["message"]): void {
@@ -155,5 +164,9 @@ export class ComparedSession implements SessionListener {
   gone(): boolean {
     this.#presenterKey = undefined;
     return true;
+  }
+
+  #window() {
+    return { ...this.#sizePx, hidden: document.hidden };
   }
 }

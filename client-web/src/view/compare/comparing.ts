@@ -37,7 +37,10 @@ export class Comparing {
   // Picture B; undefined while nothing is compared.
   readonly choice = signal<ComparisonChoice | undefined>(undefined);
   readonly frame = signal<Frame | undefined>(undefined);
+  // What B cannot show.
   readonly problem = signal<string | undefined>(undefined);
+  // Why no picture of B comes.
+  readonly interrupted = signal<string | undefined>(undefined);
   // Share of the window that is A's, where one is swiped over the other.
   readonly swipe = signal(0.5);
   // The description of B's storm, if it is another.
@@ -75,7 +78,16 @@ export class Comparing {
       }),
       effect(() => {
         const stormId = this.choice.value?.stormId;
-        untracked(() => void this.#describe(stormId));
+        untracked(() => {
+          this.other.value = undefined;
+          this.undescribed.value = undefined;
+          void this.#describe(stormId);
+        });
+      }),
+      // New times arrive in B's storm, too.
+      effect(() => {
+        void this.#state.storms.value;
+        untracked(() => void this.#describe(this.choice.peek()?.stormId));
       }),
       effect(() => {
         void [this.choice.value?.stormId, this.choice.value?.timeIndex];
@@ -97,6 +109,11 @@ export class Comparing {
 
   end(): void {
     this.choice.value = undefined;
+  }
+
+  // The window was hidden or is seen again, or is still looked at.
+  sendWindow(): void {
+    this.#session?.sendWindow();
   }
 
   // Paints B on this canvas from now on. Returns the function that detaches it.
@@ -193,6 +210,7 @@ export class Comparing {
       this.#session = undefined;
       this.frame.value = undefined;
       this.problem.value = undefined;
+      this.interrupted.value = undefined;
       return;
     }
     if (this.#session !== undefined) {
@@ -208,6 +226,9 @@ export class Comparing {
       problem: (text) => {
         this.problem.value = text;
       },
+      interrupted: (reason) => {
+        this.interrupted.value = reason;
+      },
       onNextPaint: (callback) => this.#steps.onNextPaint(callback),
       later: this.#steps.later,
     });
@@ -218,14 +239,15 @@ export class Comparing {
   }
 
   async #describe(stormId: string | undefined): Promise<void> {
-    this.other.value = undefined;
-    this.undescribed.value = undefined;
     if (stormId === undefined) return;
     try {
       const described = await this.#calls.describeStorm(stormId, 0);
-      if (this.choice.peek()?.stormId === stormId) this.other.value = described;
-    } catch (error) {
       if (this.choice.peek()?.stormId !== stormId) return;
+      this.other.value = described;
+      this.undescribed.value = undefined;
+    } catch (error) {
+      // What was known before stays.
+      if (this.choice.peek()?.stormId !== stormId || this.other.peek() !== undefined) return;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
       this.undescribed.value = `The times of B are not known: ${why}`;
     }

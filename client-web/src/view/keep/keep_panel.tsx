@@ -1,8 +1,8 @@
 // Keeps what is shown: as a picture, a scene, a link or a movie; and takes it back.
 import { useRef, useState } from "preact/hooks";
-import { momentOf } from "../../core/moment";
+import { timeInWords } from "../../core/moment";
 import { type MovieDraft, pictureCount } from "../../core/movie_plan";
-import { formatElapsed, formatNumber } from "../../core/units";
+import { formatNumber } from "../../core/units";
 import { Choice, NumberInput, Section, Switch } from "../controls";
 import { Icon } from "../icons";
 import type { Page } from "../page";
@@ -142,11 +142,7 @@ function Movie({ page }: { page: Page }) {
     from: Math.min(form.from ?? (shown < last ? shown : 0), last),
     to: Math.min(form.to ?? last, last),
   };
-  const options = times.map((time, at) => {
-    const elapsed = formatElapsed(time.elapsedS);
-    const { date, clock } = momentOf(time.validTime, elapsed, undefined);
-    return [at, `${date} ${clock}`.trim()] as const;
-  });
+  const options = times.map((time, at) => [at, timeInWords(time)] as const);
   const views = page.views.all.value.length;
   return (
     <Section title="Movie" testId="keep-movie">
@@ -199,7 +195,7 @@ function Movie({ page }: { page: Page }) {
         onChange={(format) => change({ format })}
       />
       <p class="quiet" data-testid="movie-length">
-        {lengthInWords(pictureCount(draft, page.views.all.value), draft.picturesPerSecond)}
+        {lengthInWords(pictureCount(draft, page.views.at(times)), draft.picturesPerSecond)}
       </p>
       <button
         type="button"

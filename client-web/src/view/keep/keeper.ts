@@ -2,6 +2,7 @@
 import type { Transport } from "@connectrpc/connect";
 import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
+import type { AnnotationChoice } from "../../core/annotations";
 import { type PictureSize, poseOfCamera } from "../../core/camera";
 import { type MovieDraft, movieScenes } from "../../core/movie_plan";
 import { type MovieWork, RememberedMovies } from "../../core/movie_work";
@@ -11,13 +12,29 @@ import { projectionOf } from "../../core/projection";
 import { outputSize, withOutput } from "../../core/scene";
 import { sceneOfFile, sceneToText, withScene } from "../../core/scene_file";
 import type { PageState } from "../../core/state";
+import type { Mark } from "../../gen/thunderhead/v1/interact_pb";
 import type { Scene } from "../../gen/thunderhead/v1/scene_pb";
 import { ImageFormat } from "../../gen/thunderhead/v1/thunderhead_pb";
 import { type DrawnPicture, RenderCalls } from "../../transport/render_calls";
-import { annotated, drawAnnotations } from "../annotations";
+import { annotated, drawAnnotations, type Labels, labelsOf } from "../annotations";
 import { drawMarks } from "../mark_drawing";
 import type { Notes } from "../notes";
 import { couldNotBeLoaded } from "../part";
+
+// What is written into the pictures of a file and its name: as it was when the file was begun.
+interface Caption {
+  readonly labels: Labels;
+  readonly choice: AnnotationChoice;
+  readonly marks: readonly Mark[];
+  // Of the file, without its ending.
+  readonly fileName: string;
+}
+
+export interface KeeperSteps {
+  // Of the storm shown, with their times among its own.
+  views(): readonly NamedView[];
+  pausePlayback(): void;
+}
 
 export interface Work {
   readonly what: string;
@@ -40,7 +57,7 @@ export class Keeper {
   readonly #calls: RenderCalls;
   readonly #state: PageState;
   readonly #notes: Notes;
-  readonly #views: () => readonly NamedView[];
+  readonly #steps: KeeperSteps;
   readonly #remembered: RememberedMovies;
   #working: AbortController | undefined;
   // The file that is being made is not lost with the page.
@@ -52,14 +69,14 @@ export class Keeper {
     transport: Transport,
     state: PageState,
     notes: Notes,
-    views: () => readonly NamedView[],
+    steps: KeeperSteps,
     // Of this tab alone.
     tabStore: TextStore | undefined,
   ) {
     this.#calls = new RenderCalls(transport);
     this.#state = state;
     this.#notes = notes;
-    this.#views = views;
+    this.#steps = steps;
     this.#remembered = new RememberedMovies(tabStore);
   }
 
@@ -94,19 +111,24 @@ export class Keeper {
   }
 
   savePicture({ widthPx, heightPx }: PictureSize): Promise<void> {
+    const caption = this.#caption();
     return this.#make("Picture", async (abort, progress) => {
       const scene = withOutput(this.sceneShown(), outputSize(widthPx, heightPx, 1));
       const picture = await this.#calls.picture(scene, ImageFormat.PNG, abort, progress);
-      const canvas = await this.#annotate(picture);
+      const canvas = await annotate(picture, caption);
       const blob = await canvas.convertToBlob({ type: "image/png" });
       const file = withScene(new Uint8Array(await blob.arrayBuffer()), scene);
-      if (file !== undefined) this.#download(file, "png", "image/png");
+      if (file !== undefined) download(file, `${caption.fileName}.png`, "image/png");
     });
   }
 
   saveScene(): void {
     const text = sceneToText(this.sceneShown());
-    this.#download(new TextEncoder().encode(text), "json", "application/json");
+    download(
+      new TextEncoder().encode(text),
+      `${this.#caption().fileName}.json`,
+      "application/json",
+    );
   }
 
   // Opens a picture or a scene that was saved before.
@@ -115,6 +137,8 @@ export class Keeper {
       const scene = sceneOfFile(new Uint8Array(await file.arrayBuffer()));
       const block = this.#state.session.editBlock.peek();
       if (block !== undefined) throw new Error(`the scene cannot be changed from here: ${block}`);
+      // Its own time is to stay on the screen.
+      this.#steps.pausePlayback();
       this.#state.restore(scene);
       this.#notes.say("file", `The view of ${file.name}`);
     } catch (error) {
@@ -123,19 +147,20 @@ export class Keeper {
   }
 
   saveMovie(draft: MovieDraft): Promise<void> {
+    const caption = this.#caption();
     return this.#make("Movie", async (abort, progress) => {
-      const scenes = movieScenes(this.sceneShown(), draft, this.#views());
+      const scenes = movieScenes(this.sceneShown(), draft, this.#steps.views());
       // Before the server draws pictures that this browser cannot make a movie of.
       await (await movieFile()).assertWritable(draft);
       const stormId = this.#state.stormId.peek();
       const jobId = await this.#calls.beginJob(scenes, `movie of ${stormId}`, abort);
       if (jobId === undefined) {
         const pictures = this.#calls.pictures(scenes, abort);
-        return this.#writeMovie(draft, pictures, scenes.length, progress);
+        return this.#writeMovie(draft, caption, pictures, scenes.length, progress);
       }
       const work = { jobId, pictures: scenes.length, draft, stormId };
       this.#outlivesPage = this.#remembered.remember(work);
-      await this.#writeMovieOfJob(work, abort, progress);
+      await this.#writeMovieOfJob(work, caption, abort, progress);
     });
   }
 
@@ -143,20 +168,22 @@ export class Keeper {
   resumeMovie(stormId: string): void {
     const work = this.#remembered.of(stormId);
     if (work === undefined || this.#working !== undefined) return;
+    const caption = this.#caption();
     void this.#make("Movie", (abort, progress) => {
       this.#outlivesPage = true;
-      return this.#writeMovieOfJob(work, abort, progress);
+      return this.#writeMovieOfJob(work, caption, abort, progress);
     });
   }
 
   async #writeMovieOfJob(
     { jobId, pictures, draft, stormId }: MovieWork,
+    caption: Caption,
     abort: AbortSignal,
     progress: (share: number) => void,
   ): Promise<void> {
     try {
       const drawn = this.#calls.picturesOfJob(jobId, pictures, abort);
-      await this.#writeMovie(draft, drawn, pictures, progress);
+      await this.#writeMovie(draft, caption, drawn, pictures, progress);
     } finally {
       // Done or given up: nobody else fetches them.
       this.#remembered.forget(stormId);
@@ -166,6 +193,7 @@ export class Keeper {
 
   async #writeMovie(
     draft: MovieDraft,
+    caption: Caption,
     pictures: AsyncGenerator<DrawnPicture>,
     count: number,
     progress: (share: number) => void,
@@ -174,11 +202,12 @@ export class Keeper {
     try {
       let done = 0;
       for await (const picture of pictures) {
-        await movie.add(await this.#annotate(picture));
+        await movie.add(await annotate(picture, caption));
         done += 1;
         progress(done / count);
       }
-      this.#download(await movie.finish(), draft.format, `video/${draft.format}`);
+      const { format } = draft;
+      download(await movie.finish(), `${caption.fileName}.${format}`, `video/${format}`);
     } catch (error) {
       await movie.cancel();
       throw error;
@@ -217,38 +246,46 @@ export class Keeper {
     return own === undefined ? scene : { ...scene, camera: own };
   }
 
-  async #annotate({ bytes, drawn }: DrawnPicture): Promise<OffscreenCanvas> {
-    const bitmap = await createImageBitmap(new Blob([bytes]));
-    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
-    const context = canvas.getContext("2d");
-    if (context === null) throw new Error("this browser draws no pictures");
-    context.drawImage(bitmap, 0, 0);
-    bitmap.close();
-    const projection = projectionOf(drawn.view);
-    const choice = this.#state.annotations.peek();
-    if (choice.marks && projection !== undefined)
-      drawMarks(context, this.#state.session.marks.peek(), projection, canvas);
-    const content = annotated(this.#state, {
-      projection,
-      pose: poseOfCamera(drawn.scene?.camera),
-      timeIndex: drawn.scene?.timeIndex,
-    });
-    if (content !== undefined) drawAnnotations(context, content, choice, canvas);
-    return canvas;
-  }
-
-  #download(bytes: Uint8Array<ArrayBuffer>, ending: string, type: string): void {
+  #caption(): Caption {
     const { date, clock } = this.#state.moment.peek() ?? { date: "", clock: "" };
-    const name = [this.#state.stormId.peek(), date, clock]
+    const fileName = [this.#state.stormId.peek(), date, clock]
       .filter((part) => part !== "")
       .join("-")
       .replace(/[^\w.-]+/g, "");
-    const url = URL.createObjectURL(new Blob([bytes], { type }));
-    const link = document.createElement("a");
-    link.href = url;
-    link.download = `${name}.${ending}`;
-    link.click();
-    // The browser has taken the data by then.
-    setTimeout(() => URL.revokeObjectURL(url), 10_000);
+    return {
+      labels: labelsOf(this.#state),
+      choice: this.#state.annotations.peek(),
+      marks: this.#state.session.marks.peek(),
+      fileName,
+    };
   }
+}
+
+async function annotate(
+  { bytes, drawn }: DrawnPicture,
+  { labels, choice, marks }: Caption,
+): Promise<OffscreenCanvas> {
+  const bitmap = await createImageBitmap(new Blob([bytes]));
+  const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+  const context = canvas.getContext("2d");
+  if (context === null) throw new Error("this browser draws no pictures");
+  context.drawImage(bitmap, 0, 0);
+  bitmap.close();
+  const projection = projectionOf(drawn.view);
+  if (choice.marks && projection !== undefined) drawMarks(context, marks, projection, canvas);
+  const pose = poseOfCamera(drawn.scene?.camera);
+  const time = labels.times[drawn.scene?.timeIndex ?? 0];
+  const content = annotated(labels, { projection, pose }, time);
+  if (content !== undefined) drawAnnotations(context, content, choice, canvas);
+  return canvas;
+}
+
+function download(bytes: Uint8Array<ArrayBuffer>, name: string, type: string): void {
+  const url = URL.createObjectURL(new Blob([bytes], { type }));
+  const link = document.createElement("a");
+  link.href = url;
+  link.download = name;
+  link.click();
+  // The browser has taken the data by then.
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

@@ -1,6 +1,7 @@
 // Views to come back to: a click on one shows it, the last button keeps the present one.
 import { useState } from "preact/hooks";
 import { cameraOfPose } from "../../core/camera";
+import { MAX_VIEWS } from "../../core/named_views";
 import type { Page } from "../page";
 
 const THUMBNAIL = { widthPx: 128, heightPx: 80 };
@@ -11,12 +12,18 @@ export function NamedViews({ page }: { page: Page }) {
   const keep = () => {
     const pose = page.state.viewPose.peek();
     if (pose === undefined || name === undefined) return;
-    page.views.keep({
+    const kept = page.views.keep({
       name: name.trim() || page.views.freeName(),
       camera: cameraOfPose(pose),
+      validTime: page.state.shownTime.peek()?.validTime ?? "",
       timeIndex: page.state.timeIndex.peek(),
       picture: thumbnail(page.screen.canvas),
     });
+    if (!kept)
+      page.notes.say(
+        "view",
+        "This browser has no room for it: the view lasts as long as this page",
+      );
     setName(undefined);
   };
   return (
@@ -45,7 +52,11 @@ export function NamedViews({ page }: { page: Page }) {
           </li>
         ))}
       </ul>
-      {name === undefined ? (
+      {views.length >= MAX_VIEWS ? (
+        <p class="quiet" data-testid="views-full">
+          {MAX_VIEWS} views are kept. Forget one to keep another.
+        </p>
+      ) : name === undefined ? (
         <button
           type="button"
           data-testid="keep-view"

@@ -1,0 +1,19 @@
+// The domain of a storm. Runs of one model have the same one, so that a place to look from in one is such a place in another.
+import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
+
+type Placed = Pick<StormDescription, "grid" | "latitudeDeg" | "longitudeDeg">;
+
+// The same text for storms of one domain; empty where the storm is not known. Heights do not count: layers may move.
+export function domainOf(storm: Placed | undefined): string {
+  const grid = storm?.grid;
+  if (storm === undefined || grid === undefined) return "";
+  const { nx, ny, dxM, dyM, low } = grid;
+  // Degrees to about a metre.
+  const place = [storm.latitudeDeg, storm.longitudeDeg].map((degrees) => degrees?.toFixed(5) ?? "");
+  const lengths = [dxM, dyM, low?.xM ?? 0, low?.yM ?? 0].map((metres) => metres.toFixed(1));
+  return [nx, ny, ...lengths, ...place].join(" ");
+}
+
+export function isSameDomain(a: Placed | undefined, b: Placed | undefined): boolean {
+  return domainOf(a) !== "" && domainOf(a) === domainOf(b);
+}
