@@ -41,6 +41,10 @@ export function describeStorm(stormId: string, timeIndex: number, later = 0) {
     id: stormId,
     title: stormId,
     timeIndex,
+    // Of one model's runs; the others' domains are not known.
+    grid: ["supercell", "late"].includes(stormId)
+      ? { nx: 200, ny: 160, nz: 68, dxM: 1000, dyM: 1000, dzM: 300 }
+      : undefined,
     times: Array.from({ length: count }, (_, index) => ({
       index,
       validTime: `0001-01-01T0${Math.floor((index + 1) / 3)}:${((index + 1) % 3) * 2}0:00Z`,

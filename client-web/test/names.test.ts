@@ -1,11 +1,10 @@
 import { describe, expect, it } from "vitest";
 import { nameOfHydrometeor, namesOfPhases } from "../src/core/names";
 import {
-  Hydrometeor,
+  type Hydrometeor,
   HydrometeorSchema,
   PhaseFunction_Kind,
 } from "../src/gen/thunderhead/v1/scene_pb";
-import { colorOfField } from "../src/view/tools/field_colors";
 
 describe("names of enumerators", () => {
   it("are their words, in the schema's order", () => {
@@ -20,13 +19,5 @@ describe("names of enumerators", () => {
     expect(names.get(PhaseFunction_Kind.ICE_COLUMNS)).toBe("Ice columns");
     expect(names.get(PhaseFunction_Kind.UNSPECIFIED)).toBeUndefined();
     expect(new Set(names.values()).size).toBe(8);
-  });
-});
-
-describe("colours of fields", () => {
-  it("are their own", () => {
-    const colors = HydrometeorSchema.values.map(({ number }) => colorOfField(number));
-    expect(new Set(colors).size).toBe(colors.length);
-    expect(colorOfField(Hydrometeor.CLOUD)).toBe("#e69f00");
   });
 });

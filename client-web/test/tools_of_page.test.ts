@@ -2,10 +2,14 @@
 import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { FIRST_ANNOTATIONS } from "../src/core/annotations";
-import { poseOfCamera } from "../src/core/camera";
-import { withDisplay } from "../src/core/scene";
+import { type Pose, poseOfCamera } from "../src/core/camera";
+import { joined, letterStrokes } from "../src/core/lettering";
+import { Marking } from "../src/core/marking";
+import type { WorldRay } from "../src/core/projection";
+import { withDisplay, withField } from "../src/core/scene";
+import { sceneToText } from "../src/core/scene_file";
 import { lengthUnits } from "../src/core/units";
-import { SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
+import { Hydrometeor, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { readLink } from "../src/view/link";
 import { FakeCanvas, FakeStorage } from "./fake_window";
 import { HOME, pass, Visits } from "./view_page";
@@ -65,6 +69,86 @@ it("what the probe found goes with the time and with the storm", async () => {
   await page.showStorm("supercell");
   await late;
   expect(page.state.probes.value).toEqual([]);
+});
+
+it("another run of the same model is seen from the same place, with the same settings", async () => {
+  const { page } = await visits.visit();
+  visits.service.grow();
+  await pass(1000);
+  const pose = page.state.pose.value;
+  page.move((from) => ({ ...from, azimuthDeg: 77 }) as Pose);
+  page.state.edit((scene) => withField(scene, Hydrometeor.RAIN, { visible: false }));
+  page.showTime(2);
+  await pass(1000);
+  await page.showStorm("late");
+  await pass(1000);
+  const rain = () =>
+    page.state.fields.value.find(({ hydrometeor }) => hydrometeor === Hydrometeor.RAIN)?.visible;
+  expect(page.state.stormId.value).toBe("late");
+  expect(page.state.pose.value).toEqual({ ...pose, azimuthDeg: 77 });
+  expect(rain()).toBe(false);
+  expect(page.state.timeIndex.value).toBe(0);
+  await page.showStorm("single");
+  await pass(1000);
+  expect(page.state.pose.value).not.toEqual({ ...pose, azimuthDeg: 77 });
+  expect(rain()).not.toBe(false);
+});
+
+it("of two storms that are chosen at once the last is shown", async () => {
+  const { page } = await visits.visit();
+  visits.service.grow();
+  await pass(1000);
+  await Promise.all([page.showStorm("late"), page.showStorm("single")]);
+  expect(page.state.stormId.value).toBe("single");
+});
+
+it("a step in time ends play, as does a file that is opened", async () => {
+  const { page } = await visits.visit();
+  page.playback.play();
+  page.playback.step(1);
+  expect(page.playback.playing.value).toBe(false);
+  page.playback.play();
+  await page.keeper.open(new File([sceneToText(page.state.scene.value)], "a.json"));
+  expect(page.playback.playing.value).toBe(false);
+});
+
+it("words stay in the picture, whole", async () => {
+  const { page } = await visits.visit();
+  const box = { left: 100, top: 50, width: 300, height: 200 };
+  const projection = page.state.frame.value?.projection;
+  if (projection === undefined) throw new Error("no picture");
+  const rays: (readonly WorldRay[])[] = [];
+  const marking = new Marking(page.state.session, {
+    picture: () => ({ box, projection, distanceM: 1 }),
+    point: () => undefined,
+    addMark: (all) => BigInt(rays.push(all)),
+    later: () => () => undefined,
+  });
+  const written = (words: string) => joined(letterStrokes(words, { left: 0, top: 0 }, 12)).length;
+  for (const words of ["HAIL 2 CM", "ROTATING WALL CLOUD AND TAIL CLOUD"]) {
+    marking.words.value = words;
+    // At an edge, and in the middle.
+    marking.write({ left: 395, top: 52 });
+    marking.markMiddle("text");
+    for (const each of rays.splice(0)) expect(each).toHaveLength(written(words));
+  }
+});
+
+it("B that cannot be opened says why, also where no session may be opened", async () => {
+  const { page } = await visits.visit();
+  vi.stubGlobal("window", { devicePixelRatio: 1 });
+  vi.stubGlobal("document", { hidden: false });
+  page.comparing.attach(new FakeCanvas() as never);
+  page.comparing.change({});
+  await pass(1000);
+  expect(page.comparing.interrupted.value).toBeUndefined();
+  page.comparing.end();
+  visits.network.locked = true;
+  page.comparing.change({});
+  await pass(1000);
+  expect(page.comparing.interrupted.value).toBe("this server needs a token");
+  page.comparing.end();
+  expect(page.comparing.interrupted.value).toBeUndefined();
 });
 
 it("no cores of another time stay where the map of this one does not come", async () => {

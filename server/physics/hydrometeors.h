@@ -87,33 +87,39 @@ struct HydrometeorRow {
 
 // The asymmetry parameters are for the formulas, should one be chosen: water 0.85 (Mie, r_e 10 um,
 // 0.55 um, rounded down for the broad part of the lobe), smooth ice crystals 0.78, roughened and
-// rimed ice 0.76.
+// rimed ice 0.76. The false colours are Okabe and Ito's (#E69F00, #56B4E9, #CC79A7, #F0E442,
+// #009E73, #D55E00), which people of any colour vision tell apart.
 inline constexpr std::array kHydrometeorRows = {
-    HydrometeorRow{Hydrometeor::kCloud,
-                   "cloud",
-                   1e-5F,
-                   {1e-5F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {1.0F, 0.0F, 0.0F}}},
+    HydrometeorRow{
+        Hydrometeor::kCloud,
+        "cloud",
+        1e-5F,
+        {1e-5F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {0.7913F, 0.3467F, 0.0F}}},
     HydrometeorRow{
         Hydrometeor::kRain,
         "rain",
         1e-3F,
-        {6.7e-4F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {0.0F, 0.0F, 1.0F}}},
-    HydrometeorRow{Hydrometeor::kIce,
-                   "ice",
-                   1e-3F,
-                   {3e-5F, 917.0F, 1.0F, {PhaseKind::kIceColumns, 0.78F}, {1.0F, 0.0F, 1.0F}}},
-    HydrometeorRow{Hydrometeor::kSnow,
-                   "snow",
-                   2e-3F,
-                   {9.2e-4F, 100.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {1.0F, 1.0F, 0.0F}}},
-    HydrometeorRow{Hydrometeor::kGraupel,
-                   "graupel",
-                   2.5e-3F,
-                   {9.5e-4F, 500.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 0.0F}}},
-    HydrometeorRow{Hydrometeor::kHail,
-                   "hail",
-                   1e-2F,
-                   {2.6e-3F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 1.0F, 1.0F}}},
+        {6.7e-4F, 1000.0F, 1.0F, {PhaseKind::kWaterDroplets, 0.85F}, {0.09306F, 0.4564F, 0.8148F}}},
+    HydrometeorRow{
+        Hydrometeor::kIce,
+        "ice",
+        1e-3F,
+        {3e-5F, 917.0F, 1.0F, {PhaseKind::kIceColumns, 0.78F}, {0.6038F, 0.1912F, 0.3864F}}},
+    HydrometeorRow{
+        Hydrometeor::kSnow,
+        "snow",
+        2e-3F,
+        {9.2e-4F, 100.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.8714F, 0.7758F, 0.05448F}}},
+    HydrometeorRow{
+        Hydrometeor::kGraupel,
+        "graupel",
+        2.5e-3F,
+        {9.5e-4F, 500.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.0F, 0.3419F, 0.1714F}}},
+    HydrometeorRow{
+        Hydrometeor::kHail,
+        "hail",
+        1e-2F,
+        {2.6e-3F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.6654F, 0.1119F, 0.0F}}},
 };
 
 // The defaults of each hydrometeor.

@@ -67,6 +67,7 @@ const LETTERS: Readonly<Record<string, string>> = {
 
 const ADVANCE = 6;
 const HEIGHT = 6;
+const LETTER_WIDTH = 4;
 // The most corners of a mark that the session takes.
 const MAX_CORNERS = 256;
 // Simple ones: others take more of the corners.
@@ -112,6 +113,12 @@ export function letterStrokes(words: string, place: StrokePoint, heightPx: numbe
       return points.length > 1 ? [points] : [];
     }),
   );
+}
+
+// From the left of the first letter to the right of the last, in letters `heightPx` high.
+export function wordsWidthPx(words: string, heightPx: number): number {
+  const count = written(words).letters.length;
+  return count === 0 ? 0 : (heightPx / HEIGHT) * (ADVANCE * count - (ADVANCE - LETTER_WIDTH));
 }
 
 // A sentence about the letters that letterStrokes() leaves out; undefined where it writes everything.

@@ -1,6 +1,6 @@
 // The tools that show something to everybody: a pointer and a pen. They turn places in the picture into rays.
 import { signal } from "@preact/signals-core";
-import { arrowStrokes, joined, letterStrokes, ringStroke } from "./lettering";
+import { arrowStrokes, joined, letterStrokes, ringStroke, wordsWidthPx } from "./lettering";
 import { type Later, Newest } from "./newest";
 import { type Box, picturePointAt } from "./picture_box";
 import { type Projection, pointOnRay, rayAt, type WorldRay } from "./projection";
@@ -40,6 +40,8 @@ const MAX_SENDINGS = 25;
 const MAX_REMEMBERED = 64;
 const MAX_CORNERS = 64;
 const LETTER_PX = 22;
+// Between words and the picture's edge.
+const EDGE_PX = 4;
 const RING_PX = 60;
 const ARROW_PX = 70;
 // Shorter strokes are clicks.
@@ -122,11 +124,22 @@ export class Marking {
     return { pointer: this.#pointer, pen: this.#pen, arrow: this.#arrow, text: this.#text }[tool];
   }
 
-  // Writes the words with their first letter's corner at a place.
-  write({ left, top }: StrokePoint): void {
+  // Writes the words from a place on, or around it. Where they would leave the picture they are moved, and where they are wider
+  // than it they are smaller.
+  write({ left, top }: StrokePoint, from: "start" | "middle" = "start"): void {
     const words = this.words.peek().trim();
-    if (words === "") return;
-    this.#addMark(joined(letterStrokes(words, { left, top: top - LETTER_PX / 2 }, LETTER_PX)));
+    const box = this.#steps.picture()?.box;
+    if (words === "" || box === undefined) return;
+    const most = wordsWidthPx(words, LETTER_PX);
+    const heightPx = LETTER_PX * Math.min(1, (box.width - 2 * EDGE_PX) / Math.max(1, most));
+    const widthPx = wordsWidthPx(words, heightPx);
+    const within = (at: number, low: number, room: number) =>
+      Math.max(low + EDGE_PX, Math.min(at, low + room - EDGE_PX));
+    const place = {
+      left: within(from === "middle" ? left - widthPx / 2 : left, box.left, box.width - widthPx),
+      top: within(top - heightPx / 2, box.top, box.height - heightPx),
+    };
+    this.#addMark(joined(letterStrokes(words, place, heightPx)));
   }
 
   // For who has no mouse: a ring around the middle of the picture, an arrow to it, the words beside it, the pointer on it.
@@ -134,7 +147,7 @@ export class Marking {
     const box = this.#steps.picture()?.box;
     if (box === undefined) return;
     const middle = { left: box.left + box.width / 2, top: box.top + box.height / 2 };
-    if (tool === "text") this.write(middle);
+    if (tool === "text") this.write(middle, "middle");
     else if (tool === "pointer") this.#pointAt(middle);
     else if (tool === "pen") this.#addMark(ringStroke(middle, RING_PX));
     else {

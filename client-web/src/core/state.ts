@@ -14,6 +14,7 @@ import type { TimesInMemory } from "../gen/thunderhead/v1/interact_pb";
 import type { GetStormMapResponse } from "../gen/thunderhead/v1/probe_pb";
 import {
   type Camera,
+  type Hydrometeor,
   type Preset,
   type Rendering,
   type Scene,
@@ -29,6 +30,7 @@ import type {
 import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
 import { type CloudDraft, FIRST_CLOUD } from "./cloud";
+import { hexOfColor } from "./color";
 import { domainOf } from "./domain";
 import { type Encoding, encodingOf, pictureBytes } from "./encoding";
 import { History } from "./history";
@@ -47,7 +49,14 @@ import {
   techniqueNameOf,
   withSettings,
 } from "./rendering";
-import { LIMITS, withCamera, withCompleted, withOutput, withRendering } from "./scene";
+import {
+  effectiveField,
+  LIMITS,
+  withCamera,
+  withCompleted,
+  withOutput,
+  withRendering,
+} from "./scene";
 import type { Edit } from "./scene_sync";
 import { SessionState } from "./session_state";
 import { nameOfRun } from "./storm_names";
@@ -104,6 +113,8 @@ export interface Notice {
   readonly text: string;
   readonly severity: "problem" | "note";
 }
+
+const UNKNOWN_COLOR = { red: 0.5, green: 0.5, blue: 0.5 };
 
 export class PageState {
   readonly #scene = signal<Scene>(create(SceneSchema));
@@ -287,6 +298,14 @@ export class PageState {
       describeSun(this.sunDirection.value),
     ].join(". ");
   });
+
+  // A field's colour in false colours, charts and tables, as "#rrggbb": the scene's, else the server's.
+  colorOf(hydrometeor: Hydrometeor): string {
+    void this.fields.value;
+    const field = this.storm.value?.fields.find((each) => each.hydrometeor === hydrometeor);
+    const { falseColor } = effectiveField(this.#scene.peek(), hydrometeor, field?.defaults);
+    return hexOfColor(falseColor ?? UNKNOWN_COLOR);
+  }
 
   // The listener is called with each edit by the user, after it was applied.
   onEdit(listener: (edit: Edit) => void): void {

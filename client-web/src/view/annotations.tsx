@@ -10,7 +10,6 @@ import {
   widthForPx,
 } from "../core/annotations";
 import type { Pose } from "../core/camera";
-import { hexOfColor } from "../core/color";
 import { timeInWords } from "../core/moment";
 import { nameOfHydrometeor } from "../core/names";
 import type { Projection } from "../core/projection";
@@ -146,9 +145,8 @@ export function annotated(
 function legendOf(state: PageState): LegendEntry[] {
   void state.fields.value;
   return (state.storm.value?.fields ?? []).flatMap(({ hydrometeor, defaults }) => {
-    const { visible, falseColor } = effectiveField(state.scene.peek(), hydrometeor, defaults);
-    if (visible === false || falseColor === undefined) return [];
-    return [{ name: nameOfHydrometeor(hydrometeor), color: hexOfColor(falseColor) }];
+    if (effectiveField(state.scene.peek(), hydrometeor, defaults).visible === false) return [];
+    return [{ name: nameOfHydrometeor(hydrometeor), color: state.colorOf(hydrometeor) }];
   });
 }
 

@@ -15,6 +15,8 @@ interface SliderProps {
   readonly value: number | undefined;
   // The value that the reset button restores; absent is the schema's default.
   readonly initial?: number | undefined;
+  // Of a value that the server may choose: it can be set while it is not known, and given back.
+  readonly giveBack?: (() => void) | undefined;
   readonly testId: string;
   // True if a change costs seconds: reported when the slider is released or rests, not at each step.
   readonly afterRest?: boolean;
@@ -57,7 +59,7 @@ export function useTyped(value: string, tell: (input: HTMLInputElement) => boole
 
 // A number as a slider and as text, with its unit.
 export function Slider(props: SliderProps) {
-  const { label, limits, initial, testId, afterRest, onChange } = props;
+  const { label, limits, initial, giveBack, testId, afterRest, onChange } = props;
   const { held, hold, release } = useHeld(onChange);
   const value = held ?? props.value;
   const id = useId();
@@ -66,6 +68,8 @@ export function Slider(props: SliderProps) {
   const steps =
     limits.integer && !limits.logarithmic ? Math.min(range, SLIDER_STEPS) : SLIDER_STEPS;
   const known = value !== undefined;
+  const usable = known || giveBack !== undefined;
+  const unknown = giveBack === undefined ? "not known yet" : "left to the server";
   const first = initial ?? limits.defaultValue;
   const changed = known && first !== undefined && !nearlyEqual(value, first);
   const number = useTyped(known ? formatNumber(value * unit.factor) : "", (input) => {
@@ -91,12 +95,25 @@ export function Slider(props: SliderProps) {
             ↺
           </button>
         )}
+        {known && first === undefined && giveBack !== undefined && (
+          <button
+            type="button"
+            class="reset"
+            aria-label={`Leave ${label} to the server`}
+            title="Leave it to the server"
+            data-testid={`${testId}-give-back`}
+            onClick={giveBack}
+          >
+            ↺
+          </button>
+        )}
         <input
           type="number"
           class="number"
           aria-label={`${label}${unit.symbol === "" ? "" : ` in ${unit.symbol}`}`}
           data-testid={`${testId}-number`}
-          disabled={!known}
+          disabled={!usable}
+          placeholder={known ? undefined : "—"}
           min={limits.minimum * unit.factor}
           max={limits.maximum * unit.factor}
           step="any"
@@ -110,12 +127,12 @@ export function Slider(props: SliderProps) {
         id={id}
         type="range"
         data-testid={testId}
-        disabled={!known}
+        disabled={!usable}
         min={0}
         max={steps}
         step={1}
         value={known ? Math.round(positionOfValue(value, limits) * steps) : 0}
-        aria-valuetext={known ? formatQuantity(value, limits) : "not known yet"}
+        aria-valuetext={known ? formatQuantity(value, limits) : unknown}
         onInput={(event) => {
           const next = valueAtPosition(event.currentTarget.valueAsNumber / steps, limits);
           if (afterRest) hold(next);

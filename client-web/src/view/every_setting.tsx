@@ -62,10 +62,9 @@ function Setting({ state, parameter }: { state: PageState; parameter: Parameter 
           <Slider
             label={label}
             limits={parameter.limits}
-            value={
-              (value as number | undefined) ??
-              parameter.limits.defaultValue ??
-              parameter.limits.minimum
+            value={(value as number | undefined) ?? parameter.limits.defaultValue}
+            giveBack={
+              parameter.limits.defaultValue === undefined ? () => set(undefined) : undefined
             }
             testId={testId}
             onChange={set}

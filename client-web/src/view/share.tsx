@@ -3,6 +3,7 @@
 import { useMemo, useState } from "preact/hooks";
 import qrcode from "qrcode-generator";
 import type { SessionRules } from "../gen/thunderhead/v1/interact_pb";
+import { OnlyHere } from "./only_here";
 import type { Page } from "./page";
 import { Popover } from "./popover";
 
@@ -71,18 +72,6 @@ function LinkRow({ who, link, copyId, copy }: LinkRowProps) {
         Copy link
       </button>
     </div>
-  );
-}
-
-// A link to localhost opens for nobody else.
-function OnlyHere({ host }: { host: string | undefined }) {
-  if (host === undefined) return null;
-  return (
-    <p class="only-here" role="note" data-testid="only-here">
-      <strong>Others cannot open this link:</strong> {host} is only this computer. Start the server
-      with <code>--http</code> on an address that they can reach, and open this page by that
-      address.
-    </p>
   );
 }
 

@@ -1,10 +1,13 @@
 // Keeps what is shown: as a picture, a scene, a link or a movie; and takes it back.
 import { useRef, useState } from "preact/hooks";
+import { clampToLimits } from "../../core/limits";
 import { timeInWords } from "../../core/moment";
 import { type MovieDraft, pictureCount } from "../../core/movie_plan";
+import { LIMITS } from "../../core/scene";
 import { formatNumber } from "../../core/units";
 import { Choice, NumberInput, Section, Switch } from "../controls";
 import { Icon } from "../icons";
+import { OnlyHere } from "../only_here";
 import type { Page } from "../page";
 import { Popover } from "../popover";
 import { workInWords } from "./keeper";
@@ -84,14 +87,17 @@ function SizeChoice({ testId, chosen }: { testId: string; chosen: ReturnType<typ
             label="Width, pixels"
             testId={`${testId}-width`}
             value={own.widthPx}
-            onChange={(widthPx) => setOwn({ ...own, widthPx })}
+            onChange={(px) => setOwn({ ...own, widthPx: clampToLimits(px, LIMITS.width) })}
           />
           <NumberInput
             label="Height, pixels"
             testId={`${testId}-height`}
             value={own.heightPx}
-            onChange={(heightPx) => setOwn({ ...own, heightPx })}
+            onChange={(px) => setOwn({ ...own, heightPx: clampToLimits(px, LIMITS.height) })}
           />
+          <p class="quiet">
+            At most {LIMITS.width.maximum} × {LIMITS.height.maximum}.
+          </p>
         </>
       )}
     </>
@@ -230,6 +236,7 @@ function SceneAndLink({ page }: { page: Page }) {
           Copy a link to this view
         </button>
       </div>
+      <OnlyHere host={page.addresses.loopbackHost} />
       <input
         ref={file}
         type="file"

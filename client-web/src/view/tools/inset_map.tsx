@@ -1,6 +1,7 @@
 // The inset map: the storm's column water path, coasts and borders, the camera with its angle of view, the sun. A click stands
 // there, a drag from there looks, a double click turns around that place.
 import { useEffect, useRef, useState } from "preact/hooks";
+import type { TopDownPose } from "../../core/camera";
 import { type Extent, extentOf, placeOnMap, standOf, worldOfMap } from "../../core/map_frame";
 import type { PageState } from "../../core/state";
 import { formatLength, roundLength } from "../../core/units";
@@ -252,6 +253,7 @@ const WEDGE = 42;
 
 function CameraOnMap({ state, extent }: { state: PageState; extent: Extent }) {
   const pose = state.viewPose.value;
+  if (pose?.kind === "topDown") return <SeenFromAbove pose={pose} state={state} extent={extent} />;
   const stand = standOf(pose);
   if (stand === undefined) return null;
   const place = placeOnMap(extent, stand.placeM);
@@ -275,6 +277,39 @@ function CameraOnMap({ state, extent }: { state: PageState; extent: Extent }) {
         <circle class="map-target" cx={SIZE * target.right} cy={SIZE * target.down} r={2} />
       )}
       <circle class="map-camera" cx={x} cy={y} r={2.2} data-testid="map-camera" />
+    </>
+  );
+}
+
+interface FromAbove {
+  readonly pose: TopDownPose;
+  readonly state: PageState;
+  readonly extent: Extent;
+}
+
+// The part of the ground that a picture from above shows.
+function SeenFromAbove({ pose: { centerM, widthM }, state, extent }: FromAbove) {
+  const { widthPx = 1, heightPx = 1 } = state.frame.value ?? {};
+  const half = [widthM / 2, (widthM / 2) * (heightPx / widthPx)] as const;
+  const corner = placeOnMap(extent, [centerM[0] - half[0], centerM[1] + half[1]]);
+  const other = placeOnMap(extent, [centerM[0] + half[0], centerM[1] - half[1]]);
+  const middle = placeOnMap(extent, centerM);
+  return (
+    <>
+      <rect
+        class="map-wedge"
+        x={SIZE * corner.right}
+        y={SIZE * corner.down}
+        width={SIZE * (other.right - corner.right)}
+        height={SIZE * (other.down - corner.down)}
+      />
+      <circle
+        class="map-camera"
+        cx={SIZE * middle.right}
+        cy={SIZE * middle.down}
+        r={2.2}
+        data-testid="map-camera"
+      />
     </>
   );
 }

@@ -13,7 +13,6 @@ import {
   ProbeRayResponse_Seen as Seen,
 } from "../../gen/thunderhead/v1/probe_pb";
 import type { Page } from "../page";
-import { colorOfField } from "./field_colors";
 import { RayChart } from "./ray_chart";
 
 export function ProbeTool({ page }: { page: Page }) {
@@ -84,7 +83,7 @@ function Found({ state, last }: { state: PageState; last: Probed }) {
         </thead>
         <tbody>
           {found.fields.map((field) => (
-            <FieldRow key={field.variable} field={field} />
+            <FieldRow key={field.variable} state={state} field={field} />
           ))}
         </tbody>
       </table>
@@ -118,12 +117,12 @@ function Where({ place }: { place: RayPlace }) {
   );
 }
 
-function FieldRow({ field }: { field: FieldAlongRay }) {
+function FieldRow({ state, field }: { state: PageState; field: FieldAlongRay }) {
   const { factor, symbol } = readable(field.units);
   return (
     <tr data-testid={`probe-${nameOfHydrometeor(field.hydrometeor).toLowerCase()}`}>
       <th scope="row">
-        <span class="key-swatch" style={{ background: colorOfField(field.hydrometeor) }} />
+        <span class="key-swatch" style={{ background: state.colorOf(field.hydrometeor) }} />
         {nameOfHydrometeor(field.hydrometeor)}
       </th>
       <td>
@@ -194,7 +193,7 @@ function Core({ page, core, old }: CoreProps) {
             page.viewpoint.turnAround([position.xM, position.yM, position.zM]);
         }}
       >
-        <span class="key-swatch" style={{ background: colorOfField(core.hydrometeor) }} />
+        <span class="key-swatch" style={{ background: page.state.colorOf(core.hydrometeor) }} />
         {name} {formatNumber(core.value * factor)} {symbol},{" "}
         {formatLength(position?.zM ?? 0, "height")} above sea
       </button>

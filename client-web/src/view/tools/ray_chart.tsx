@@ -6,7 +6,6 @@ import type { PageState } from "../../core/state";
 import { formatNumber, lengthUnits } from "../../core/units";
 import type { FieldAlongRay, ProbeRayResponse } from "../../gen/thunderhead/v1/probe_pb";
 import { withPart } from "../part";
-import { colorOfField } from "./field_colors";
 
 const HEIGHT_PX = 170;
 
@@ -69,7 +68,7 @@ export function RayChart({ state, found }: { state: PageState; found: ProbeRayRe
               ...fields.map(({ hydrometeor, units }) => ({
                 label: nameOfHydrometeor(hydrometeor),
                 value: (_: unknown, value: number | null) => valueInWords(value, units),
-                stroke: colorOfField(hydrometeor),
+                stroke: state.colorOf(hydrometeor),
                 width: 1.5,
                 points: { show: false },
               })),

@@ -1,0 +1,13 @@
+// A warning beside a link that works on this computer alone.
+
+// `host` is the address that nobody else can open; undefined where others can.
+export function OnlyHere({ host }: { host: string | undefined }) {
+  if (host === undefined) return null;
+  return (
+    <p class="only-here" role="note" data-testid="only-here">
+      <strong>Others cannot open this link:</strong> {host} is only this computer. Start the server
+      with <code>--http</code> on an address that they can reach, and open this page by that
+      address.
+    </p>
+  );
+}
