@@ -40,8 +40,11 @@ void Caller::Report(std::string_view act, const absl::Status& outcome) const {
                 outcome);
 }
 
-void Caller::ReportDenial(std::string_view act, const absl::Status& outcome) const {
-  if (absl::IsPermissionDenied(outcome)) Report(act, outcome);
+void Caller::ReportRefusal(std::string_view act, const absl::Status& outcome) const {
+  if (absl::IsPermissionDenied(outcome) || absl::IsResourceExhausted(outcome) ||
+      absl::IsNotFound(outcome)) {
+    Report(act, outcome);
+  }
 }
 
 absl::Status Caller::StillKnown(std::chrono::steady_clock::time_point now) const {
@@ -94,6 +97,7 @@ absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view metho
   auto caller = std::make_shared<Caller>();
   caller->audit_ = audit_.get();
   caller->credentials_ = std::move(credentials);
+  caller->method_ = std::string(method);
   const Credentials& shown = caller->credentials_;
   absl::Status status;
   if (shown.token.size() == own_token_.size() &&

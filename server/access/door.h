@@ -24,8 +24,10 @@ class Caller {
   const Identity& identity() const { return identity_; }
   // A privileged act of theirs, or a refusal, for the audit.
   void Report(std::string_view act, const absl::Status& outcome) const;
-  // The same for PERMISSION_DENIED alone.
-  void ReportDenial(std::string_view act, const absl::Status& outcome) const;
+  // Writes a refusal to the audit: PERMISSION_DENIED, RESOURCE_EXHAUSTED, or NOT_FOUND, which a
+  // wrong key gets. Other outcomes are not written. `act` is by default the rpc.
+  void ReportRefusal(const absl::Status& outcome) const { ReportRefusal(method_, outcome); }
+  void ReportRefusal(std::string_view act, const absl::Status& outcome) const;
   // UNAUTHENTICATED once the token has expired or was taken away; looks once a second at most.
   absl::Status StillKnown(
       std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) const;
@@ -35,6 +37,7 @@ class Caller {
 
   Identity identity_;
   Credentials credentials_;
+  std::string method_;  // the rpc
   Authenticator* authenticator_ = nullptr;
   Audit* audit_ = nullptr;
   std::shared_ptr<const void> place_;

@@ -156,6 +156,7 @@ absl::Status Serve(ServeFlags flags) {
   server_options.render_loop = flags.render_loop;
   server_options.render_loop.memory = budgets.memory;
   server_options.render_loop.device_memory = {budgets.memory, budgets.gpu};
+  server_options.executor = flags.executor;
   // Ends the wait for a signal; a supervisor starts the server anew.
   const auto given_up = std::make_shared<absl::Status>();
   server_options.render_loop.on_device_given_up = [given_up](const absl::Status& why) {

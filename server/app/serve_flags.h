@@ -16,6 +16,7 @@
 #include "app/jobs_flags.h"
 #include "app/operation.h"
 #include "app/sandbox_flags.h"
+#include "base/executor.h"
 #include "base/memory_budget.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
@@ -55,6 +56,7 @@ struct ServeFlags {
   service::Limits limits;
   access::QuotaLimits quotas;
   session::RenderLoopOptions render_loop;
+  base::Executor::Limits executor;
   gateway::GatewayOptions gateway;
   double max_render_s = 1800.0;
   double max_megasamples = 137439.0;

@@ -1,6 +1,7 @@
 #include "base/executor.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,12 +18,13 @@ namespace {
 // A task is a read or a picture's encoding; a few threads end hundreds of them in this time.
 constexpr std::chrono::seconds kQueueRetryAfter{10};
 
-absl::Status Full(std::size_t max_waiting) {
-  return WithDetails(absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", max_waiting,
-                                                               " requests wait; try again later")),
-                     {.reason = "REQUEST_QUEUE_FULL",
-                      .metadata = {{"maximum", absl::StrCat(max_waiting)}, {"unit", "requests"}},
-                      .retry_after = kQueueRetryAfter});
+absl::Status Full(const char* of_whom, std::size_t max_waiting) {
+  return WithDetails(
+      absl::ResourceExhaustedError(absl::StrCat("the server is busy: ", max_waiting, of_whom,
+                                                " requests wait; try again later")),
+      {.reason = "REQUEST_QUEUE_FULL",
+       .metadata = {{"maximum", absl::StrCat(max_waiting)}, {"unit", "requests"}},
+       .retry_after = kQueueRetryAfter});
 }
 
 absl::Status WaitedTooLong(int hanging) {
@@ -50,16 +52,22 @@ void Executor::AddWorker() {
   threads_.emplace_back("a request", [shared = shared_, worker] { Work(shared, worker); });
 }
 
-void Executor::Submit(Task task) {
+void Executor::Submit(const std::string& owner, Task task) {
   absl::Status refusal;
   {
     const std::lock_guard lock(shared_->mutex);
+    const Limits& limits = shared_->limits;
+    const auto own = shared_->waiting.find(owner);
     if (shared_->stopping) {
       refusal = ShuttingDown();
-    } else if (shared_->waiting.size() >= shared_->limits.max_waiting) {
-      refusal = Full(shared_->limits.max_waiting);
+    } else if (shared_->waiting_count >= limits.max_waiting) {
+      refusal = Full("", limits.max_waiting);
+    } else if (!owner.empty() && own != shared_->waiting.end() &&
+               own->second.size() >= limits.max_waiting_each) {
+      refusal = Full(" of your", limits.max_waiting_each);
     } else {
-      shared_->waiting.push_back({std::move(task), Clock::now()});
+      shared_->waiting[owner].push_back({std::move(task), Clock::now()});
+      ++shared_->waiting_count;
       shared_->changed.notify_all();
       return;
     }
@@ -74,16 +82,19 @@ int Executor::Hanging() const {
 }
 
 void Executor::Stop() {
-  std::deque<Waiting> refused;
+  std::map<std::string, std::deque<Waiting>> refused;
   std::list<LooseThread> threads;
   {
     const std::lock_guard lock(shared_->mutex);
     shared_->stopping = true;
     refused.swap(shared_->waiting);
+    shared_->waiting_count = 0;
     threads.swap(threads_);
   }
   shared_->changed.notify_all();
-  for (Waiting& waiting : refused) waiting.task(ShuttingDown());
+  for (const auto& [owner, tasks] : refused) {
+    for (const Waiting& waiting : tasks) waiting.task(ShuttingDown());
+  }
   if (watch_.joinable()) watch_.join();
   // Those that hang are waited for together, not one after another.
   std::vector<std::thread> ending;
@@ -93,26 +104,67 @@ void Executor::Stop() {
   for (std::thread& thread : ending) thread.join();
 }
 
+std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
+  if (shared.waiting.empty()) return std::nullopt;
+  const int max_of_one = std::max(1, shared.limits.threads - 1);
+  std::vector<std::string> owners;
+  for (const auto& [owner, tasks] : shared.waiting) owners.push_back(owner);
+  const std::optional<std::string> owner = shared.shares.Next(owners, [&](const std::string& one) {
+    const auto running = shared.running.find(one);
+    return one.empty() || running == shared.running.end() || running->second < max_of_one;
+  });
+  if (!owner.has_value()) return std::nullopt;
+  std::deque<Waiting>& tasks = shared.waiting.at(*owner);
+  Task task = std::move(tasks.front().task);
+  tasks.pop_front();
+  if (tasks.empty()) shared.waiting.erase(*owner);
+  --shared.waiting_count;
+  ++shared.running[*owner];
+  worker.owner = *owner;
+  worker.busy_since = Clock::now();
+  // Until it is known how long it takes.
+  worker.charged_ms = shared.typical_ms;
+  shared.shares.Used(*owner, worker.charged_ms);
+  return task;
+}
+
+void Executor::Leave(Shared& shared, const std::string& owner) {
+  const auto running = shared.running.find(owner);
+  if (--running->second == 0) shared.running.erase(running);
+}
+
+void Executor::End(Shared& shared, Worker& worker) {
+  const std::chrono::duration<double, std::milli> took = Clock::now() - *worker.busy_since;
+  worker.busy_since.reset();
+  shared.shares.Used(worker.owner, took.count() - worker.charged_ms);
+  if (worker.hangs) return;
+  shared.typical_ms = took.count();
+  Leave(shared, worker.owner);
+}
+
 void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr<Worker>& worker) {
   std::unique_lock lock(shared->mutex);
   // Whose place another has taken does no more.
   while (!worker->hangs) {
-    shared->changed.wait(lock, [&] { return shared->stopping || !shared->waiting.empty(); });
-    if (shared->waiting.empty()) break;
-    Task task = std::move(shared->waiting.front().task);
-    shared->waiting.pop_front();
-    worker->busy_since = Clock::now();
+    std::optional<Task> task;
+    shared->changed.wait(lock, [&] {
+      task = Take(*shared, *worker);
+      return shared->stopping || task.has_value();
+    });
+    if (!task.has_value()) break;
     lock.unlock();
     // The watch looks when this one would hang.
     shared->changed.notify_all();
     const absl::Status failed = OrOutOfMemory([&] {
-      task(absl::OkStatus());
+      (*task)(absl::OkStatus());
       return absl::OkStatus();
     });
     if (!failed.ok()) LogError(failed);
-    task = nullptr;
+    task.reset();
     lock.lock();
-    worker->busy_since.reset();
+    End(*shared, *worker);
+    // The owner may have tasks that waited for this one to end.
+    shared->changed.notify_all();
   }
   shared->workers.remove(worker);
 }
@@ -130,6 +182,7 @@ void Executor::Replace(Clock::time_point now) {
     if (worker->hangs || !worker->busy_since.has_value()) continue;
     if (now - *worker->busy_since < shared_->limits.hangs_after) continue;
     worker->hangs = true;
+    Leave(*shared_, worker->owner);
     ++hanging;
     spdlog::warn(
         "a request has run for {} s; others go on beside it",
@@ -138,16 +191,25 @@ void Executor::Replace(Clock::time_point now) {
   }
 }
 
+std::vector<Executor::Task> Executor::TakeLate(Shared& shared, Clock::time_point now) {
+  std::vector<Task> late;
+  for (auto owner = shared.waiting.begin(); owner != shared.waiting.end();) {
+    std::deque<Waiting>& tasks = owner->second;
+    while (!tasks.empty() && now - tasks.front().since >= shared.limits.max_wait) {
+      late.push_back(std::move(tasks.front().task));
+      tasks.pop_front();
+      --shared.waiting_count;
+    }
+    owner = tasks.empty() ? shared.waiting.erase(owner) : std::next(owner);
+  }
+  return late;
+}
+
 void Executor::Watch() {
   std::unique_lock lock(shared_->mutex);
   while (!shared_->stopping) {
     const Clock::time_point now = Clock::now();
-    std::vector<Task> late;
-    while (!shared_->waiting.empty() &&
-           now - shared_->waiting.front().since >= shared_->limits.max_wait) {
-      late.push_back(std::move(shared_->waiting.front().task));
-      shared_->waiting.pop_front();
-    }
+    const std::vector<Task> late = TakeLate(*shared_, now);
     // Only those who wait need another thread.
     if (!shared_->waiting.empty()) Replace(now);
     if (!late.empty()) {

@@ -24,9 +24,10 @@ absl::Status Acknowledge(Engine& engine, const v1::AcknowledgeFrameRequest& requ
 }  // namespace
 
 grpc::ServerUnaryReactor* AcknowledgeFrame(Engine& engine, grpc::CallbackServerContext* context,
+                                           const CallerRef& caller,
                                            const v1::AcknowledgeFrameRequest* request,
                                            v1::AcknowledgeFrameResponse* /*response*/) {
-  return Finished(context, Acknowledge(engine, *request));
+  return Finished(context, *caller, Acknowledge(engine, *request));
 }
 
 }  // namespace thunderhead::service

@@ -33,7 +33,7 @@ class Entrance {
   grpc::ServerUnaryReactor* Unary(const char* method, grpc::CallbackServerContext* context,
                                   const Handler& handle) const {
     const CallerOr caller = Enter(*context, method, access::CallKind::kUnary);
-    return caller.ok() ? handle(*caller) : Finished(context, caller.status());
+    return caller.ok() ? handle(*caller) : Answered(context, caller.status());
   }
 
   template <typename Reactor, typename Handler>

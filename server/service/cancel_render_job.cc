@@ -10,7 +10,7 @@ grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, grpc::CallbackServer
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response) {
   if (const absl::Status wrong = CheckLimits(*request); !wrong.ok()) {
-    return Finished(context, wrong);
+    return Finished(context, *caller, wrong);
   }
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   jobs.Cancel(request->job_id(), AskerOf(*caller), request->forget(),

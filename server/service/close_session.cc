@@ -11,7 +11,7 @@ grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerConte
   absl::Status status = CheckLimits(*request);
   if (status.ok()) status = engine.sessions.Close(request->session_id());
   caller->Report("CloseSession", status);
-  if (!status.ok()) return Finished(context, status);
+  if (!status.ok()) return Answered(context, status);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });
   return reactor;

@@ -28,7 +28,7 @@ grpc::ServerUnaryReactor* CreateRenderJob(Engine& engine, jobs::Jobs& jobs,
                                           v1::CreateRenderJobResponse* response) {
   if (const absl::Status wrong = CheckShape(*request); !wrong.ok()) {
     caller->Report("CreateRenderJob", wrong);
-    return Finished(context, wrong);
+    return Answered(context, wrong);
   }
   jobs::NewJob job{caller->identity().name, request->label(), {}};
   job.pictures.reserve(static_cast<std::size_t>(request->pictures_size()));

@@ -1,3 +1,4 @@
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -33,12 +34,14 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   scene = request->scene();
   if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), scene);
   if (status.ok()) status = CheckSize(engine.limits, scene);
-  if (!status.ok()) return Finished(context, status);
+  if (!status.ok()) return Finished(context, *caller, status);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   const session::Rules rules = RulesOf(request->rules(), {});
-  FrameThen(engine, scene, [=, &engine](const absl::Status& framed) {
-    const absl::Status opened =
-        framed.ok() ? Open(engine, caller->identity().name, rules, *response) : framed;
+  FrameThen(engine, caller->identity().name, scene, [=, &engine](const absl::Status& framed) {
+    const absl::Status opened = framed.ok() ? base::OrOutOfMemory([&] {
+      return Open(engine, caller->identity().name, rules, *response);
+    })
+                                            : framed;
     caller->Report("CreateSession", opened);
     if (!opened.ok()) return reactor->Finish(ToGrpcStatus(opened));
     SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });

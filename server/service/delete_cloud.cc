@@ -32,10 +32,10 @@ grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContex
                                       const v1::DeleteCloudRequest* request,
                                       v1::DeleteCloudResponse* /*response*/) {
   if (const absl::Status limits = CheckLimits(*request); !limits.ok()) {
-    return Finished(context, limits);
+    return Finished(context, *caller, limits);
   }
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  engine.executor.Submit([=, &engine](const absl::Status& status) {
+  engine.executor.Submit(caller->identity().name, [=, &engine](const absl::Status& status) {
     const absl::Status deleted =
         status.ok() ? base::OrOutOfMemory([&] { return Delete(engine, request->storm_id()); })
                     : status;

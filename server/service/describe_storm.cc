@@ -28,11 +28,12 @@ absl::Status Describe(Engine& engine, const volume::StormInfo& storm, int time_i
 }  // namespace
 
 grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response) {
   const auto storm = CheckDescribe(engine, *request);
-  if (!storm.ok()) return Finished(context, storm.status());
-  return FinishedBy(engine.executor, context, [=, &engine] {
+  if (!storm.ok()) return Finished(context, *caller, storm.status());
+  return FinishedBy(engine.executor, context, caller, [=, &engine] {
     return Describe(engine, **storm, static_cast<int>(request->time_index()), *response);
   });
 }

@@ -27,12 +27,13 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
        .metadata = {{"storm_id", storm_id}}});
 }
 
-void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::Status&)> then) {
+void FrameThen(Engine& engine, const std::string& owner, v1::Scene& scene,
+               std::function<void(const absl::Status&)> then) {
   if (!NeedsFraming(scene)) return then(absl::OkStatus());
   // Also where the fields are in memory: finding the storm in them takes a while.
   const int time_index = static_cast<int>(scene.time_index());
   engine.executor.Submit(
-      [&engine, &scene, time_index, then = std::move(then)](const absl::Status& status) {
+      owner, [&engine, &scene, time_index, then = std::move(then)](const absl::Status& status) {
         if (!status.ok()) return then(status);
         then(base::OrOutOfMemory([&]() -> absl::Status {
           THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadFields(engine.store, scene.storm_id(),

@@ -47,7 +47,9 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
     const std::string& path);
 
 // Frames the condensate if the camera needs it, then calls `then`: at once if it does not, else on
-// the executor after reading the fields. `scene` must live until then.
-void FrameThen(Engine& engine, v1::Scene& scene, std::function<void(const absl::Status&)> then);
+// the executor after reading the fields, in the turn of the identity `owner`. `scene` must live
+// until then.
+void FrameThen(Engine& engine, const std::string& owner, v1::Scene& scene,
+               std::function<void(const absl::Status&)> then);
 
 }  // namespace thunderhead::service

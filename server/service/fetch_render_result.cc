@@ -37,7 +37,7 @@ class ResultStream final : public ResultReactor {
         offset_(offset) {}
 
   void Next() {
-    reading_.Submit([this](const absl::Status& status) {
+    reading_.Submit(caller_->identity().name, [this](const absl::Status& status) {
       const absl::Status read =
           status.ok() ? base::OrOutOfMemory([this] { return Read(); }) : status;
       if (!read.ok()) return Finish(ToGrpcStatus(read));
@@ -104,8 +104,7 @@ absl::StatusOr<jobs::ResultPlace> FindResult(const jobs::Jobs& jobs, const acces
 ResultReactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
                                  const v1::FetchRenderResultRequest* request) {
   absl::StatusOr<jobs::ResultPlace> place = FindResult(jobs, *caller, *request);
-  caller->ReportDenial("FetchRenderResult", place.status());
-  if (!place.ok()) return new RefusedStream<ResultReactor>(place.status());
+  if (!place.ok()) return new RefusedStream<ResultReactor>(*caller, place.status());
   auto* stream =
       new ResultStream(jobs, reading, std::move(caller), {request->job_id(), request->index()},
                        *std::move(place), request->offset());

@@ -38,16 +38,17 @@ grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerCont
                                         const v1::GenerateCloudRequest* request,
                                         v1::GenerateCloudResponse* response) {
   auto shape = Check(*request);
-  if (!shape.ok()) return Finished(context, shape.status());
+  if (!shape.ok()) return Finished(context, *caller, shape.status());
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  engine.executor.Submit([=, &engine, shape = *std::move(shape)](const absl::Status& status) {
-    const absl::Status made = status.ok() ? base::OrOutOfMemory([&] {
-      return Make(engine, shape, *request, *context, *response);
-    })
-                                          : status;
-    caller->Report("GenerateCloud", made);
-    reactor->Finish(ToGrpcStatus(made));
-  });
+  engine.executor.Submit(caller->identity().name,
+                         [=, &engine, shape = *std::move(shape)](const absl::Status& status) {
+                           const absl::Status made = status.ok() ? base::OrOutOfMemory([&] {
+                             return Make(engine, shape, *request, *context, *response);
+                           })
+                                                                 : status;
+                           caller->Report("GenerateCloud", made);
+                           reactor->Finish(ToGrpcStatus(made));
+                         });
   return reactor;
 }
 

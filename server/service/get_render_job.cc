@@ -25,9 +25,7 @@ grpc::ServerUnaryReactor* GetRenderJob(jobs::Jobs& jobs, grpc::CallbackServerCon
                                        const CallerRef& caller,
                                        const v1::GetRenderJobRequest* request,
                                        v1::GetRenderJobResponse* response) {
-  const absl::Status status = Get(jobs, *caller, *request, *response);
-  caller->ReportDenial("GetRenderJob", status);
-  return Finished(context, status);
+  return Finished(context, *caller, Get(jobs, *caller, *request, *response));
 }
 
 }  // namespace thunderhead::service

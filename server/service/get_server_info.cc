@@ -18,7 +18,7 @@ grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerCont
     ToMessage(technique, *response->add_techniques());
   }
   AddPresets(*response);
-  return Finished(context, absl::OkStatus());
+  return Answered(context, absl::OkStatus());
 }
 
 }  // namespace thunderhead::service

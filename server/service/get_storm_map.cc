@@ -97,11 +97,12 @@ absl::Status Map(Engine& engine, const volume::StormInfo& storm,
 }  // namespace
 
 grpc::ServerUnaryReactor* GetStormMap(Engine& engine, grpc::CallbackServerContext* context,
+                                      const CallerRef& caller,
                                       const v1::GetStormMapRequest* request,
                                       v1::GetStormMapResponse* response) {
   const auto storm = CheckMap(engine, *request);
-  if (!storm.ok()) return Finished(context, storm.status());
-  return FinishedBy(engine.executor, context,
+  if (!storm.ok()) return Finished(context, *caller, storm.status());
+  return FinishedBy(engine.executor, context, caller,
                     [=, &engine] { return Map(engine, **storm, *request, *response); });
 }
 

@@ -1,5 +1,5 @@
-// One handler for each rpc, in the file named after it. Those that open something, or whose acts
-// are written to the audit, are told who calls.
+// One handler for each rpc, in the file named after it. Those that may refuse, or whose work waits
+// for its turn, are told who calls.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>
@@ -21,13 +21,15 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
                                      const v1::ListStormsRequest* request,
                                      v1::ListStormsResponse* response);
 grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response);
 grpc::ServerUnaryReactor* GetStormMap(Engine& engine, grpc::CallbackServerContext* context,
+                                      const CallerRef& caller,
                                       const v1::GetStormMapRequest* request,
                                       v1::GetStormMapResponse* response);
 grpc::ServerUnaryReactor* ProbeRay(Engine& engine, grpc::CallbackServerContext* context,
-                                   const v1::ProbeRayRequest* request,
+                                   const CallerRef& caller, const v1::ProbeRayRequest* request,
                                    v1::ProbeRayResponse* response);
 grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerContext* context,
                                         const CallerRef& caller,
@@ -49,6 +51,7 @@ grpc::ServerWriteReactor<v1::WatchFramesResponse>* WatchFrames(
     Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
     const v1::WatchFramesRequest* request);
 grpc::ServerUnaryReactor* AcknowledgeFrame(Engine& engine, grpc::CallbackServerContext* context,
+                                           const CallerRef& caller,
                                            const v1::AcknowledgeFrameRequest* request,
                                            v1::AcknowledgeFrameResponse* response);
 grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerContext* context,

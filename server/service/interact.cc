@@ -302,7 +302,7 @@ class InteractCall : public InteractReactor,
     if (const char* act = PrivilegedAct(request); act != nullptr) {
       caller_->Report(act, status);
     } else {
-      caller_->ReportDenial(NameOfRequest(request), status);
+      caller_->ReportRefusal(NameOfRequest(request), status);
     }
     if (!status.ok()) Answer(RefusedResponse(request.request_id(), status));
     return absl::OkStatus();
@@ -427,7 +427,7 @@ class InteractCall : public InteractReactor,
   absl::Status Update(std::uint64_t request_id, const v1::SceneUpdate& update) {
     THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MaySteer(person_id_));
     AddUpdate();
-    ChangeScene(engine_, session_, SceneChangeOf(update),
+    ChangeScene(engine_, caller_->identity().name, session_, SceneChangeOf(update),
                 [self = shared_from_this(), request_id](const auto& revision) {
                   self->Updated(request_id, revision);
                 });
@@ -472,12 +472,14 @@ class InteractCall : public InteractReactor,
     if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene->mutable_camera() = message;
     THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), *scene));
     AddUpdate();
-    FrameThen(engine_, *scene,
+    FrameThen(engine_, caller_->identity().name, *scene,
               [self = shared_from_this(), request_id, scene,
                then = std::move(then)](const absl::Status& framed) {
                 using Camera = absl::StatusOr<scene::Camera>;
-                self->UpdateDone(request_id, then(framed.ok() ? Camera(ToCamera(scene->camera()))
-                                                              : Camera(framed)));
+                self->UpdateDone(
+                    request_id, base::OrOutOfMemory([&] {
+                      return then(framed.ok() ? Camera(ToCamera(scene->camera())) : Camera(framed));
+                    }));
               });
     return absl::OkStatus();
   }
@@ -652,13 +654,14 @@ class InteractCall : public InteractReactor,
       color = glm::vec3(message.color().red(), message.color().green(), message.color().blue());
     }
     AddUpdate();
-    engine_.executor.Submit([self = shared_from_this(), request_id, rays = std::move(rays),
-                             color](const absl::Status& status) {
-      const absl::Status drawn =
-          status.ok() ? base::OrOutOfMemory([&] { return self->Draw(rays, color); }) : status;
-      self->drawing_ = false;
-      self->UpdateDone(request_id, drawn);
-    });
+    engine_.executor.Submit(
+        caller_->identity().name, [self = shared_from_this(), request_id, rays = std::move(rays),
+                                   color](const absl::Status& status) {
+          const absl::Status drawn =
+              status.ok() ? base::OrOutOfMemory([&] { return self->Draw(rays, color); }) : status;
+          self->drawing_ = false;
+          self->UpdateDone(request_id, drawn);
+        });
     return absl::OkStatus();
   }
 

@@ -29,9 +29,7 @@ grpc::ServerUnaryReactor* ListRenderJobs(jobs::Jobs& jobs, grpc::CallbackServerC
                                          const CallerRef& caller,
                                          const v1::ListRenderJobsRequest* request,
                                          v1::ListRenderJobsResponse* response) {
-  const absl::Status status = List(jobs, *caller, *request, *response);
-  caller->ReportDenial("ListRenderJobs", status);
-  return Finished(context, status);
+  return Finished(context, *caller, List(jobs, *caller, *request, *response));
 }
 
 }  // namespace thunderhead::service

@@ -12,7 +12,7 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
     ToMessage(*storm, summary);
     summary.set_deletable(engine.clouds.Holds(storm->id));
   }
-  return Finished(context, absl::OkStatus());
+  return Answered(context, absl::OkStatus());
 }
 
 }  // namespace thunderhead::service

@@ -79,11 +79,11 @@ absl::Status Probe(Engine& engine, Asked& asked, v1::ProbeRayResponse& response)
 }  // namespace
 
 grpc::ServerUnaryReactor* ProbeRay(Engine& engine, grpc::CallbackServerContext* context,
-                                   const v1::ProbeRayRequest* request,
+                                   const CallerRef& caller, const v1::ProbeRayRequest* request,
                                    v1::ProbeRayResponse* response) {
   const auto asked = Check(engine, *request);
-  if (!asked.ok()) return Finished(context, asked.status());
-  return FinishedBy(engine.executor, context,
+  if (!asked.ok()) return Finished(context, *caller, asked.status());
+  return FinishedBy(engine.executor, context, caller,
                     [=, &engine] { return Probe(engine, **asked, *response); });
 }
 

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "base/error_details.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "google/protobuf/util/field_mask_util.h"
 #include "service/messages/prepare_scene.h"
@@ -97,21 +98,22 @@ absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session) {
   return read;
 }
 
-void ChangeScene(Engine& engine, const std::shared_ptr<session::Session>& session,
-                 const SceneChange& change,
+void ChangeScene(Engine& engine, const std::string& owner,
+                 const std::shared_ptr<session::Session>& session, const SceneChange& change,
                  std::function<void(const absl::StatusOr<std::uint64_t>&)> done) {
   const auto changed = Take(engine, *session, change);
   if (!changed.ok()) return done(changed.status());
   const std::uint64_t revision = changed->revision;
   const std::shared_ptr<v1::Scene> scene = changed->scene;
-  FrameThen(engine, *scene,
+  FrameThen(engine, owner, *scene,
             [revision, scene, session, done = std::move(done)](const absl::Status& framed) {
-              if (!framed.ok()) {
-                session->Drop(revision);
-                return done(framed);
-              }
-              session->Show(revision, ToScene(*scene), scene->SerializeAsString());
-              done(revision);
+              const absl::Status shown = !framed.ok() ? framed : base::OrOutOfMemory([&] {
+                session->Show(revision, ToScene(*scene), scene->SerializeAsString());
+                return absl::OkStatus();
+              });
+              if (shown.ok()) return done(revision);
+              session->Drop(revision);
+              done(shown);
             });
 }
 

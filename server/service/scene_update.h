@@ -34,9 +34,10 @@ absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session);
 
 // Completes the changed scene and shows it, then calls `done` with its revision: at once, or on
 // another thread if the storm must be read to place the camera. The change's limits were checked.
-// INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the scene is at another revision.
-void ChangeScene(Engine& engine, const std::shared_ptr<session::Session>& session,
-                 const SceneChange& change,
+// `owner` is the identity that asks. INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the
+// scene is at another revision.
+void ChangeScene(Engine& engine, const std::string& owner,
+                 const std::shared_ptr<session::Session>& session, const SceneChange& change,
                  std::function<void(const absl::StatusOr<std::uint64_t>&)> done);
 
 }  // namespace thunderhead::service

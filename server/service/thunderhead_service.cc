@@ -48,24 +48,24 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* DescribeStorm(grpc::CallbackServerContext* context,
                                           const v1::DescribeStormRequest* request,
                                           v1::DescribeStormResponse* response) override {
-    return entrance_.Unary("DescribeStorm", context, [&](const CallerRef& /*caller*/) {
-      return service::DescribeStorm(engine_, context, request, response);
+    return entrance_.Unary("DescribeStorm", context, [&](const CallerRef& caller) {
+      return service::DescribeStorm(engine_, context, caller, request, response);
     });
   }
 
   grpc::ServerUnaryReactor* GetStormMap(grpc::CallbackServerContext* context,
                                         const v1::GetStormMapRequest* request,
                                         v1::GetStormMapResponse* response) override {
-    return entrance_.Unary("GetStormMap", context, [&](const CallerRef& /*caller*/) {
-      return service::GetStormMap(engine_, context, request, response);
+    return entrance_.Unary("GetStormMap", context, [&](const CallerRef& caller) {
+      return service::GetStormMap(engine_, context, caller, request, response);
     });
   }
 
   grpc::ServerUnaryReactor* ProbeRay(grpc::CallbackServerContext* context,
                                      const v1::ProbeRayRequest* request,
                                      v1::ProbeRayResponse* response) override {
-    return entrance_.Unary("ProbeRay", context, [&](const CallerRef& /*caller*/) {
-      return service::ProbeRay(engine_, context, request, response);
+    return entrance_.Unary("ProbeRay", context, [&](const CallerRef& caller) {
+      return service::ProbeRay(engine_, context, caller, request, response);
     });
   }
 
@@ -104,8 +104,8 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* AcknowledgeFrame(grpc::CallbackServerContext* context,
                                              const v1::AcknowledgeFrameRequest* request,
                                              v1::AcknowledgeFrameResponse* response) override {
-    return entrance_.Unary("AcknowledgeFrame", context, [&](const CallerRef& /*caller*/) {
-      return service::AcknowledgeFrame(engine_, context, request, response);
+    return entrance_.Unary("AcknowledgeFrame", context, [&](const CallerRef& caller) {
+      return service::AcknowledgeFrame(engine_, context, caller, request, response);
     });
   }
 

@@ -30,12 +30,12 @@ grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContex
                                       const v1::UpdateSceneRequest* request,
                                       v1::UpdateSceneResponse* response) {
   const auto session = FindToSteer(engine, *request);
-  caller->ReportDenial("UpdateScene", session.status());
-  if (!session.ok()) return Finished(context, session.status());
+  if (!session.ok()) return Finished(context, *caller, session.status());
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  ChangeScene(engine, *session, SceneChangeOf(*request),
+  ChangeScene(engine, caller->identity().name, *session, SceneChangeOf(*request),
               [=](const absl::StatusOr<std::uint64_t>& revision) {
                 if (revision.ok()) response->set_scene_revision(*revision);
+                caller->ReportRefusal(revision.status());
                 reactor->Finish(ToGrpcStatus(revision.status()));
               });
   return reactor;

@@ -29,6 +29,7 @@ class FrameStream : public FramesReactor,
     stream->held_by_grpc_ = stream;
     const auto viewer_id = stream->session_->hub().Join(stream);
     if (!viewer_id.ok()) {
+      stream->caller_->ReportRefusal(viewer_id.status());
       stream->Finish(ToGrpcStatus(viewer_id.status()));
       return stream.get();
     }
@@ -145,7 +146,7 @@ absl::StatusOr<std::shared_ptr<session::Session>> FindSession(
 FramesReactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/,
                            CallerRef caller, const v1::WatchFramesRequest* request) {
   auto session = FindSession(engine, *request);
-  if (!session.ok()) return new RefusedStream<FramesReactor>(session.status());
+  if (!session.ok()) return new RefusedStream<FramesReactor>(*caller, session.status());
   return FrameStream::Start(*std::move(session), std::move(caller));
 }
 

@@ -36,8 +36,7 @@ class JobStream final : public JobReactor,
   static JobReactor* Start(jobs::Jobs& jobs, CallerRef caller, const std::string& id) {
     auto stream = std::make_shared<JobStream>(jobs, std::move(caller), id);
     const absl::Status known = jobs.Watch(id, AskerOf(*stream->caller_), stream);
-    stream->caller_->ReportDenial("WatchRenderJob", known);
-    if (!known.ok()) return new RefusedStream<JobReactor>(known);
+    if (!known.ok()) return new RefusedStream<JobReactor>(*stream->caller_, known);
     stream->held_by_grpc_ = stream;
     stream->OnJobChanged();
     return stream.get();
@@ -115,7 +114,7 @@ class JobStream final : public JobReactor,
 JobReactor* WatchRenderJob(jobs::Jobs& jobs, CallerRef caller,
                            const v1::WatchRenderJobRequest* request) {
   if (const absl::Status wrong = CheckLimits(*request); !wrong.ok()) {
-    return new RefusedStream<JobReactor>(wrong);
+    return new RefusedStream<JobReactor>(*caller, wrong);
   }
   return JobStream::Start(jobs, std::move(caller), request->job_id());
 }

@@ -5,10 +5,13 @@
 
 #include <grpcpp/create_channel.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <set>
+#include <thread>
+#include <vector>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
@@ -128,6 +131,84 @@ TEST(AccessTest, RefusalsAndPrivilegedActsAreAudited) {
       EXPECT_THAT(line, Not(HasSubstr(secret)));
     }
   }
+}
+
+// Each refusal has its line, whichever call it ends.
+TEST(AccessTest, RefusalsOfAnyCallAreAudited) {
+  service::ServerOptions options;
+  options.limits.max_viewers_per_session = 0;
+  GuardedService guarded(options);
+  const auto created = guarded.Create();
+  const std::string wrong_key(32, '0');
+  const auto watch = [&](const std::string& key) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    context.AddMetadata("authorization", "Bearer " + TokenOf("viewer"));
+    v1::WatchFramesRequest request;
+    request.set_session_id(key);
+    const auto stream = guarded.stub().WatchFrames(&context, request);
+    v1::WatchFramesResponse response;
+    while (stream->Read(&response)) {
+    }
+    return stream->Finish().error_code();
+  };
+  EXPECT_EQ(watch(wrong_key), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(watch(created.viewer_key()), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  v1::ProbeRayRequest probe;
+  probe.set_session_id(wrong_key);
+  probe.mutable_point();
+  v1::ProbeRayResponse probed;
+  EXPECT_EQ(guarded.Call("viewer", &Stub::ProbeRay, probe, &probed).error_code(),
+            grpc::StatusCode::NOT_FOUND);
+  v1::AcknowledgeFrameRequest acknowledge;
+  acknowledge.set_session_id(wrong_key);
+  v1::AcknowledgeFrameResponse acknowledged;
+  EXPECT_EQ(
+      guarded.Call("viewer", &Stub::AcknowledgeFrame, acknowledge, &acknowledged).error_code(),
+      grpc::StatusCode::NOT_FOUND);
+  const std::vector<std::string> audit = guarded.Audit();
+  const auto has = [&](const std::string& part) {
+    EXPECT_THAT(audit, Contains(HasSubstr("role=viewer peer=\"\" act=" + part)));
+  };
+  has("WatchFrames verdict=refused reason=\"SESSION_NOT_FOUND\"");
+  has("WatchFrames verdict=refused reason=\"TOO_MANY_VIEWERS\"");
+  has("ProbeRay verdict=refused reason=\"SESSION_NOT_FOUND\"");
+  has("AcknowledgeFrame verdict=refused reason=\"SESSION_NOT_FOUND\"");
+}
+
+// Requests that one viewer has waiting neither fill the queue nor take all threads.
+TEST(AccessTest, AViewerWhoAsksWithoutAPauseHoldsUpOnlyItself) {
+  service::ServerOptions options;
+  options.executor.max_waiting_each = 4;
+  GuardedService guarded(options);
+  v1::DescribeStormRequest describe;
+  describe.set_storm_id("anvil");
+  v1::DescribeStormResponse described;
+  ASSERT_TRUE(guarded.Call("presenter", &Stub::DescribeStorm, describe, &described).ok());
+  guarded.service().store->reading.Close();
+  std::atomic<int> refused{0};
+  std::vector<std::thread> viewers;
+  for (int i = 0; i < 12; ++i) {
+    viewers.emplace_back([&] {
+      v1::GetStormMapRequest request;
+      request.set_storm_id("anvil");
+      request.set_time_index(1);
+      v1::GetStormMapResponse response;
+      const grpc::Status status = guarded.Call("viewer", &Stub::GetStormMap, request, &response);
+      if (status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) ++refused;
+    });
+  }
+  // Three threads of four, and four that wait.
+  EXPECT_TRUE(guarded.service().store->reading.AwaitWaiting(3));
+  for (int i = 0; i < 1000 && refused < 5; ++i) std::this_thread::sleep_for(milliseconds(5));
+  EXPECT_EQ(refused, 5);
+  EXPECT_TRUE(guarded.Call("presenter", &Stub::DescribeStorm, describe, &described).ok())
+      << "the time is in memory, and a thread is free for others";
+  guarded.service().store->reading.Open();
+  for (std::thread& viewer : viewers) viewer.join();
+  EXPECT_THAT(guarded.Audit(), Contains(HasSubstr("identity=\"a-viewer\" role=viewer peer=\"\" "
+                                                  "act=GetStormMap verdict=refused "
+                                                  "reason=\"REQUEST_QUEUE_FULL\"")));
 }
 
 // An Interact call by hand.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <new>
 #include <thread>
 
 #include "accuracy/cost_model.h"
@@ -384,6 +385,7 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> FakeStormStore:
   if (Find(id) == nullptr) return absl::NotFoundError("there is no such storm");
   if (auto cached = Peek(id, time_index); cached != nullptr) return cached;
   reading.Pass();
+  if (without_memory) throw std::bad_alloc();
   const std::lock_guard lock(mutex_);
   ++reads_;
   changed_.notify_all();

@@ -64,6 +64,8 @@ class FakeStormStore final : public volume::StormStore {
   // Changes a storm as if its files had changed.
   void Become(const std::string& id, const std::function<void(volume::StormInfo&)>& change);
 
+  std::atomic<bool> without_memory{false};  // reads throw bad_alloc
+
   // Reads of that time fail with `status` from now on.
   void FailAt(int time_index, const absl::Status& status);
   int Reads();

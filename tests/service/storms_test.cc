@@ -20,6 +20,11 @@ grpc::Status Describe(FakeService& service, const std::string& id, std::uint32_t
   return status;
 }
 
+void ExpectOutOfMemory(const grpc::Status& status) {
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
+  EXPECT_THAT(status.error_message(), HasSubstr("not enough memory"));
+}
+
 TEST(StormsTest, ServerInfoSaysWhatItRunsOn) {
   FakeService service;
   v1::GetServerInfoResponse info;
@@ -121,6 +126,27 @@ TEST(StormsTest, ReadErrorComesBackWithItsText) {
   const grpc::Status status = Describe(service, "anvil", 1, &storm);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::DATA_LOSS);
   EXPECT_THAT(status.error_message(), HasSubstr("QRAIN is truncated"));
+}
+
+TEST(StormsTest, ACallWithoutMemoryIsAnsweredAndTheServerStops) {
+  FakeService service;
+  service.store->without_memory = true;
+  v1::DescribeStormRequest describe;
+  describe.set_storm_id("anvil");
+  v1::DescribeStormResponse described;
+  ExpectOutOfMemory(Call(service.stub(), &Stub::DescribeStorm, describe, &described));
+  v1::GetStormMapRequest map;
+  map.set_storm_id("anvil");
+  v1::GetStormMapResponse mapped;
+  ExpectOutOfMemory(Call(service.stub(), &Stub::GetStormMap, map, &mapped));
+  v1::ProbeRayRequest probe;
+  *probe.mutable_scene() = SmallScene();
+  probe.mutable_point()->set_x(0.5F);
+  probe.mutable_point()->set_y(0.5F);
+  v1::ProbeRayResponse probed;
+  ExpectOutOfMemory(Call(service.stub(), &Stub::ProbeRay, probe, &probed));
+  // Would wait for calls that never finish.
+  service.server().Shutdown();
 }
 
 TEST(StormsTest, OtherCallsGoOnDuringALongRead) {

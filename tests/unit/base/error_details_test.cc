@@ -88,8 +88,8 @@ TEST(Executor, SaysWhyItRefusesAndWhenToComeAgain) {
   Executor executor({.threads = 0, .max_waiting = 1});  // nothing ever runs
   absl::Status first;
   absl::Status second;
-  executor.Submit([&](const absl::Status& status) { first = status; });
-  executor.Submit([&](const absl::Status& status) { second = status; });
+  executor.Submit("", [&](const absl::Status& status) { first = status; });
+  executor.Submit("", [&](const absl::Status& status) { second = status; });
   EXPECT_EQ(second.code(), absl::StatusCode::kResourceExhausted);
   EXPECT_EQ(DetailsOf(second).reason, "REQUEST_QUEUE_FULL");
   EXPECT_EQ(DetailsOf(second).metadata.at("maximum"), "1");

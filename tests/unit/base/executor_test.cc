@@ -1,8 +1,11 @@
 #include "base/executor.h"
 
+#include <algorithm>
 #include <atomic>
 #include <future>
+#include <mutex>
 #include <new>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -33,9 +36,9 @@ class Hang {
 TEST(ExecutorTest, OthersGoOnBesideTasksThatHang) {
   Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(50)});
   Hang hang;
-  for (int i = 0; i < 5; ++i) executor.Submit(hang.Task());
+  for (int i = 0; i < 5; ++i) executor.Submit("", hang.Task());
   std::promise<absl::Status> ran;
-  executor.Submit([&ran](const absl::Status& status) { ran.set_value(status); });
+  executor.Submit("", [&ran](const absl::Status& status) { ran.set_value(status); });
   auto done = ran.get_future();
   ASSERT_EQ(done.wait_for(std::chrono::seconds(10)), std::future_status::ready);
   EXPECT_TRUE(done.get().ok());
@@ -55,9 +58,9 @@ TEST(ExecutorTest, WhereTooManyHangWhoWaitsIsRefusedInTime) {
                      .max_hanging = 2,
                      .max_wait = milliseconds(300)});
   Hang hang;
-  for (int i = 0; i < 3; ++i) executor.Submit(hang.Task());
+  for (int i = 0; i < 3; ++i) executor.Submit("", hang.Task());
   std::promise<absl::Status> ran;
-  executor.Submit([&ran](const absl::Status& status) { ran.set_value(status); });
+  executor.Submit("", [&ran](const absl::Status& status) { ran.set_value(status); });
   auto done = ran.get_future();
   ASSERT_EQ(done.wait_for(std::chrono::seconds(10)), std::future_status::ready);
   const absl::Status refused = done.get();
@@ -70,7 +73,7 @@ TEST(ExecutorTest, WhereTooManyHangWhoWaitsIsRefusedInTime) {
 TEST(ExecutorTest, StopWaitsForAllThatHangTogether) {
   Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(20)});
   Hang hang;
-  for (int i = 0; i < 8; ++i) executor.Submit(hang.Task());
+  for (int i = 0; i < 8; ++i) executor.Submit("", hang.Task());
   for (int i = 0; i < 1000 && executor.Hanging() < 6; ++i) {
     std::this_thread::sleep_for(milliseconds(5));
   }
@@ -81,11 +84,59 @@ TEST(ExecutorTest, StopWaitsForAllThatHangTogether) {
   hang.LetGo();
 }
 
-TEST(ExecutorTest, ATaskWithoutMemoryFailsAlone) {
-  Executor executor({.threads = 1});
-  executor.Submit([](const absl::Status&) { throw std::bad_alloc(); });
+TEST(ExecutorTest, OwnersTakeTurns) {
+  std::mutex mutex;
+  std::vector<std::string> order;
+  std::promise<void> last;
+  {
+    Executor executor({.threads = 1, .max_waiting = 100, .max_waiting_each = 100});
+    Hang hang;
+    executor.Submit("", hang.Task());
+    const auto submit = [&](const std::string& owner) {
+      executor.Submit(owner, [&, owner](const absl::Status&) {
+        std::this_thread::sleep_for(milliseconds(2));
+        const std::lock_guard lock(mutex);
+        order.push_back(owner);
+        if (order.size() == 42) last.set_value();
+      });
+    };
+    for (int i = 0; i < 40; ++i) submit("hog");
+    for (int i = 0; i < 2; ++i) submit("other");
+    hang.LetGo();
+    last.get_future().wait();
+  }
+  EXPECT_EQ(std::count(order.begin(), order.begin() + 8, "other"), 2)
+      << "not after the forty that came before";
+}
+
+TEST(ExecutorTest, LongTasksOfOneOwnerLeaveAThreadToOthers) {
   std::promise<absl::Status> ran;
-  executor.Submit([&ran](const absl::Status& status) { ran.set_value(status); });
+  Executor executor({.threads = 3});
+  Hang hang;
+  for (int i = 0; i < 10; ++i) executor.Submit("hog", hang.Task());
+  executor.Submit("other", [&ran](const absl::Status& status) { ran.set_value(status); });
+  auto done = ran.get_future();
+  EXPECT_EQ(done.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  hang.LetGo();
+}
+
+TEST(ExecutorTest, OneOwnerDoesNotFillTheQueue) {
+  std::vector<absl::Status> refused;
+  Executor executor({.threads = 0, .max_waiting = 10, .max_waiting_each = 3});
+  const auto refuse = [&](const absl::Status& status) { refused.push_back(status); };
+  for (int i = 0; i < 5; ++i) executor.Submit("hog", refuse);
+  ASSERT_EQ(refused.size(), 2);
+  EXPECT_EQ(DetailsOf(refused.front()).reason, "REQUEST_QUEUE_FULL");
+  EXPECT_EQ(DetailsOf(refused.front()).metadata.at("maximum"), "3");
+  executor.Submit("other", refuse);
+  EXPECT_EQ(refused.size(), 2);
+}
+
+TEST(ExecutorTest, ATaskWithoutMemoryFailsAlone) {
+  std::promise<absl::Status> ran;
+  Executor executor({.threads = 1});
+  executor.Submit("", [](const absl::Status&) { throw std::bad_alloc(); });
+  executor.Submit("", [&ran](const absl::Status& status) { ran.set_value(status); });
   EXPECT_TRUE(ran.get_future().get().ok());
 }
 
@@ -96,7 +147,7 @@ TEST(ExecutorTest, ManyTasksRunEachOnce) {
     std::vector<std::jthread> threads;
     for (int i = 0; i < 4; ++i) {
       threads.emplace_back([&] {
-        for (int j = 0; j < 1000; ++j) executor.Submit([&](const absl::Status&) { ++runs; });
+        for (int j = 0; j < 1000; ++j) executor.Submit("", [&](const absl::Status&) { ++runs; });
       });
     }
   }
