@@ -7,13 +7,16 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "base/file_descriptor.h"
+#include "base/line_limit.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 
@@ -35,13 +38,19 @@ bool Bind(int socket, const std::string& name) {
   return bind(socket, reinterpret_cast<const sockaddr*>(&address), bytes) == 0;
 }
 
+// Anybody on this machine may connect as often as they like.
+constexpr int kMaxWarningsPerSecond = 5;
+
 // True for a process of this process' user. Root may do anything anyway, but has no need to.
-bool IsOwnUser(int connection) {
+bool IsOwnUser(int connection, base::LineLimit& warnings) {
   ucred peer{};
   socklen_t bytes = sizeof(peer);
   const bool known = getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &bytes) == 0;
   if (known && peer.uid == geteuid()) return true;
-  spdlog::warn("refusing process {} of user {} at the local socket", peer.pid, peer.uid);
+  if (const auto left_out = warnings.Take(std::chrono::system_clock::now())) {
+    spdlog::warn("refusing process {} of user {} at the local socket{}", peer.pid, peer.uid,
+                 *left_out == 0 ? "" : absl::StrCat(" (", *left_out, " more since the last line)"));
+  }
   return false;
 }
 
@@ -56,8 +65,9 @@ absl::StatusOr<std::unique_ptr<LocalListener>> LocalListener::Start(grpc::Server
   }
   std::vector<base::FileDescriptor> sockets;
   sockets.push_back(std::move(socket));
-  const auto take = [&server](base::FileDescriptor connection) {
-    if (!IsOwnUser(connection.Get())) return;
+  const auto take = [&server, warnings = std::make_shared<base::LineLimit>(kMaxWarningsPerSecond)](
+                        base::FileDescriptor connection) {
+    if (!IsOwnUser(connection.Get(), *warnings)) return;
     grpc::AddInsecureChannelFromFd(&server, connection.Release());
   };
   THUNDERHEAD_ASSIGN_OR_RETURN(auto loop, AcceptLoop::Start(std::move(sockets), take));
