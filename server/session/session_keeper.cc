@@ -37,23 +37,23 @@ void SessionKeeper::SaveThen(std::function<void()> done) {
 
 absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<SessionRecord> records, store_.Load());
-  std::vector<std::string> expired;
+  std::vector<std::string> too_old;
   for (const SessionRecord& record : records) {
-    if (sessions_.HasExpired(record.last_used)) {
-      expired.push_back(record.id);
+    if (sessions_.IsTooOld(record.last_used)) {
+      too_old.push_back(record.id);
       continue;
     }
     absl::StatusOr<DecodedScene> decoded = decode(record.scene);
     if (!decoded.ok()) {
       base::LogError(base::Annotate(
-          decoded.status(),
-          absl::StrCat("session ", record.id, " is not brought back, but kept until it expires")));
+          decoded.status(), absl::StrCat("session ", record.id,
+                                         " is not brought back, but kept until it is too old")));
       continue;
     }
     kept_[record.id].session =
         sessions_.Restore(record, std::move(decoded->scene), std::move(decoded->serialized));
   }
-  THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(expired));
+  THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(too_old));
   // Before anybody sees their new revisions, so that the next restart's are larger still.
   return SaveChanges();
 }

@@ -34,8 +34,8 @@ class SessionKeeper {
   // How far the use of a session may be ahead of its record's.
   static constexpr std::chrono::seconds kUsePause{30};
 
-  // Puts the store's sessions into `sessions`, without those that have expired. A scene that cannot
-  // be decoded is logged and stays in the store until it expires. Both must outlive the keeper.
+  // Puts the store's sessions into `sessions`, without those that are too old. A scene that cannot
+  // be decoded is logged and stays in the store until it is too old. Both must outlive the keeper.
   static absl::StatusOr<std::unique_ptr<SessionKeeper>> Start(SessionStore& store,
                                                               Sessions& sessions,
                                                               const DecodeScene& decode);

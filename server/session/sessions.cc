@@ -21,12 +21,6 @@ constexpr int kIdWords = 2;
 // gives no revision to a second scene.
 constexpr std::uint64_t kUnsavedRevisions = 1'000'000;
 
-// Since a time of the system's clock, which may have been set back since.
-Clock::duration AgeOf(std::chrono::system_clock::time_point time) {
-  return std::max(Clock::duration::zero(), std::chrono::duration_cast<Clock::duration>(
-                                               std::chrono::system_clock::now() - time));
-}
-
 // Abandoned sessions expire one after another.
 constexpr std::chrono::seconds kSessionRetryAfter{30};
 
@@ -117,8 +111,7 @@ void Session::ShowRestored(const SessionRecord& record, scene::Scene scene,
     const std::lock_guard lock(mutex_);
     revision_count_ = record.scene_revision + kUnsavedRevisions;
     revision = revision_count_;
-    const Clock::duration ago = AgeOf(record.last_used);
-    last_used_ = Clock::now() - ago;
+    last_used_ = Clock::now();
   }
   Show(revision, std::move(scene), std::move(serialized));
 }
@@ -245,8 +238,8 @@ std::shared_ptr<Session> Sessions::Restore(const SessionRecord& record, scene::S
   return session;
 }
 
-bool Sessions::HasExpired(std::chrono::system_clock::time_point last_used) const {
-  return AgeOf(last_used) > options_.idle_timeout;
+bool Sessions::IsTooOld(std::chrono::system_clock::time_point last_used) const {
+  return std::chrono::system_clock::now() - last_used > options_.max_absence;
 }
 
 void Sessions::Add(const std::shared_ptr<Session>& session) {

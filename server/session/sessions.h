@@ -155,6 +155,8 @@ struct SessionsOptions {
   Clock::duration idle_timeout = std::chrono::minutes(15);  // with nobody there
   // With people there who acknowledge and send nothing.
   Clock::duration watched_idle_timeout = std::chrono::hours(1);
+  // By the system's clock: a session that nobody used for longer is not brought back from a store.
+  std::chrono::hours max_absence = std::chrono::hours(24 * 30);
   RosterTimeouts roster_timeouts;
   AudienceFormat format;
 };
@@ -173,11 +175,12 @@ class Sessions {
   // and CloseAll. Those without an owner have as many as there may be.
   absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {},
                                                   const std::string& owner = "");
-  // The session of a record from another run, as if nothing had happened but that everybody left.
+  // The session of a record from another run, as if everybody had just left: the time that the
+  // server was down does not count, as nobody could come back then.
   std::shared_ptr<Session> Restore(const SessionRecord& record, scene::Scene scene,
                                    std::string serialized);
-  // True for a session that nobody has used since then.
-  bool HasExpired(std::chrono::system_clock::time_point last_used) const;
+  // True for a record that was last used too long ago to be brought back.
+  bool IsTooOld(std::chrono::system_clock::time_point last_used) const;
   // By either key. NOT_FOUND if it never existed, was closed or has expired; UNAVAILABLE after
   // CloseAll. Counts as use.
   absl::StatusOr<FoundSession> Find(const std::string& key);

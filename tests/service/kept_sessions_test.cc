@@ -320,36 +320,43 @@ TEST_F(KeptSessionsTest, RevisionsGoOnOverSeveralRestarts) {
   }
 }
 
-TEST_F(KeptSessionsTest, ExpiredSessionsAreDropped) {
+// Neither an outage nor a clock that was wrong at boot ends sessions that nobody could come back
+// to.
+TEST_F(KeptSessionsTest, TheTimeThatTheServerWasDownDoesNotCount) {
   options_.sessions.idle_timeout = std::chrono::minutes(10);
   const auto created = Create();
+  for (const std::chrono::hours ago :
+       {std::chrono::hours(24 * 29), std::chrono::hours(-24 * 365)}) {
+    service_.reset();
+    store_->Change([&](SessionRecord& record) { record.last_used -= ago; });
+    Start();
+    EXPECT_EQ(CodeOf(created.session_id()), grpc::StatusCode::OK);
+  }
+}
+
+TEST_F(KeptSessionsTest, SessionsThatAreTooOldAreDropped) {
+  const auto created = Create();
   service_.reset();
-  store_->Change([](SessionRecord& record) { record.last_used -= std::chrono::minutes(9); });
-  Start();
-  EXPECT_EQ(CodeOf(created.session_id()), grpc::StatusCode::OK);
-  service_.reset();
-  store_->Change([](SessionRecord& record) { record.last_used -= std::chrono::minutes(11); });
+  store_->Change([](SessionRecord& record) { record.last_used -= std::chrono::hours(24 * 31); });
   Start();
   EXPECT_EQ(CodeOf(created.session_id()), grpc::StatusCode::NOT_FOUND);
   EXPECT_THAT(store_->Records(), IsEmpty());
 }
 
-TEST_F(KeptSessionsTest, ARestartDoesNotMakeASessionYounger) {
+TEST_F(KeptSessionsTest, ARestoredSessionHasItsFullTimeToBeComeBackToAndNoMore) {
   options_.sessions.idle_timeout = std::chrono::seconds(2);
   service_.reset();
   const auto created = (Start(), Create());
   service_.reset();
-  store_->Change([](SessionRecord& record) {
-    record.last_used = std::chrono::system_clock::now() - std::chrono::milliseconds(1500);
-  });
+  store_->Change([](SessionRecord& record) { record.last_used -= std::chrono::hours(1); });
+  const auto began = std::chrono::steady_clock::now();
   Start();
   EXPECT_EQ(store_->Records().size(), 1U);
-  const auto began = std::chrono::steady_clock::now();
   ASSERT_TRUE(store_->Await([](const auto& records) { return records.empty(); }));
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1900));
+  EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1900));
 }
 
-TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItExpires) {
+TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItIsTooOld) {
   const auto damaged = Create();
   const auto other = Create();
   service_.reset();
@@ -359,7 +366,7 @@ TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItExpires) {
   ::testing::internal::CaptureStdout();
   Start();
   EXPECT_THAT(::testing::internal::GetCapturedStdout(),
-              HasSubstr("is not brought back, but kept until it expires: its scene is damaged"));
+              HasSubstr("is not brought back, but kept until it is too old: its scene is damaged"));
   EXPECT_EQ(CodeOf(damaged.session_id()), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(CodeOf(other.session_id()), grpc::StatusCode::OK);
   EXPECT_EQ(store_->Records().size(), 2U);
