@@ -485,6 +485,10 @@ void JobBoard::GiveBack(const std::vector<JobChange>& changes) {
   }
 }
 
+void JobBoard::GiveBackForgotten(const std::vector<std::string>& ids) {
+  forgotten_.insert(forgotten_.end(), ids.begin(), ids.end());
+}
+
 PictureCounts JobBoard::Counts() const {
   PictureCounts counts{};
   for (const auto& [id, entry] : jobs_) {

@@ -146,8 +146,10 @@ class JobBoard {
   std::vector<JobChange> TakeChanges();
   // The changes could not be saved.
   void GiveBack(const std::vector<JobChange>& changes);
-  // The jobs that were forgotten since the last call.
+  // The jobs that were forgotten since the last call; they are taken to be removed from the store.
   std::vector<std::string> TakeForgotten() { return std::exchange(forgotten_, {}); }
+  // They could not be removed.
+  void GiveBackForgotten(const std::vector<std::string>& ids);
 
   // Of all jobs.
   PictureCounts Counts() const;

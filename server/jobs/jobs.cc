@@ -417,14 +417,23 @@ absl::Status Jobs::Save(Lock& lock) {
   if (changes.empty() && forgotten.empty()) return absl::OkStatus();
   lock.unlock();
   absl::Status saved;
+  absl::Status removed;
   if (store_ != nullptr) {
     if (!changes.empty()) saved = store_->Save(changes);
-    if (!forgotten.empty()) saved.Update(store_->Remove(forgotten));
+    if (!forgotten.empty()) removed = store_->Remove(forgotten);
   }
-  for (const std::string& id : forgotten) results_.Remove(id);
+  // Not before the records: those that stay must have their files.
+  if (removed.ok()) {
+    for (const std::string& id : forgotten) results_.Remove(id);
+  }
   lock.lock();
-  if (!saved.ok()) {
-    board_.GiveBack(changes);
+  if (!saved.ok()) board_.GiveBack(changes);
+  // Else a cancelled job would be drawn again by the next server.
+  if (!removed.ok()) board_.GiveBackForgotten(forgotten);
+  saved.Update(removed);
+  if (saved.ok()) {
+    last_problem_.clear();
+  } else {
     paused_until_ = Now() + kUnwrittenPause;
     LogOnce(base::Annotate(saved, "cannot save render jobs; trying again"));
   }

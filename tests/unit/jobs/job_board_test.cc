@@ -169,6 +169,17 @@ TEST(JobBoard, ResultsThatWereFetchedMakeRoomFirstThenTheOldest) {
   EXPECT_TRUE(board.ResultOf({"a", 4}).ok());
 }
 
+TEST(JobBoard, WhatCouldNotBeRemovedFromTheStoreIsGivenAgain) {
+  JobBoard board({});
+  Add(board, "a", "anna", 1);
+  board.Forget("a");
+  const std::vector<std::string> forgotten = board.TakeForgotten();
+  EXPECT_THAT(forgotten, ElementsAre("a"));
+  EXPECT_THAT(board.TakeForgotten(), IsEmpty());
+  board.GiveBackForgotten(forgotten);
+  EXPECT_THAT(board.TakeForgotten(), ElementsAre("a"));
+}
+
 TEST(JobBoard, TheOldestThatHasEndedMakesRoomForANewJob) {
   JobLimits limits;
   limits.max_jobs = 2;

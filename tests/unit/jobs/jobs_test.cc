@@ -9,10 +9,13 @@
 #include <fstream>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
@@ -67,6 +70,65 @@ TEST(JobsTest, APictureWithoutMemoryIsTriedAgainAndTakesNothingWithIt) {
   EXPECT_EQ((*jobs)->Load().result_bytes, 5U);
   EXPECT_EQ((*jobs)->Load().waiting, 2U);
   EXPECT_EQ(begun, 3);
+}
+
+// A store in memory that can be full.
+class FullStore final : public JobStore {
+ public:
+  absl::Status Add(const JobRecord& job) override {
+    const std::lock_guard lock(mutex_);
+    jobs_[job.id] = job;
+    return absl::OkStatus();
+  }
+  absl::Status Save(const std::vector<JobChange>&) override { return Outcome(); }
+  absl::Status Remove(const std::vector<std::string>& ids) override {
+    if (full) return Outcome();
+    const std::lock_guard lock(mutex_);
+    for (const std::string& id : ids) jobs_.erase(id);
+    return absl::OkStatus();
+  }
+  absl::StatusOr<std::vector<JobRecord>> Load() override {
+    const std::lock_guard lock(mutex_);
+    std::vector<JobRecord> records;
+    for (const auto& [id, record] : jobs_) records.push_back(record);
+    return records;
+  }
+
+  std::atomic<bool> full{false};
+
+ private:
+  absl::Status Outcome() const {
+    return full ? absl::UnavailableError("database or disk is full") : absl::OkStatus();
+  }
+
+  std::mutex mutex_;
+  std::map<std::string, JobRecord> jobs_;
+};
+
+TEST(JobsTest, AForgottenJobStaysForgottenThoughTheStoreWasFull) {
+  const testing::TemporaryFolder folder;
+  const auto store = std::make_shared<FullStore>();
+  JobsOptions options;
+  options.store = store;
+  options.folder = folder.File("jobs");
+  {
+    auto jobs = Jobs::Open(options);
+    ASSERT_TRUE(jobs.ok()) << jobs.status();
+    NewJob job{"night", "", std::vector<PictureOrder>(3)};
+    std::promise<absl::StatusOr<JobView>> created;
+    (*jobs)->Create(job, [&](const absl::StatusOr<JobView>& view) { created.set_value(view); });
+    const auto view = created.get_future().get();
+    ASSERT_TRUE(view.ok()) << view.status();
+    store->full = true;
+    std::promise<absl::Status> cancelled;
+    (*jobs)->Cancel(view->id, {.name = "night"}, true,
+                    [&](const absl::StatusOr<JobView>& end) { cancelled.set_value(end.status()); });
+    EXPECT_FALSE(cancelled.get_future().get().ok()) << "it does not outlive the server yet";
+    store->full = false;
+  }
+  auto jobs = Jobs::Open(options);
+  ASSERT_TRUE(jobs.ok()) << jobs.status();
+  EXPECT_EQ((*jobs)->Load().running, 0U) << "it would be drawn again";
 }
 
 class UnwrittenPictures : public ::testing::Test {
