@@ -25,16 +25,23 @@ void AddJobsFlags(CLI::App& serve, JobsFlags& flags) {
                   "the folder of --state")
       ->group(kGroup);
   add("--jobs-quota", flags.quota_gib, 1e-6, 1e6,
-      "GiB of results that are kept; beyond it the oldest are dropped, those that were fetched "
-      "first");
+      "GiB of results that are kept; beyond it the oldest of those that were fetched are dropped, "
+      "and where nobody has fetched any, no further picture is begun");
+  add("--jobs-quota-each", flags.quota_each_gib, 0, 1e6,
+      "GiB of results of one identity that nobody has fetched; beyond it none of its pictures is "
+      "begun; 0 for half of --jobs-quota");
   add("--jobs-keep", flags.keep_hours, 1e-4, 1e5,
       "Hours for which a job that has ended is kept, with its results");
   add("--max-jobs", flags.limits.max_jobs, 1, 1e5,
-      "Jobs that are kept; those that have ended make room");
+      "Jobs that are kept; those that have ended and whose results were fetched make room");
   add("--max-jobs-each", flags.limits.max_jobs_per_owner, 1, 1e5, "The same, of one identity");
   add("--max-job-pictures", flags.limits.max_pictures, 1, 1e6,
       "Pictures of jobs that wait to be drawn");
   add("--max-job-pictures-each", flags.limits.max_pictures_per_owner, 1, 1e6,
+      "The same, of one identity");
+  add("--max-kept-pictures", flags.limits.max_kept_pictures, 1, 1e7,
+      "Pictures of the jobs that are kept, whatever became of them");
+  add("--max-kept-pictures-each", flags.limits.max_kept_pictures_per_owner, 1, 1e7,
       "The same, of one identity");
 }
 
@@ -44,8 +51,12 @@ jobs::JobsOptions JobsOptionsOf(const JobsFlags& flags, const State& state) {
   options.folder = flags.folder;
   if (options.folder.empty() && !state.folder.empty()) options.folder = state.folder + "/jobs";
   options.limits = flags.limits;
-  options.limits.max_result_bytes =
-      static_cast<std::uint64_t>(flags.quota_gib * static_cast<double>(1 << 30));
+  const auto bytes = [](double gib) {
+    return static_cast<std::uint64_t>(gib * static_cast<double>(1 << 30));
+  };
+  options.limits.max_result_bytes = bytes(flags.quota_gib);
+  options.limits.max_result_bytes_per_owner =
+      bytes(flags.quota_each_gib > 0.0 ? flags.quota_each_gib : 0.5 * flags.quota_gib);
   options.limits.keep = std::chrono::seconds(std::llround(3600.0 * flags.keep_hours));
   return options;
 }

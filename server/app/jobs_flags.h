@@ -14,6 +14,7 @@ namespace thunderhead::app {
 struct JobsFlags {
   std::string folder;  // empty: in the state folder
   double quota_gib = 10.0;
+  double quota_each_gib = 0.0;  // 0: half of it
   double keep_hours = 24.0;
   jobs::JobLimits limits;
 };

@@ -144,6 +144,8 @@ std::string Operation::MetricsText() {
         static_cast<double>(load.jobs.drawing));
     add("job_result_bytes", "Results of render jobs on the disk",
         static_cast<double>(load.jobs.result_bytes));
+    add("job_pictures_paused", "Those of them that are not begun, as results must be fetched first",
+        static_cast<double>(load.jobs.paused));
     add("draining", "1 from SIGTERM on", load.draining ? 1.0 : 0.0);
     add("pictures_waiting", "Single pictures that wait to be drawn", load.waiting_pictures);
     add("reading_stuck_seconds", "Since a storage that hangs gave something; 0 if none hangs",

@@ -102,10 +102,13 @@ void RaiseFileLimit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-std::optional<gateway::KeptFile> FindResult(const service::Server& server, std::string_view path) {
+std::optional<gateway::KeptFile> FindResult(service::Server& server, std::string_view path) {
   std::optional<jobs::ResultPlace> result = server.FindResult(path);
   if (!result.has_value()) return std::nullopt;
-  return gateway::KeptFile{std::move(result->path), std::move(result->sha256)};
+  return gateway::KeptFile{
+      .path = std::move(result->path),
+      .entity_tag = std::move(result->sha256),
+      .on_sent = [&server, path = std::string(path)] { server.ResultFetched(path); }};
 }
 
 absl::Status Serve(ServeFlags flags) {
@@ -153,10 +156,10 @@ absl::Status Serve(ServeFlags flags) {
   server_options.session_store = state.sessions;
   server_options.jobs = JobsOptionsOf(flags.jobs, state);
   server_options.clouds_folder = clouds.Path();
+  server_options.executor = flags.executor;
   server_options.render_loop = flags.render_loop;
   server_options.render_loop.memory = budgets.memory;
   server_options.render_loop.device_memory = {budgets.memory, budgets.gpu};
-  server_options.executor = flags.executor;
   // Ends the wait for a signal; a supervisor starts the server anew.
   const auto given_up = std::make_shared<absl::Status>();
   server_options.render_loop.on_device_given_up = [given_up](const absl::Status& why) {

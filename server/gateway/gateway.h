@@ -24,6 +24,9 @@ namespace thunderhead::gateway {
 struct KeptFile {
   std::string path;
   std::string entity_tag;  // another one for other contents; without quotes
+  // Called on the gateway's thread when the client has been sent the file to its end; empty: nobody
+  // is told. Must not block.
+  std::function<void()> on_sent = nullptr;
 };
 
 // A connection or request that broke a rule or a limit of the gateway, and so became no call.

@@ -88,6 +88,7 @@ class HttpConnection {
   Site& site_;
   bool is_first_ = true;
   bool unread_input_ = false;
+  bool sent_whole_ = false;  // the last response
 };
 
 net::awaitable<bool> HttpConnection::ServeOne() {
@@ -406,6 +407,8 @@ net::awaitable<bool> HttpConnection::SendKept(const Request& request, const Kept
   body.bytes = range.bytes;
   http::response<FileRangeBody> response(std::move(header.base()), std::move(body));
   keep = co_await Send(request, response);
+  const bool to_its_end = range.first + range.bytes == file_bytes;
+  if (sent_whole_ && to_its_end && file.on_sent != nullptr) file.on_sent();
   co_return keep;
 }
 
@@ -434,6 +437,7 @@ net::awaitable<bool> HttpConnection::Send(const Request& request, http::response
   response.keep_alive(keep_alive);
   http::response_serializer<Body> serializer(response);
   link_.Begin(LinkUse::kSending);
+  sent_whole_ = false;
   const std::chrono::duration<double> at_least(
       static_cast<double>(response.payload_size().value_or(0)) /
       site_.options.min_bytes_per_second);
@@ -447,6 +451,7 @@ net::awaitable<bool> HttpConnection::Send(const Request& request, http::response
                                     net::redirect_error(net::use_awaitable, error));
     if (error) co_return false;
   }
+  sent_whole_ = true;
   co_return keep_alive;
 }
 

@@ -20,7 +20,8 @@ absl::Status TooMany(const std::string& what, std::size_t maximum, const char* u
                      const char* reason) {
   return base::WithDetails(
       absl::ResourceExhaustedError(absl::StrCat(what, ", and this server allows ", maximum,
-                                                "; try again when some have ended")),
+                                                "; try again when some have ended and "
+                                                "their results were fetched")),
       {.reason = reason,
        .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", unit}},
        .retry_after = kRetryAfter});
@@ -46,10 +47,25 @@ JobBoard::Entry& JobBoard::Insert(JobRecord record) {
   entry.not_before.assign(entry.record.pictures.size(), Time());
   for (const PictureRecord& picture : entry.record.pictures) {
     ++entry.counts[IndexOf(picture.state)];
-    if (picture.state == PictureState::kDrawn) entry.result_bytes += picture.bytes;
+    if (picture.state == PictureState::kDrawn) AddResult(entry, picture);
   }
-  result_bytes_ += entry.result_bytes;
   return entry;
+}
+
+void JobBoard::AddResult(Entry& entry, const PictureRecord& picture) {
+  entry.result_bytes += picture.bytes;
+  result_bytes_ += picture.bytes;
+  if (picture.fetched) return;
+  entry.unfetched_bytes += picture.bytes;
+  ++entry.unfetched;
+}
+
+void JobBoard::RemoveResult(Entry& entry, const PictureRecord& picture) {
+  entry.result_bytes -= picture.bytes;
+  result_bytes_ -= picture.bytes;
+  if (picture.fetched) return;
+  entry.unfetched_bytes -= picture.bytes;
+  --entry.unfetched;
 }
 
 void JobBoard::Restore(JobRecord record, Time now) {
@@ -81,11 +97,12 @@ absl::Status JobBoard::CheckPictures(const NewJob& job) const {
   return absl::OkStatus();
 }
 
-bool JobBoard::ForgetEnded(const std::string& owner) {
+bool JobBoard::ForgetEnded(const std::string* owner) {
   auto oldest = jobs_.end();
   for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
     const JobRecord& record = job->second.record;
-    if (!record.ended_at.has_value() || (!owner.empty() && record.owner != owner)) continue;
+    if (!record.ended_at.has_value() || (owner != nullptr && record.owner != *owner)) continue;
+    if (job->second.unfetched > 0) continue;
     if (oldest == jobs_.end() || record.ended_at < oldest->second.record.ended_at) oldest = job;
   }
   if (oldest == jobs_.end()) return false;
@@ -93,16 +110,41 @@ bool JobBoard::ForgetEnded(const std::string& owner) {
   return true;
 }
 
-absl::Status JobBoard::MakeRoomForJob(const std::string& owner) {
-  const auto own = static_cast<std::size_t>(std::ranges::count_if(
-      jobs_, [&](const auto& job) { return job.second.record.owner == owner; }));
-  if (own >= limits_.max_jobs_per_owner && !ForgetEnded(owner)) {
-    return TooMany(absl::StrCat("you have ", own, " render jobs"), limits_.max_jobs_per_owner,
-                   "jobs", "TOO_MANY_JOBS");
+std::pair<std::size_t, std::size_t> JobBoard::Kept(const std::string* owner) const {
+  std::size_t jobs = 0;
+  std::size_t pictures = 0;
+  for (const auto& [id, entry] : jobs_) {
+    if (owner != nullptr && entry.record.owner != *owner) continue;
+    ++jobs;
+    pictures += entry.record.pictures.size();
   }
-  if (jobs_.size() >= limits_.max_jobs && !ForgetEnded("")) {
-    return TooMany(absl::StrCat("the server has ", jobs_.size(), " render jobs"), limits_.max_jobs,
-                   "jobs", "TOO_MANY_JOBS");
+  return {jobs, pictures};
+}
+
+absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
+  struct Share {
+    const std::string* owner;  // null: everybody's
+    const char* who;
+    std::size_t max_jobs;
+    std::size_t max_pictures;
+  };
+  for (const Share& share :
+       {Share{&job.owner, "you have", limits_.max_jobs_per_owner,
+              limits_.max_kept_pictures_per_owner},
+        Share{nullptr, "the server has", limits_.max_jobs, limits_.max_kept_pictures}}) {
+    while (true) {
+      const auto [jobs, pictures] = Kept(share.owner);
+      const bool too_many_jobs = jobs >= share.max_jobs;
+      if (!too_many_jobs && pictures + job.pictures.size() <= share.max_pictures) break;
+      if (ForgetEnded(share.owner)) continue;
+      if (too_many_jobs) {
+        return TooMany(absl::StrCat(share.who, " ", jobs, " render jobs"), share.max_jobs, "jobs",
+                       "TOO_MANY_JOBS");
+      }
+      return TooMany(absl::StrCat(share.who, " ", pictures, " pictures in render jobs, and with ",
+                                  "this job ", pictures + job.pictures.size()),
+                     share.max_pictures, "pictures", "TOO_MANY_JOB_PICTURES");
+    }
   }
   return absl::OkStatus();
 }
@@ -110,7 +152,7 @@ absl::Status JobBoard::MakeRoomForJob(const std::string& owner) {
 absl::Status JobBoard::Add(const std::string& id, const std::string& result_key, NewJob job,
                            Time now) {
   if (absl::Status full = CheckPictures(job); !full.ok()) return full;
-  if (absl::Status full = MakeRoomForJob(job.owner); !full.ok()) return full;
+  if (absl::Status full = MakeRoomForJob(job); !full.ok()) return full;
   JobRecord record;
   record.id = id;
   record.result_key = result_key;
@@ -140,7 +182,36 @@ absl::Status JobBoard::Check(const std::string& id, const Asker& asker) const {
       {.reason = "NOT_YOUR_JOB"});
 }
 
-JobView JobBoard::ViewOf(const Entry& entry) const {
+JobBoard::Unfetched JobBoard::UnfetchedBytes() const {
+  Unfetched unfetched;
+  for (const auto& [id, entry] : jobs_) {
+    unfetched.all += entry.unfetched_bytes;
+    unfetched.by_owner[entry.record.owner] += entry.unfetched_bytes;
+  }
+  return unfetched;
+}
+
+std::optional<Problem> JobBoard::PausedBecause(const std::string& owner,
+                                               const Unfetched& unfetched) const {
+  const auto own = unfetched.by_owner.find(owner);
+  const std::uint64_t own_bytes = own == unfetched.by_owner.end() ? 0 : own->second;
+  const auto because = [](const char* whose, std::uint64_t bytes, std::uint64_t maximum,
+                          const char* flag) {
+    return Problem{absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
+                   absl::StrCat("no further picture is begun: results ", whose,
+                                " that nobody has fetched take ", bytes, " bytes of ", maximum,
+                                " (", flag, "); fetch some, or forget jobs")};
+  };
+  if (own_bytes >= limits_.max_result_bytes_per_owner) {
+    return because("of yours", own_bytes, limits_.max_result_bytes_per_owner, "--jobs-quota-each");
+  }
+  if (unfetched.all >= limits_.max_result_bytes) {
+    return because("of all jobs", unfetched.all, limits_.max_result_bytes, "--jobs-quota");
+  }
+  return std::nullopt;
+}
+
+JobView JobBoard::ViewOf(const Entry& entry, const Unfetched& unfetched) const {
   JobView view;
   view.id = entry.record.id;
   view.result_key = entry.record.result_key;
@@ -152,6 +223,9 @@ JobView JobBoard::ViewOf(const Entry& entry) const {
   view.cancelled = entry.record.cancelled;
   view.counts = entry.counts;
   view.result_bytes = entry.result_bytes;
+  if (entry.counts[IndexOf(PictureState::kWaiting)] > 0) {
+    view.paused = PausedBecause(entry.record.owner, unfetched);
+  }
   return view;
 }
 
@@ -159,7 +233,7 @@ std::optional<JobNews> JobBoard::NewsOf(const std::string& id, std::uint64_t ver
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) return std::nullopt;
   const Entry& entry = job->second;
-  JobNews news{ViewOf(entry), {}, entry.version};
+  JobNews news{ViewOf(entry, UnfetchedBytes()), {}, entry.version};
   for (std::size_t i = 0; i < entry.versions.size(); ++i) {
     if (entry.versions[i] <= version) continue;
     const PictureRecord& picture = entry.record.pictures[i];
@@ -176,7 +250,8 @@ std::vector<JobView> JobBoard::All() const {
   std::ranges::sort(ordered);
   std::vector<JobView> views;
   views.reserve(ordered.size());
-  for (const auto& [order, entry] : ordered) views.push_back(ViewOf(*entry));
+  const Unfetched unfetched = UnfetchedBytes();
+  for (const auto& [order, entry] : ordered) views.push_back(ViewOf(*entry, unfetched));
   return views;
 }
 
@@ -230,8 +305,10 @@ std::optional<PicturePlace> JobBoard::Begin(Time now) {
   std::map<std::string, std::vector<std::string>> waiting;  // ids by owner
   std::map<std::string, std::size_t> places;
   std::vector<std::pair<std::uint64_t, Entry*>> ordered;
+  const Unfetched unfetched = UnfetchedBytes();
   for (auto& [id, entry] : jobs_) {
-    if (entry.saved && entry.counts[IndexOf(PictureState::kWaiting)] > 0) {
+    if (entry.saved && entry.counts[IndexOf(PictureState::kWaiting)] > 0 &&
+        !PausedBecause(entry.record.owner, unfetched).has_value()) {
       ordered.emplace_back(entry.order, &entry);
     }
   }
@@ -281,10 +358,11 @@ void JobBoard::SetState(Entry& entry, std::size_t place, PictureState state) {
   const bool was_drawn = picture.state == PictureState::kDrawn;
   const bool is_drawn = state == PictureState::kDrawn;
   if (was_drawn != is_drawn) {
-    // Unsigned: what is taken away was added before.
-    const std::uint64_t change = is_drawn ? picture.bytes : -picture.bytes;
-    entry.result_bytes += change;
-    result_bytes_ += change;
+    if (is_drawn) {
+      AddResult(entry, picture);
+    } else {
+      RemoveResult(entry, picture);
+    }
   }
   --entry.counts[IndexOf(picture.state)];
   ++entry.counts[IndexOf(state)];
@@ -340,6 +418,7 @@ bool JobBoard::Drawn(const PicturePlace& picture, const ResultFile& file, double
   record->extension = file.extension;
   record->milliseconds = milliseconds;
   record->drawn_at = now;
+  record->fetched = false;
   SetState(*entry, picture.place, PictureState::kDrawn);
   EndIfDone(*entry, now);
   return true;
@@ -369,10 +448,12 @@ bool JobBoard::PutBack(const PicturePlace& picture, bool counts, Time not_before
 
 void JobBoard::Fetched(const PicturePlace& picture) {
   const auto job = jobs_.find(picture.job_id);
-  if (job == jobs_.end()) return;
+  if (job == jobs_.end() || picture.place >= job->second.record.pictures.size()) return;
   PictureRecord& record = job->second.record.pictures[picture.place];
-  if (record.fetched) return;
+  if (record.fetched || record.state != PictureState::kDrawn) return;
   record.fetched = true;
+  job->second.unfetched_bytes -= record.bytes;
+  --job->second.unfetched;
   unsaved_.insert(picture);
 }
 
@@ -425,28 +506,24 @@ std::optional<Time> JobBoard::NextExpiry() const {
 std::vector<ResultFile> JobBoard::MakeRoom() {
   std::vector<ResultFile> dropped;
   if (result_bytes_ <= limits_.max_result_bytes) return dropped;
-  // Not fetched and of a running job last; the oldest first.
-  std::vector<std::tuple<bool, bool, Time, PicturePlace>> order;
+  // Of a running job last; the oldest first.
+  std::vector<std::tuple<bool, Time, PicturePlace>> order;
   for (const auto& [id, entry] : jobs_) {
     for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
       const PictureRecord& picture = entry.record.pictures[i];
-      if (picture.state != PictureState::kDrawn) continue;
-      order.emplace_back(!picture.fetched, !entry.record.ended_at.has_value(), picture.drawn_at,
-                         PicturePlace{id, i});
+      if (picture.state != PictureState::kDrawn || !picture.fetched) continue;
+      order.emplace_back(!entry.record.ended_at.has_value(), picture.drawn_at, PicturePlace{id, i});
     }
   }
   std::ranges::sort(order);
-  const auto newest = std::ranges::max_element(
-      order, {}, [](const auto& candidate) { return std::get<Time>(candidate); });
   for (const auto& candidate : order) {
     if (result_bytes_ <= limits_.max_result_bytes) break;
-    if (candidate == *newest) continue;
     const PicturePlace& picture = std::get<PicturePlace>(candidate);
     Entry& entry = jobs_.at(picture.job_id);
     PictureRecord& record = entry.record.pictures[picture.place];
     dropped.push_back({picture, record.extension, record.sha256, record.bytes});
     record.problem = {absl::StatusCode::kNotFound, "RESULT_DROPPED",
-                      absl::StrCat("it was drawn, and dropped to make room: the results of all "
+                      absl::StrCat("it was fetched, and dropped to make room: the results of all "
                                    "jobs may take ",
                                    limits_.max_result_bytes, " bytes (--jobs-quota)")};
     SetState(entry, picture.place, PictureState::kDropped);
@@ -500,6 +577,16 @@ PictureCounts JobBoard::Counts() const {
 std::size_t JobBoard::Running() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       jobs_, [](const auto& job) { return !job.second.record.ended_at.has_value(); }));
+}
+
+std::size_t JobBoard::Paused() const {
+  const Unfetched unfetched = UnfetchedBytes();
+  std::size_t paused = 0;
+  for (const auto& [id, entry] : jobs_) {
+    const std::size_t waiting = entry.counts[IndexOf(PictureState::kWaiting)];
+    if (waiting > 0 && PausedBecause(entry.record.owner, unfetched).has_value()) paused += waiting;
+  }
+  return paused;
 }
 
 std::set<std::string> JobBoard::Ids() const {

@@ -47,6 +47,8 @@ struct JobView {
   bool cancelled = false;
   PictureCounts counts{};
   std::uint64_t result_bytes = 0;
+  // Why none of its pictures is begun now: results must be fetched first.
+  std::optional<Problem> paused;
 };
 
 struct PictureView {
@@ -92,8 +94,8 @@ class JobBoard {
   // A job of a store.
   void Restore(JobRecord record, Time now);
 
-  // Adds a job under that id, and forgets jobs that have ended where there are too many.
-  // RESOURCE_EXHAUSTED if that does not help.
+  // Adds a job under that id, and forgets jobs that have ended where there are too many; not those
+  // with results that nobody has fetched. RESOURCE_EXHAUSTED if that does not help.
   absl::Status Add(const std::string& id, const std::string& result_key, NewJob job, Time now);
   // The job as a store is to have it; it must be there.
   const JobRecord& Record(const std::string& id) const { return jobs_.at(id).record; }
@@ -111,7 +113,8 @@ class JobBoard {
   // The id of the job with that key for its results; empty if there is none.
   std::string IdOfKey(const std::string& result_key) const;
 
-  // Marks the picture that is next as being drawn; nothing if none may be begun now.
+  // Marks the picture that is next as being drawn; nothing if none may be begun now, as where the
+  // results that nobody has fetched leave no room.
   std::optional<PicturePlace> Begin(Time now);
   const PictureOrder& OrderOf(const PicturePlace& picture) const;
   // When the next of those that were put back may be begun again; nothing if there is none.
@@ -138,8 +141,8 @@ class JobBoard {
   void Expire(Time now);
   // When the next job does; nothing if none will by itself.
   std::optional<Time> NextExpiry() const;
-  // Drops results that are too many: those that were fetched first, then those of jobs that have
-  // ended, the oldest first. Returns them.
+  // Drops results that were fetched, where there are too many: those of jobs that have ended first,
+  // then the oldest. Returns them.
   std::vector<ResultFile> MakeRoom();
 
   // Changes that no store has yet; they are taken to be saved.
@@ -154,6 +157,8 @@ class JobBoard {
   // Of all jobs.
   PictureCounts Counts() const;
   std::size_t Running() const;
+  // Pictures that wait and may not be begun, as results must be fetched first.
+  std::size_t Paused() const;
   std::uint64_t ResultBytes() const { return result_bytes_; }
   std::set<std::string> Ids() const;
 
@@ -166,19 +171,36 @@ class JobBoard {
     std::vector<Time> not_before;         // of pictures
     PictureCounts counts{};
     std::uint64_t result_bytes = 0;
-    std::size_t first_waiting = 0;  // none before it waits
+    std::uint64_t unfetched_bytes = 0;  // of them, those that nobody has fetched
+    std::size_t unfetched = 0;          // such results
+    std::size_t first_waiting = 0;      // none before it waits
     bool saved = false;
   };
   using Jobs = std::map<std::string, Entry>;
 
+  // Bytes of results that nobody has fetched.
+  struct Unfetched {
+    std::uint64_t all = 0;
+    std::map<std::string, std::uint64_t> by_owner;
+  };
+
   Entry& Insert(JobRecord record);
   void Erase(Jobs::iterator job);
-  JobView ViewOf(const Entry& entry) const;
+  JobView ViewOf(const Entry& entry, const Unfetched& unfetched) const;
+  Unfetched UnfetchedBytes() const;
+  // Why no picture of that owner may be begun; nothing if one may.
+  std::optional<Problem> PausedBecause(const std::string& owner, const Unfetched& unfetched) const;
+  // Adds a drawn picture to the entry's sums, or takes it from them.
+  void AddResult(Entry& entry, const PictureRecord& picture);
+  void RemoveResult(Entry& entry, const PictureRecord& picture);
   std::size_t Unended(const Entry& entry) const;
   absl::Status CheckPictures(const NewJob& job) const;
-  absl::Status MakeRoomForJob(const std::string& owner);
-  // Forgets the oldest that has ended, of that owner unless empty; false if there is none.
-  bool ForgetEnded(const std::string& owner);
+  absl::Status MakeRoomForJob(const NewJob& job);
+  // Jobs and their pictures, of that owner; null: of everybody.
+  std::pair<std::size_t, std::size_t> Kept(const std::string* owner) const;
+  // Forgets the oldest that has ended and whose results were all fetched, of that owner
+  // (null: of everybody); false if there is none.
+  bool ForgetEnded(const std::string* owner);
   void SetState(Entry& entry, std::size_t place, PictureState state);
   void EndIfDone(Entry& entry, Time now);
   // The first that may be begun; nothing if there is none.

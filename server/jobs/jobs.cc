@@ -216,12 +216,21 @@ void Jobs::Fetched(const PicturePlace& picture) {
   changed_.notify_all();
 }
 
+void Jobs::FetchedByKey(const std::string& result_key, std::size_t place) {
+  std::string id;
+  {
+    const std::lock_guard lock(mutex_);
+    id = board_.IdOfKey(result_key);
+  }
+  Fetched({id, place});
+}
+
 JobsLoad Jobs::Load() const {
   const std::lock_guard lock(mutex_);
   const PictureCounts counts = board_.Counts();
-  return {board_.Running(), counts[static_cast<std::size_t>(PictureState::kWaiting)],
-          counts[static_cast<std::size_t>(PictureState::kDrawing)], board_.ResultBytes(),
-          busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0};
+  return {board_.Running(),     counts[static_cast<std::size_t>(PictureState::kWaiting)],
+          board_.Paused(),      counts[static_cast<std::size_t>(PictureState::kDrawing)],
+          board_.ResultBytes(), busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0};
 }
 
 void Jobs::Drain() {

@@ -57,6 +57,7 @@ struct ResultPlace {
 struct JobsLoad {
   std::size_t running = 0;  // jobs that have not ended
   std::size_t waiting = 0;  // pictures
+  std::size_t paused = 0;   // of those that wait, as results must be fetched first
   std::size_t drawing = 0;
   std::uint64_t result_bytes = 0;
   double stalled_s = 0.0;  // for how long its thread has been at one thing; 0 at rest
@@ -96,6 +97,7 @@ class Jobs {
   absl::StatusOr<ResultPlace> ResultOfKey(const std::string& result_key, std::size_t place) const;
   // Somebody has the whole file.
   void Fetched(const PicturePlace& picture);
+  void FetchedByKey(const std::string& result_key, std::size_t place);
 
   JobsLoad Load() const;
 

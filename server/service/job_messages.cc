@@ -36,6 +36,13 @@ std::uint32_t Count(const jobs::JobView& job, PictureState state) {
   return static_cast<std::uint32_t>(job.counts[static_cast<std::size_t>(state)]);
 }
 
+void SetProblem(const jobs::Problem& problem, v1::RenderJobProblem& message) {
+  const absl::Status status(problem.code, problem.message);
+  message.set_code(CodeOf(status));
+  message.set_reason(problem.reason.empty() ? ReasonOf(status) : problem.reason);
+  message.set_message(SendableMessage(status));
+}
+
 }  // namespace
 
 std::string ResultPathOf(const std::string& result_key) {
@@ -72,6 +79,7 @@ void ToMessage(const jobs::JobView& job, v1::RenderJob& message) {
   counts.set_dropped(Count(job, PictureState::kDropped));
   message.set_result_bytes(job.result_bytes);
   message.set_result_path(ResultPathOf(job.result_key));
+  if (job.paused.has_value()) SetProblem(*job.paused, *message.mutable_paused());
 }
 
 void ToMessage(const jobs::PictureView& picture, v1::RenderJobPictureState& message) {
@@ -82,11 +90,7 @@ void ToMessage(const jobs::PictureView& picture, v1::RenderJobPictureState& mess
   message.set_sha256(picture.sha256);
   message.set_milliseconds(picture.milliseconds);
   if (picture.problem.code == absl::StatusCode::kOk) return;
-  const absl::Status status(picture.problem.code, picture.problem.message);
-  v1::RenderJobProblem& problem = *message.mutable_problem();
-  problem.set_code(CodeOf(status));
-  problem.set_reason(picture.problem.reason.empty() ? ReasonOf(status) : picture.problem.reason);
-  problem.set_message(SendableMessage(status));
+  SetProblem(picture.problem, *message.mutable_problem());
 }
 
 jobs::Asker AskerOf(const access::Caller& caller) {

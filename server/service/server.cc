@@ -196,6 +196,11 @@ class RunningServer final : public Server {
     return place.ok() ? std::optional(*std::move(place)) : std::nullopt;
   }
 
+  void ResultFetched(std::string_view path) override {
+    const std::optional<ResultPath> parts = ParseResultPath(path);
+    if (jobs_ != nullptr && parts.has_value()) jobs_->FetchedByKey(parts->key, parts->place);
+  }
+
   void SetServing(bool serving) override { health_.SetServing(serving && !drain_.HasBegun()); }
 
   void BeginDrain() override {

@@ -81,6 +81,8 @@ class Server {
   // The file of a render job's picture by its path at the HTTP port, "/results/KEY/INDEX"; nothing
   // if there is none.
   virtual std::optional<jobs::ResultPlace> FindResult(std::string_view path) const = 0;
+  // Somebody has got the whole of that file.
+  virtual void ResultFetched(std::string_view path) = 0;
   // Tells everybody in a session when to come back, to the next server, refuses new sessions,
   // viewers and pictures, and tells health checks. Sessions, for those who stay, and pictures that
   // were begun go on. Returns at once.

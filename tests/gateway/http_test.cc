@@ -2,14 +2,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <boost/beast/http/field.hpp>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
 #include "tests/gateway/echo_service.h"
+#include "tests/gateway/eventually.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/support/temporary_folder.h"
 
@@ -49,6 +54,35 @@ class HttpTest : public ::testing::Test {
   GatewayOptions options_;
   std::unique_ptr<EchoSite> site_;
 };
+
+TEST_F(HttpTest, AKeptFileThatWasSentToItsEndIsTold) {
+  std::ofstream(folder_.File("kept.png")) << std::string(9'000'000, 'x');
+  std::atomic<int> sent{0};
+  options_.find_kept_file = [&](std::string_view path) -> std::optional<KeptFile> {
+    if (path != "/results/key/0") return std::nullopt;
+    return KeptFile{folder_.File("kept.png"), "tag", [&sent] { ++sent; }};
+  };
+  const auto eventually = [&](int count) { return Eventually([&] { return sent == count; }); };
+  EXPECT_EQ(Ask("GET", "/results/key/0").body().size(), 9'000'000U);
+  EXPECT_TRUE(eventually(1));
+  EXPECT_EQ(Ask("GET", "/results/key/0", {{"Connection", "close"}}).result(), http::status::ok);
+  EXPECT_TRUE(eventually(2)) << "also where the connection ends with it";
+  EXPECT_EQ(Ask("GET", "/results/key/0", {{"Range", "bytes=8999990-"}}).body().size(), 10U);
+  EXPECT_TRUE(eventually(3)) << "its last part";
+  EXPECT_EQ(Ask("GET", "/results/key/0", {{"Range", "bytes=0-9"}}).body().size(), 10U);
+  RawClient head(Site().Port());
+  head.Send("HEAD /results/key/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(head.Read(true).result(), http::status::ok);
+  {
+    RawClient leaves(Site().Port(), 4096);
+    leaves.Send("GET /results/key/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    leaves.ReadHeaders();
+    leaves.Close();
+  }
+  EXPECT_EQ(Ask("GET", "/results/key/1").result(), http::status::not_found);
+  EXPECT_EQ(sent, 3);
+  Site().StopGateway();  // its thread tells
+}
 
 TEST_F(HttpTest, ServesThePage) {
   const Response page = Ask("GET", "/?session=1");

@@ -416,24 +416,51 @@ TEST_F(RenderJobTest, MoreThanIsAllowedIsRefusedWithATimeToTryAgain) {
   EXPECT_EQ(jobs.Get(first.id(), &gone).error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
-TEST_F(RenderJobTest, ResultsBeyondTheQuotaAreDroppedAndSaidSo) {
+TEST_F(RenderJobTest, WhereNobodyFetchesDrawingPausesAndGoesOnAfterAFetch) {
   service::ServerOptions options = Options();
   options.jobs.limits.max_result_bytes = 1;
   FakeService service(options);
   Jobs jobs(service.server());
-  const v1::RenderJob job = jobs.Create({Picture(0), Picture(1), Picture(2)});
-  std::map<std::uint32_t, State> pictures;
-  ASSERT_TRUE(jobs.Watch(job.id(), &pictures).ok());
+  const v1::RenderJob job = jobs.Create(std::vector<v1::RenderJobPicture>(6, Picture(0)));
+  // Some were in hand when the first was drawn.
+  ASSERT_TRUE(Eventually([&] { return jobs.Get(job.id()).job().has_paused(); }));
+  const auto drawn = [&] { return jobs.Get(job.id()).job().counts().drawn(); };
+  ASSERT_TRUE(Eventually([&] { return jobs.Get(job.id()).job().counts().drawing() == 0; }));
+  const auto paused = jobs.Get(job.id()).job();
+  EXPECT_EQ(paused.paused().reason(), "RESULTS_NOT_FETCHED");
+  EXPECT_THAT(paused.paused().message(), HasSubstr("--jobs-quota"));
+  EXPECT_EQ(paused.counts().dropped(), 0U) << "nothing drawn is thrown away";
+  EXPECT_LE(paused.counts().drawn(), 4U) << "three in hand, and one that replaced the first";
+  EXPECT_EQ(service.server().Load().jobs.paused, paused.counts().waiting());
+  // Those fetched by gRPC and by HTTP count alike.
+  std::uint32_t fetched = 0;
+  while (jobs.Get(job.id()).job().state() == v1::RenderJob::STATE_RUNNING && fetched < 6) {
+    ASSERT_TRUE(Eventually([&] {
+      const auto got = jobs.Get(job.id());
+      return got.pictures(static_cast<int>(fetched)).state() == State::STATE_DRAWN;
+    })) << fetched
+        << " fetched, " << drawn() << " drawn";
+    if (fetched % 2 == 0) {
+      ASSERT_TRUE(jobs.Fetch(job.id(), fetched).status.ok());
+    } else {
+      service.server().ResultFetched(absl::StrCat(job.result_path(), "/", fetched));
+    }
+    ++fetched;
+  }
+  EXPECT_EQ(service.machine->Log().size(), 6U) << "each once";
+  // What was fetched makes room, and says so.
   const auto got = jobs.Get(job.id());
-  EXPECT_EQ(got.job().counts().drawn(), 1U) << "the newest stays";
-  EXPECT_EQ(got.job().counts().dropped(), 2U);
-  EXPECT_EQ(Files(), 1U);
+  EXPECT_FALSE(got.job().has_paused());
+  EXPECT_GT(got.job().counts().dropped(), 0U);
   for (const State& picture : got.pictures()) {
     if (picture.state() != State::STATE_DROPPED) continue;
     EXPECT_THAT(picture.problem().message(), HasSubstr("--jobs-quota"));
     EXPECT_EQ(jobs.Fetch(job.id(), picture.index()).status.error_code(),
               grpc::StatusCode::NOT_FOUND);
   }
+  // Paths that name nothing are ignored.
+  service.server().ResultFetched(job.result_path() + "/99");
+  service.server().ResultFetched("/results/nobody/0");
 }
 
 TEST_F(RenderJobTest, AServerWithoutAFolderSaysSo) {

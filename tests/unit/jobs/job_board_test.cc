@@ -15,6 +15,7 @@ namespace {
 using std::chrono::hours;
 using std::chrono::seconds;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const Time kNow{hours(24 * 365 * 50)};
@@ -148,25 +149,100 @@ TEST(JobBoard, JobsAreForgottenAfterTheirTime) {
   EXPECT_TRUE(board.NewsOf("b", 0).has_value()) << "it has not ended";
 }
 
-TEST(JobBoard, ResultsThatWereFetchedMakeRoomFirstThenTheOldest) {
+TEST(JobBoard, OnlyResultsThatWereFetchedMakeRoomTheOldestFirst) {
   JobLimits limits;
   limits.max_result_bytes = 30;
   JobBoard board(limits);
-  Add(board, "a", "anna", 5);
-  for (int i = 0; i < 3; ++i) DrawNext(board, 1.0, kNow + seconds(i));
+  Add(board, "a", "anna", 6);
+  for (int i = 0; i < 2; ++i) DrawNext(board, 1.0, kNow + seconds(i));
+  // Three are in hand at a time.
+  const auto third = *board.Begin(kNow);
+  const auto fourth = *board.Begin(kNow);
+  board.Drawn(third, {third, "png", "", 10}, 1.0, 1.0, kNow + seconds(2));
+  board.Drawn(fourth, {fourth, "png", "", 10}, 1.0, 1.0, kNow + seconds(3));
+  EXPECT_THAT(board.MakeRoom(), IsEmpty()) << "nobody has fetched any";
+  EXPECT_EQ(board.ResultBytes(), 40U);
   board.Fetched({"a", 2});
-  EXPECT_THAT(board.MakeRoom(), IsEmpty());
-  DrawNext(board, 1.0, kNow + seconds(3));
-  auto dropped = board.MakeRoom();
+  board.Fetched({"a", 1});
+  const auto dropped = board.MakeRoom();
   ASSERT_EQ(dropped.size(), 1U);
-  EXPECT_EQ(dropped[0].picture.place, 2U);
-  DrawNext(board, 1.0, kNow + seconds(4));
-  dropped = board.MakeRoom();
-  ASSERT_EQ(dropped.size(), 1U);
-  EXPECT_EQ(dropped[0].picture.place, 0U);
+  EXPECT_EQ(dropped[0].picture.place, 1U);
   EXPECT_EQ(board.ResultBytes(), 30U);
-  EXPECT_EQ(board.ResultOf({"a", 0}).status().code(), absl::StatusCode::kNotFound);
-  EXPECT_TRUE(board.ResultOf({"a", 4}).ok());
+  EXPECT_EQ(board.ResultOf({"a", 1}).status().code(), absl::StatusCode::kNotFound);
+  for (const std::size_t kept : {0, 2, 3}) EXPECT_TRUE(board.ResultOf({"a", kept}).ok());
+}
+
+TEST(JobBoard, WhoFetchesNothingPausesAndTakesNothingFromOthers) {
+  JobLimits limits;
+  limits.max_result_bytes = 40;
+  limits.max_result_bytes_per_owner = 20;
+  JobBoard board(limits);
+  Add(board, "a", "anna", 9);
+  EXPECT_EQ(DrawNext(board, 1.0), "a");
+  EXPECT_FALSE(board.NewsOf("a", 0)->job.paused.has_value());
+  EXPECT_EQ(DrawNext(board, 1.0), "a");
+  EXPECT_EQ(DrawNext(board, 1.0), "") << "anna's share is used up";
+  EXPECT_EQ(board.Paused(), 7U);
+  ASSERT_TRUE(board.NewsOf("a", 0)->job.paused.has_value());
+  EXPECT_EQ(board.NewsOf("a", 0)->job.paused->reason, "RESULTS_NOT_FETCHED");
+  EXPECT_THAT(board.NewsOf("a", 0)->job.paused->message, HasSubstr("--jobs-quota-each"));
+  Add(board, "b", "bert", 9);
+  EXPECT_EQ(DrawNext(board, 1.0), "b");
+  EXPECT_EQ(DrawNext(board, 1.0), "b");
+  EXPECT_THAT(board.MakeRoom(), IsEmpty());
+  Add(board, "c", "carl", 1);
+  EXPECT_EQ(DrawNext(board, 1.0), "");
+  EXPECT_THAT(board.All()[2].paused->message, HasSubstr("--jobs-quota)"));
+  // What is fetched makes room for everybody.
+  board.Fetched({"b", 0});
+  EXPECT_NE(DrawNext(board, 1.0), "");
+  EXPECT_EQ(board.MakeRoom().size(), 1U);
+  // So does a job that is forgotten.
+  board.Forget("a");
+  EXPECT_NE(DrawNext(board, 1.0), "");
+}
+
+TEST(JobBoard, ARestoredBoardKnowsWhatWasFetched) {
+  JobLimits limits;
+  limits.max_result_bytes_per_owner = 20;
+  JobBoard before(limits);
+  Add(before, "a", "anna", 3);
+  DrawNext(before, 1.0);
+  DrawNext(before, 1.0);
+  before.Fetched({"a", 0});
+  JobBoard after(limits);
+  after.Restore(before.Record("a"), kNow);
+  EXPECT_EQ(DrawNext(after, 1.0), "a");
+  EXPECT_TRUE(after.NewsOf("a", 0)->job.ended_at.has_value());
+}
+
+// The records of jobs that cost nothing, as they were cancelled at once, are not kept without end.
+TEST(JobBoard, RecordsOfCancelledJobsAreBounded) {
+  JobLimits limits;
+  limits.max_kept_pictures = 50;
+  limits.max_kept_pictures_per_owner = 30;
+  JobBoard board(limits);
+  Add(board, "drawn", "anna", 1);
+  DrawNext(board, 1.0);
+  for (int i = 0; i < 20; ++i) {
+    const std::string id = absl::StrCat("a", i);
+    Add(board, id, "anna", 10);
+    board.Cancel(id, kNow + seconds(i));
+  }
+  std::size_t pictures = 0;
+  for (const auto& job : board.All()) {
+    for (const std::size_t count : job.counts) pictures += count;
+  }
+  EXPECT_EQ(pictures, 21U) << "of her 30";
+  EXPECT_TRUE(board.NewsOf("drawn", 0).has_value()) << "its result was not fetched";
+  EXPECT_TRUE(board.NewsOf("a19", 0).has_value());
+  EXPECT_FALSE(board.NewsOf("a0", 0).has_value());
+  Add(board, "b", "bert", 29);
+  // What waits to be drawn does not make room.
+  const absl::Status full =
+      board.Add("b2", "key", {"bert", "", std::vector<PictureOrder>(2)}, kNow);
+  EXPECT_EQ(base::DetailsOf(full).reason, "TOO_MANY_JOB_PICTURES");
+  EXPECT_TRUE(base::DetailsOf(full).retry_after.has_value());
 }
 
 TEST(JobBoard, WhatCouldNotBeRemovedFromTheStoreIsGivenAgain) {
@@ -187,7 +263,12 @@ TEST(JobBoard, TheOldestThatHasEndedMakesRoomForANewJob) {
   Add(board, "a", "anna", 1);
   DrawNext(board, 1.0);
   Add(board, "b", "bert", 1);
-  Add(board, "c", "carl", 1);
+  const auto add = [&board](const std::string& id) {
+    return board.Add(id, "key", {"carl", "", std::vector<PictureOrder>(1)}, kNow);
+  };
+  EXPECT_EQ(base::DetailsOf(add("c")).reason, "TOO_MANY_JOBS") << "nobody has fetched a's picture";
+  board.Fetched({"a", 0});
+  EXPECT_TRUE(add("c").ok());
   EXPECT_THAT(board.TakeForgotten(), ElementsAre("a"));
   const absl::Status full = board.Add("d", "key", {"dora", "", std::vector<PictureOrder>(1)}, kNow);
   EXPECT_EQ(base::DetailsOf(full).reason, "TOO_MANY_JOBS");
