@@ -84,6 +84,9 @@ void SetLogFormat(const std::string& format) {
 absl::StatusOr<std::unique_ptr<Operation>> Operation::Start(const OperationFlags& flags) {
   SetLogFormat(flags.log_format);
   std::unique_ptr<Operation> operation(new Operation(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(operation->watchdog_,
+                               telemetry::Watchdog::StartIfAsked(
+                                   [raw = operation.get()] { return raw->HealthNow().alive; }));
   if (flags.metrics.empty()) return operation;
   THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--metrics", flags.metrics));
   Operation* const self = operation.get();
@@ -99,6 +102,7 @@ absl::StatusOr<std::unique_ptr<Operation>> Operation::Start(const OperationFlags
 
 Operation::~Operation() {
   port_.reset();
+  watchdog_.reset();
   telling_ = {};
   second_signal_.request_stop();
 }
@@ -140,12 +144,12 @@ std::string Operation::MetricsText() {
     add("jobs", "Render jobs that have not ended", static_cast<double>(load.jobs.running));
     add("job_pictures_waiting", "Pictures of render jobs that wait to be drawn",
         static_cast<double>(load.jobs.waiting));
+    add("job_pictures_paused", "Those of them that are not begun, as results must be fetched first",
+        static_cast<double>(load.jobs.paused));
     add("job_pictures_in_progress", "Pictures of render jobs that are being drawn",
         static_cast<double>(load.jobs.drawing));
     add("job_result_bytes", "Results of render jobs on the disk",
         static_cast<double>(load.jobs.result_bytes));
-    add("job_pictures_paused", "Those of them that are not begun, as results must be fetched first",
-        static_cast<double>(load.jobs.paused));
     add("draining", "1 from SIGTERM on", load.draining ? 1.0 : 0.0);
     add("pictures_waiting", "Single pictures that wait to be drawn", load.waiting_pictures);
     add("reading_stuck_seconds", "Since a storage that hangs gave something; 0 if none hangs",

@@ -13,6 +13,7 @@
 #include "base/memory_budget.h"
 #include "service/server.h"
 #include "telemetry/operator_port.h"
+#include "telemetry/watchdog.h"
 
 namespace thunderhead::app {
 
@@ -32,8 +33,8 @@ void SetLogFormat(const std::string& format);
 // with 0.
 std::jthread EndIfToldWhileStarting(const sigset_t& signals);
 
-// The operator's port of the flags, null without one. It serves at once, and says that the server
-// starts until it is given one.
+// The operator's port of the flags, null without one, and what systemd is told. The port serves at
+// once, and says that the server starts until it is given one.
 class Operation {
  public:
   static absl::StatusOr<std::unique_ptr<Operation>> Start(const OperationFlags& flags);
@@ -65,6 +66,7 @@ class Operation {
   Budget gpu_memory_;
   bool ended_ = false;
   std::unique_ptr<telemetry::OperatorPort> port_;
+  std::unique_ptr<telemetry::Watchdog> watchdog_;  // null: no supervisor waits for messages
   std::jthread telling_;
   std::jthread second_signal_;
 };

@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/log.h"
 #include "base/status.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::session {
 
@@ -84,6 +85,7 @@ absl::Status SessionKeeper::SaveChanges() {
 }
 
 void SessionKeeper::Log(const absl::Status& outcome) {
+  if (!outcome.ok()) telemetry::Counted().session_save_failures.Add();
   if (outcome != last_outcome_ && !outcome.ok()) {
     base::LogError(base::Annotate(
         outcome,

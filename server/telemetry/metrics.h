@@ -83,6 +83,7 @@ struct Metrics {
   Counter frame_bytes_sent;    // of their pictures
   Labelled<Counter> refusals;  // answers that are errors, by reason
   Counter sessions_opened;
+  Counter session_save_failures;  // attempts to save sessions that failed
   Labelled<Counter> job_pictures{"drawn", "failed", "dropped"};  // of render jobs, by outcome
   Counter device_losses;  // the device was reset, or could not be opened again
   // Of untrusted files' readers, by what happened.

@@ -7,6 +7,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "service/stored_scene.h"
+#include "telemetry/metrics.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
 
@@ -388,12 +389,14 @@ TEST_F(KeptSessionsTest, ASessionWhoseStormIsGoneSaysSo) {
 
 TEST_F(KeptSessionsTest, AStoreThatFailsIsLoggedOnceAndTriedAgain) {
   ::testing::internal::CaptureStdout();
+  const auto failures = telemetry::Counted().session_save_failures.Value();
   store_->FailWith(absl::UnavailableError("the disk is full"));
   const auto created = Create();
   std::this_thread::sleep_for(3 * session::SessionKeeper::kPause);
   const std::string logged = ::testing::internal::GetCapturedStdout();
   EXPECT_THAT(logged, HasSubstr("trying again: the disk is full"));
   EXPECT_EQ(std::ranges::count(logged, '\n'), 1) << logged;
+  EXPECT_GE(telemetry::Counted().session_save_failures.Value(), failures + 2);
   store_->FailWith(absl::OkStatus());
   EXPECT_TRUE(store_->Await([](const auto& records) { return records.size() == 1; }));
 }

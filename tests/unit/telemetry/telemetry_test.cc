@@ -52,10 +52,11 @@ TEST(Counter, CountsFromManyThreads) {
 
 TEST(Exposition, HasWhatAlertsWaitForFromTheStart) {
   const std::string text = Expose(Metrics(), {});
-  for (const char* line : {"thunderhead_job_pictures_total{outcome=\"failed\"} 0\n",
-                           "thunderhead_job_pictures_total{outcome=\"drawn\"} 0\n",
-                           "thunderhead_reader_failures_total{reason=\"crashed\"} 0\n",
-                           "thunderhead_device_losses_total 0\n"}) {
+  for (const char* line :
+       {"thunderhead_job_pictures_total{outcome=\"failed\"} 0\n",
+        "thunderhead_job_pictures_total{outcome=\"drawn\"} 0\n",
+        "thunderhead_reader_failures_total{reason=\"crashed\"} 0\n",
+        "thunderhead_session_save_failures_total 0\n", "thunderhead_device_losses_total 0\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
 }
