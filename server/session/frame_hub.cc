@@ -51,10 +51,20 @@ void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
   watch.waits_until.reset();
   SetLeastSteps(std::chrono::steady_clock::now());
   // The newest picture again if it is too small now.
-  if (frame_ != nullptr && watch.last_form.kind == FrameForm::Kind::kJpeg &&
-      JpegTier(watch, *frame_) < watch.last_form.tier) {
-    watch.last_sequence = 0;
+  if (frame_ != nullptr && IsTooSmall(watch, *frame_)) watch.last_sequence = 0;
+}
+
+bool FrameHub::IsTooSmall(const Watch& watch, const PublishedFrame& frame) {
+  switch (watch.last_form.kind) {
+    case FrameForm::Kind::kJpeg:
+      return JpegTier(watch, frame) < watch.last_form.tier;
+    case FrameForm::Kind::kStill:
+      return TierForWindow(WidthOf(frame.Described()), watch.wants.window_width_px) <
+             watch.last_form.tier;
+    case FrameForm::Kind::kVideo:
+      break;
   }
+  return false;  // the next picture of the stream comes by itself, and at rest JPEG
 }
 
 void FrameHub::Leave(std::uint64_t viewer_id) {

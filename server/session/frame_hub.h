@@ -162,6 +162,8 @@ class FrameHub {
 
   static bool TakesVideo(const Watch& watch);
   static int JpegTier(const Watch& watch, const PublishedFrame& frame);
+  // True if the picture that the viewer has is smaller than it would get now.
+  static bool IsTooSmall(const Watch& watch, const PublishedFrame& frame);
   // The tier of the stream that it follows, for a frame of that width; none if it gets JPEG.
   static std::optional<int> VideoTier(const Watch& watch, const PictureWidth& width);
   static std::size_t MaxInFlight(const Watch& watch);

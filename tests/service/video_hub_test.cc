@@ -55,10 +55,11 @@ class VideoHubTest : public ::testing::Test {
     return hub_.Publish(frame, jpeg, std::move(video), still_follows, now_);
   }
 
-  void AddStill(std::uint64_t sequence) {
+  void AddStill(std::uint64_t sequence, int tier = 0) {
     EncodedFrame still;
     still.avif = "avif";
-    hub_.AddStill(sequence, 0, still);
+    still.tier = tier;
+    hub_.AddStill(sequence, tier, still);
   }
 
   // The picture that the viewer takes now, in whichever encoding, or "nothing".
@@ -67,6 +68,7 @@ class VideoHubTest : public ::testing::Test {
     if (!event.has_value()) return "nothing";
     const auto frame = std::get<std::shared_ptr<const EncodedFrame>>(*event);
     taken_ = frame->sequence;
+    taken_tier_ = frame->tier;
     return frame->jpeg + frame->vp9 + frame->avif;
   }
 
@@ -79,6 +81,7 @@ class VideoHubTest : public ::testing::Test {
   FrameHub hub_{[] {}};
   FrameHub::Time now_ = FrameHub::Time() + std::chrono::hours(1);
   std::uint64_t taken_ = 0;
+  int taken_tier_ = 0;
   std::uint64_t scene_revision_ = 1;
   bool by_reference_ = false;
   bool resized_ = false;  // encoders make key pictures whatever is ordered
@@ -330,6 +333,26 @@ TEST_F(VideoHubTest, AStillIsReplacedByNothingButTheNextOneOfItsScene) {
   Publish(/*at_rest=*/true, /*still_follows=*/true);
   EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg");
   EXPECT_EQ(TakeAndAcknowledge(video), "base") << "the stream goes on";
+}
+
+// Its still was made for the smaller window; the larger picture is worth more than its encoding.
+TEST_F(VideoHubTest, AWindowThatGrowsAtRestGetsTheLargerPicture) {
+  ViewerWants wants{.window_width_px = 640, .adapts = true, .takes_stills = true};
+  const auto viewer = Join(wants);
+  const std::uint64_t sequence = Publish(/*at_rest=*/true, /*still_follows=*/true);
+  EXPECT_EQ(TakeAndAcknowledge(viewer), "jpeg");
+  AddStill(sequence, 1);
+  hub_.NoStills(sequence);
+  EXPECT_EQ(TakeAndAcknowledge(viewer), "avif");
+  EXPECT_EQ(taken_tier_, 1);
+  wants.window_width_px = 600;
+  hub_.SetWants(viewer, wants);
+  EXPECT_EQ(Take(viewer), "nothing") << "it fills the window";
+  wants.window_width_px = 1280;
+  hub_.SetWants(viewer, wants);
+  EXPECT_EQ(TakeAndAcknowledge(viewer), "jpeg");
+  EXPECT_EQ(taken_tier_, 0);
+  EXPECT_EQ(Take(viewer), "nothing");
 }
 
 TEST_F(VideoHubTest, WithoutAStillJpegReplacesVideo) {
