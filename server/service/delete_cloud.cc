@@ -8,14 +8,16 @@
 namespace thunderhead::service {
 namespace {
 
-// Reports the deletion to sessions that show the cloud. Their viewers keep the last frame.
+// Reports the deletion to everybody who sees the cloud, those who look around included. They keep
+// the last frame.
 void TellSessions(session::Sessions& sessions, const std::string& storm_id) {
-  for (const std::shared_ptr<session::Session>& session : sessions.All()) {
+  for (const std::shared_ptr<session::Session>& session : sessions.AllDrawn()) {
     const std::optional<session::NewestScene> newest = session->Newest();
     if (!newest.has_value() || newest->scene->storm_id != storm_id) continue;
-    session->hub().Publish(session::Problem{
-        newest->revision,
-        absl::StrCat("the cloud '", storm_id, "' was deleted; choose another storm")});
+    session->hub().Publish(
+        {.scene_revision = newest->revision,
+         .message = absl::StrCat("the cloud '", storm_id, "' was deleted; choose another storm"),
+         .code = session::Problem::Code::kStormGone});
   }
 }
 

@@ -8,6 +8,7 @@
 #include "gtest/gtest.h"
 #include "service/cloud_store.h"
 #include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
 #include "tests/support/synthetic_cf.h"
 #include "tests/support/temporary_folder.h"
 
@@ -88,7 +89,8 @@ TEST_F(GenerateCloudTest, ACloudThatWasMadeCanBeDeleted) {
   const std::string told = "the cloud '" + id + "' was deleted; choose another storm";
   EXPECT_TRUE(watcher.Await([&](const std::vector<v1::WatchFramesResponse>& messages) {
     return std::any_of(messages.begin(), messages.end(), [&](const auto& message) {
-      return message.has_problem() && message.problem().message() == told;
+      return message.has_problem() && message.problem().message() == told &&
+             message.problem().code() == v1::Problem::CODE_STORM_GONE;
     });
   }));
   v1::UpdateSceneRequest update;
@@ -102,6 +104,22 @@ TEST_F(GenerateCloudTest, ACloudThatWasMadeCanBeDeleted) {
   // A viewer of the deleted cloud must not get another one under its id.
   ASSERT_TRUE(Make(GenerateRequest()).ok());
   EXPECT_NE(response_.storm().id(), id);
+}
+
+TEST_F(GenerateCloudTest, WhoLooksAroundIsToldThatTheCloudIsGone) {
+  ASSERT_TRUE(Make(GenerateRequest()).ok());
+  v1::Scene scene = SmallScene();
+  scene.set_storm_id(response_.storm().id());
+  Interacting person(service_.stub(), service_.Open(scene));
+  v1::InteractRequest looks;
+  looks.mutable_detach()->mutable_camera()->mutable_orbit()->set_azimuth_deg(10.0F);
+  person.Send(looks);
+  ASSERT_TRUE(person.AwaitFrame(1, /*own_view=*/true));
+  ASSERT_TRUE(Delete(response_.storm().id()).ok());
+  const v1::Problem told = person.AwaitNewest(v1::InteractResponse::kProblem).problem();
+  EXPECT_TRUE(told.own_view());
+  EXPECT_EQ(told.code(), v1::Problem::CODE_STORM_GONE);
+  EXPECT_THAT(told.message(), HasSubstr("was deleted"));
 }
 
 TEST_F(GenerateCloudTest, AStormThatWasNotMadeHereIsNotDeleted) {
