@@ -13,6 +13,8 @@ absl::Status Denied(const std::string& message, const std::string& reason) {
   return base::WithDetails(absl::PermissionDeniedError(message), {.reason = reason});
 }
 
+absl::Status Locked() { return Denied("control is locked by the presenter", "CONTROL_LOCKED"); }
+
 absl::Status NoSuchPerson(std::uint64_t id) {
   return base::WithDetails(
       absl::NotFoundError(absl::StrCat("viewer_id is ", id, "; nobody in the session has it")),
@@ -84,9 +86,7 @@ absl::Status Roster::AskControl(std::uint64_t id, Time now) {
   if (person == nullptr) return NoSuchPerson(id);
   if (steering_ == id) return absl::OkStatus();
   if (person->role == Role::kPresenter) return TakeControl(id);
-  if (rules_.control_locked) {
-    return Denied("control is locked by the presenter", "CONTROL_LOCKED");
-  }
+  if (rules_.control_locked) return Locked();
   const bool is_free = steering_ == 0 && !away_since_.has_value();
   if (is_free && rules_.viewers_may_steer) {
     Give(*person);
@@ -118,6 +118,8 @@ absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now)
   if (to != 0) {
     Person* const person = FindPerson(to);
     if (person == nullptr) return NoSuchPerson(to);
+    const bool by_viewer = Find(from)->role == Role::kViewer;
+    if (rules_.control_locked && by_viewer && person->role == Role::kViewer) return Locked();
     Give(*person);
     return absl::OkStatus();
   }

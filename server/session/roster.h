@@ -22,7 +22,7 @@ enum class Role { kPresenter, kViewer };
 // The rules of a session.
 struct Rules {
   bool viewers_may_steer = true;  // control that is free is given to a viewer who asks
-  bool control_locked = false;    // nobody may ask for it
+  bool control_locked = false;    // viewers may neither ask for it nor give it to one another
   bool following_locked = false;  // viewers may not look around
   bool viewers_may_mark = false;
   bool free_when_away = false;  // control becomes free when the presenters have been away
@@ -78,7 +78,8 @@ class Roster {
   absl::Status AskControl(std::uint64_t id, Time now);
   // From the one who steers, or a presenter: to a person, or to nobody (0). Nobody gets a
   // presenter's control, and it is free, for the viewer who asked first if there is one; a viewer's
-  // goes back to the presenters.
+  // goes back to the presenters. PERMISSION_DENIED while control is locked if a viewer gives it to
+  // a viewer.
   absl::Status GiveControl(std::uint64_t from, std::uint64_t to, Time now);
   // The same people may say no.
   absl::Status RefuseControl(std::uint64_t from, std::uint64_t to);

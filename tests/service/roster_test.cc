@@ -156,6 +156,20 @@ TEST(RosterTest, LockedControlIsRefusedAndEndsRequests) {
   EXPECT_EQ(ReasonOf(group.roster.AskControl(group.ben, kOpenedAt)), "CONTROL_LOCKED");
 }
 
+TEST(RosterTest, AViewerDoesNotPassOnLockedControl) {
+  Class group;
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  ASSERT_TRUE(group.roster.SetRules(group.presenter, {.control_locked = true}).ok());
+  EXPECT_EQ(ReasonOf(group.roster.GiveControl(group.ana, group.ben, kOpenedAt)), "CONTROL_LOCKED");
+  EXPECT_EQ(group.roster.steering(), group.ana);
+  ASSERT_TRUE(group.roster.GiveControl(group.ana, group.presenter, kOpenedAt).ok());
+  EXPECT_EQ(group.roster.steering(), group.presenter);
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok())
+      << "a presenter may";
+  ASSERT_TRUE(group.roster.GiveControl(group.ana, 0, kOpenedAt).ok());
+  EXPECT_EQ(group.roster.steering(), group.presenter);
+}
+
 TEST(RosterTest, PresenterTakesControlBackAlways) {
   Class group({.control_locked = true});
   ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
