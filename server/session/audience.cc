@@ -98,6 +98,11 @@ absl::Status Audience::Point(std::uint64_t id, const std::optional<Ray>& ray, Ti
   return absl::OkStatus();
 }
 
+void Audience::RestoreFreeControl() {
+  const std::lock_guard lock(mutex_);
+  roster_.RestoreFreeControl();
+}
+
 void Audience::SceneChanged(std::uint64_t revision, Time now) {
   std::unique_lock lock(mutex_);
   scene_revision_ = std::max(scene_revision_, revision);
@@ -127,6 +132,11 @@ Board Audience::Drawn() const {
 Rules Audience::CurrentRules() const {
   const std::lock_guard lock(mutex_);
   return roster_.rules();
+}
+
+bool Audience::ControlIsFree() const {
+  const std::lock_guard lock(mutex_);
+  return roster_.control_is_free();
 }
 
 std::uint64_t Audience::MarksRevision() const {

@@ -86,6 +86,8 @@ class Audience {
   // it goes.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
 
+  // Control is free, as it was before the server started again; called before anybody has joined.
+  void RestoreFreeControl();
   // The session shows a scene of that revision, which everybody is to be sent.
   void SceneChanged(std::uint64_t revision, Time now);
   // The times in memory of the storm that the session shows; everybody is told if it is news.
@@ -96,6 +98,7 @@ class Audience {
   // Copies.
   Board Drawn() const;
   Rules CurrentRules() const;
+  bool ControlIsFree() const;
   std::uint64_t MarksRevision() const;
   absl::Status MaySteer(std::uint64_t id) const;
   absl::Status PresenterMaySteer() const;

@@ -87,8 +87,7 @@ absl::Status Roster::AskControl(std::uint64_t id, Time now) {
   if (steering_ == id) return absl::OkStatus();
   if (person->role == Role::kPresenter) return TakeControl(id);
   if (rules_.control_locked) return Locked();
-  const bool is_free = steering_ == 0 && !away_since_.has_value();
-  if (is_free && rules_.viewers_may_steer) {
+  if (control_is_free() && rules_.viewers_may_steer) {
     Give(*person);
     return absl::OkStatus();
   }

@@ -61,6 +61,9 @@ class Roster {
          const RosterTimeouts& timeouts = {})
       : timeouts_(timeouts), rules_(rules), away_since_(now), count_(last_id) {}
 
+  // Control is free, as it was before the server started again.
+  void RestoreFreeControl() { Free(); }
+
   // Who comes back with the same key has asked for control when the one who left had.
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "");
   void Leave(std::uint64_t id, Time now);
@@ -107,6 +110,7 @@ class Roster {
   // 0: nobody.
   std::uint64_t steering() const { return steering_; }
   bool presenter_away() const { return away_since_.has_value(); }
+  bool control_is_free() const { return steering_ == 0 && !away_since_.has_value(); }
   // Counts changes of anything above.
   std::uint64_t revision() const { return revision_; }
 

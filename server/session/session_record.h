@@ -24,7 +24,8 @@ struct SessionRecord {
   SessionKeys keys;
   std::string owner;  // the identity that opened it; empty: nobody's
   Rules rules;
-  std::string scene;  // as the service serialized it; opaque here
+  bool control_is_free = false;  // else it is kept for the presenters
+  std::string scene;             // as the service serialized it; opaque here
   std::uint64_t scene_revision = 0;
   std::vector<Mark> marks;
   std::chrono::system_clock::time_point last_used;

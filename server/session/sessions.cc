@@ -106,6 +106,7 @@ void Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
 
 void Session::ShowRestored(const SessionRecord& record, scene::Scene scene,
                            std::string serialized) {
+  if (record.control_is_free) audience_.RestoreFreeControl();
   std::uint64_t revision = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -145,12 +146,15 @@ Clock::time_point Session::UsedUntil() const { return IsWatched() ? Clock::now()
 SessionVersion Session::Version() const {
   const std::optional<NewestScene> newest = Newest();
   return {newest.has_value() ? newest->revision : 0, audience_.MarksRevision(),
-          audience_.CurrentRules()};
+          audience_.CurrentRules(), audience_.ControlIsFree()};
 }
 
 SessionRecord Session::Record() const {
-  SessionRecord record{
-      .id = id_, .keys = keys_, .owner = owner_, .rules = audience_.CurrentRules()};
+  SessionRecord record{.id = id_,
+                       .keys = keys_,
+                       .owner = owner_,
+                       .rules = audience_.CurrentRules(),
+                       .control_is_free = audience_.ControlIsFree()};
   if (const std::optional<NewestScene> newest = Newest(); newest.has_value()) {
     record.scene = *newest->serialized;
     record.scene_revision = newest->revision;

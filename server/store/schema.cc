@@ -71,6 +71,9 @@ constexpr std::array kSteps = {R"(
                                R"(
   -- The identity that opened it, or nothing.
   ALTER TABLE sessions ADD COLUMN owner TEXT NOT NULL DEFAULT '';
+)",
+                               R"(
+  ALTER TABLE sessions ADD COLUMN control_is_free INTEGER NOT NULL DEFAULT 0;
 )"};
 
 absl::Status CheckOrigin(Database& database, const std::string& path) {

@@ -22,14 +22,14 @@ using session::SessionRecord;
 constexpr char kSaveSession[] =
     "INSERT INTO sessions (id, presenter_key, viewer_key, viewers_may_steer, control_locked, "
     "following_locked, viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, "
-    "owner) "
-    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
+    "owner, control_is_free) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
     "presenter_key = excluded.presenter_key, viewer_key = excluded.viewer_key, "
     "viewers_may_steer = excluded.viewers_may_steer, control_locked = excluded.control_locked, "
     "following_locked = excluded.following_locked, viewers_may_mark = excluded.viewers_may_mark, "
     "free_when_away = excluded.free_when_away, scene = excluded.scene, "
     "scene_revision = excluded.scene_revision, last_used_ms = excluded.last_used_ms, "
-    "owner = excluded.owner";
+    "owner = excluded.owner, control_is_free = excluded.control_is_free";
 // Written only when they have changed.
 constexpr char kSaveMarks[] =
     "INSERT INTO marks (session_id, marks, owner_keys) VALUES (?, ?, ?) "
@@ -39,7 +39,7 @@ constexpr char kSaveMarks[] =
 constexpr char kLoad[] =
     "SELECT id, presenter_key, viewer_key, viewers_may_steer, control_locked, following_locked, "
     "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks, owner_keys, "
-    "owner "
+    "owner, control_is_free "
     "FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
 
@@ -72,6 +72,7 @@ SessionRecord RecordOf(const Statement& row) {
   record.scene_revision = static_cast<std::uint64_t>(row.Number(9));
   record.last_used = TimeOf(row.Number(10));
   record.owner = row.Bytes(13);
+  record.control_is_free = row.Number(14) != 0;
   return record;
 }
 
@@ -141,6 +142,7 @@ class OpenSessionStore final : public SqliteSessionStore {
     save.Bind(10, static_cast<std::int64_t>(record.scene_revision));
     save.Bind(11, MillisecondsOf(record.last_used));
     save.Bind(12, record.owner);
+    save.Bind(13, std::int64_t{record.control_is_free});
   }
 
   const std::shared_ptr<StateFile> file_;

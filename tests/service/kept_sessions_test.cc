@@ -192,6 +192,30 @@ TEST_F(KeptSessionsTest, TheNextServerHasTheSameSession) {
   }));
 }
 
+TEST_F(KeptSessionsTest, ControlThatWasLetGoIsFreeInTheNextServer) {
+  const auto created = Create();
+  {
+    Interacting presenter(service_->stub(), created.session_id());
+    v1::InteractRequest lets_go;
+    lets_go.mutable_give_control();
+    presenter.AwaitNewest(Response::kJoined);
+    presenter.Send(lets_go);
+    ASSERT_TRUE(
+        store_->Await([](const auto& records) { return records.begin()->second.control_is_free; }));
+  }
+  Start();
+  Interacting viewer(service_->stub(), created.viewer_key());
+  v1::InteractRequest asks;
+  asks.mutable_ask_control();
+  viewer.AwaitNewest(Response::kJoined);
+  viewer.Send(asks);
+  EXPECT_TRUE(viewer.AwaitPresence([&](const v1::Presence& presence) {
+    return presence.steering_viewer_id() == viewer.viewer_id();
+  }));
+  EXPECT_TRUE(
+      store_->Await([](const auto& records) { return !records.begin()->second.control_is_free; }));
+}
+
 // Whoever opened them has no more than before.
 TEST_F(KeptSessionsTest, SessionsStillCountForWhoOpenedThem) {
   options_.sessions.max_sessions_per_owner = 2;

@@ -34,6 +34,7 @@ SessionRecord SessionRecordOf(const std::string& id) {
                   .following_locked = false,
                   .viewers_may_mark = true,
                   .free_when_away = true};
+  record.control_is_free = true;
   record.scene = std::string("a\0scene\xff", 8);
   record.scene_revision = 1ULL << 40;
   record.marks = {{7, 3, {{1.5, -2e6, 0.1}, {4.0, 5.0, 6.0}}, {0.25F, 0.5F, 1.0F}, ""},
@@ -121,10 +122,12 @@ TEST_F(SqliteSessionStoreTest, TheNewestIsKeptAndTheRemovedIsGone) {
 TEST_F(SqliteSessionStoreTest, MarksOfAFileWithoutOwnersComeBackWithoutThem) {
   ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
   Execute(path_,
+          "ALTER TABLE sessions DROP COLUMN control_is_free; "
           "ALTER TABLE sessions DROP COLUMN owner; ALTER TABLE marks DROP COLUMN owner_keys; "
           "PRAGMA user_version = 2");
   SessionRecord without_owners = SessionRecordOf("a");
   without_owners.owner.clear();
+  without_owners.control_is_free = false;
   for (session::Mark& mark : without_owners.marks) mark.owner_key.clear();
   EXPECT_THAT(Loaded(), ElementsAre(without_owners));
   // They are written although the marks are the same.
@@ -199,8 +202,8 @@ TEST_F(SqliteSessionStoreTest, ANewerVersionIsRefusedAndLeftAsItIs) {
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
-              HasSubstr("newer Thunderhead (version 7; this one knows 4)"));
-  Execute(path_, "PRAGMA user_version = 4");
+              HasSubstr("newer Thunderhead (version 7; this one knows 5)"));
+  Execute(path_, "PRAGMA user_version = 5");
   EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
 
