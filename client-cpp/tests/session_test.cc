@@ -185,6 +185,14 @@ TEST_F(SessionTest, ComesBackToTheSameSessionWhenTheServerRestarts) {
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }
 
+TEST_F(SessionTest, AnswersTheServerThatAsksWhetherItIsThere) {
+  Steer();
+  v1::InteractResponse asks;
+  asks.mutable_check_alive();
+  service.Send(asks);
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kAlive, 1));
+}
+
 TEST_F(SessionTest, AnEditThatHadNoAnswerIsSentAgainAfterwards) {
   service.answers_scenes = false;
   Steer();

@@ -63,6 +63,12 @@ void Session::Take(Call& call, v1::InteractResponse& response) {
       case v1::InteractResponse::kCatalogueChanged:
         state_.catalogue_revision = response.catalogue_changed().revision();
         break;
+      case v1::InteractResponse::kCheckAlive: {
+        v1::InteractRequest alive;
+        alive.mutable_alive();
+        outbox_.Send(std::move(alive));
+        break;
+      }
       case v1::InteractResponse::kEnd: {
         const v1::End& end = response.end();
         call.farewell = Outcome{end.has_retry_after_ms() ? Link::kLost : Link::kGone, end.message(),

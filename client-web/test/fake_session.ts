@@ -155,6 +155,11 @@ export class FakeSession {
     }
   }
 
+  // Asks everybody for a sign of life.
+  checkAlive(): void {
+    this.#tellAll({ case: "checkAlive", value: {} });
+  }
+
   receive(person: FakePerson, request: InteractRequest): void {
     person.heard.push(request);
     const { requestId, message } = request;

@@ -11,6 +11,7 @@ import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { type OpenedSession, SessionClient, SILENCE_MS } from "../src/transport/session_client";
 import { FakeNetwork } from "./fake_network";
 import { FakeService } from "./fake_service";
+import type { FakePerson } from "./fake_session";
 
 function follow(network: FakeNetwork, key?: string, random = 1, participant?: Participant) {
   const seen = {
@@ -236,6 +237,21 @@ describe("the session client", () => {
     await pass(2_500);
     expect(elsewhere.seen.joined[0]?.participantKey).not.toBe(key);
     expect(service.sessions).toHaveLength(2);
+  });
+
+  it("answers the server that asks whether it is there, and comes back where that came too late", async () => {
+    const { start, session } = setUp();
+    const { seen } = start();
+    await pass(300);
+    session().checkAlive();
+    await pass(300);
+    const [person] = session().people;
+    expect(person?.heard.at(-1)?.message.case).toBe("alive");
+    session().leave(person as FakePerson);
+    person?.end(Code.Aborted, "somebody has joined with this connection's participant_key");
+    await pass(2_500);
+    expect(seen.joined).toHaveLength(2);
+    expect(seen.connections.at(-1)).toEqual({ kind: "live" });
   });
 
   it("comes back to a server that restarts after the delay that it gave, and not before", async () => {

@@ -51,6 +51,13 @@ absl::Status JoinedTooLate(std::chrono::milliseconds limit) {
       {.reason = "NOT_JOINED"});
 }
 
+absl::Status Replaced() {
+  return base::WithDetails(
+      absl::AbortedError("somebody has joined with this connection's participant_key, and it did "
+                         "not answer when asked; join again"),
+      {.reason = "CONNECTION_REPLACED"});
+}
+
 // The name of a request that is written to the audit whatever its outcome; null for others.
 const char* PrivilegedAct(const v1::InteractRequest& request) {
   switch (request.message_case()) {
@@ -179,7 +186,9 @@ class InteractCall : public InteractReactor,
   // The status to end the call with, if it must end now. Needs mutex_.
   std::optional<grpc::Status> Ended() {
     if (end_.has_value()) return end_;
-    if (session_ == nullptr || !end_told_) return std::nullopt;
+    if (session_ == nullptr) return std::nullopt;
+    if (!session_->audience().IsThere(person_id_)) return ToGrpcStatus(Replaced());
+    if (!end_told_) return std::nullopt;
     return ToGrpcStatus(session_->hub().ClosedBecause());
   }
 
@@ -198,6 +207,13 @@ class InteractCall : public InteractReactor,
     if (!drain_told_ && engine_.drain.HasBegun()) {
       drain_told_ = true;
       return ResponseOf(EndResponse(base::ShuttingDown()));
+    }
+    if (const std::uint64_t doubts = session_->audience().Doubts(person_id_);
+        doubts != told_doubts_) {
+      told_doubts_ = doubts;
+      v1::InteractResponse response;
+      response.mutable_check_alive();
+      return ResponseOf(response);
     }
     Watch(Watched());
     // In turn, so that neither holds up the other on a slow link.
@@ -296,6 +312,7 @@ class InteractCall : public InteractReactor,
     }
     THUNDERHEAD_RETURN_IF_ERROR(caller_->StillKnown());
     session_->Touch();
+    session_->audience().Heard(person_id_);
     absl::Status status = budget_.Take(requests_per_second_, Clock::now());
     if (status.ok()) status = CheckLimits(request);
     if (status.ok()) status = Obey(request);
@@ -379,6 +396,8 @@ class InteractCall : public InteractReactor,
       case v1::InteractRequest::kTakeControl:
       case v1::InteractRequest::kSetRules:
         return ChangeRoster(request);
+      case v1::InteractRequest::kAlive:
+        return absl::OkStatus();
       case v1::InteractRequest::kJoin:
         return base::InvalidField("join", "comes a second time; it must be the first message only",
                                   "ALREADY_JOINED");
@@ -730,6 +749,7 @@ class InteractCall : public InteractReactor,
   std::optional<scene::Camera> camera_;        // of that
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
+  std::uint64_t told_doubts_ = 0;
   std::uint64_t told_scene_ = 0;
   std::uint64_t told_catalogue_ = 0;
   std::uint64_t told_presence_ = 0;

@@ -24,22 +24,37 @@ std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
                                             std::shared_ptr<Viewer> member, Time now,
                                             std::size_t most, const std::string& owner_key) {
   std::unique_lock lock(mutex_);
-  if (role == Role::kViewer && members_.size() >= most) return std::nullopt;
+  const std::size_t lost = roster_.Has(role, owner_key) ? 1 : 0;
+  if (role == Role::kViewer && members_.size() >= most + lost) return std::nullopt;
   const std::uint64_t id = roster_.Join(role, name, now, owner_key);
+  std::vector<std::shared_ptr<Viewer>> doubted;
+  for (const Person& person : roster_.people()) {
+    if (person.doubted_at == now) doubted.push_back(members_.at(person.id));
+  }
   members_[id] = std::move(member);
   board_.HandOver(owner_key, id);
   Settle(std::move(lock), now);
+  for (const auto& asked : doubted) asked->Wake();
   return id;
 }
 
 void Audience::Leave(std::uint64_t id, Time now) {
   std::unique_lock lock(mutex_);
+  Forget(id);
+  roster_.Leave(id, now);
+  Settle(std::move(lock), now);
+}
+
+void Audience::Forget(std::uint64_t id) {
   members_.erase(id);
   rays_.erase(id);
   finding_.erase(id);
   board_.Point(id, std::nullopt);
-  roster_.Leave(id, now);
-  Settle(std::move(lock), now);
+}
+
+void Audience::Heard(std::uint64_t id) {
+  const std::lock_guard lock(mutex_);
+  roster_.Heard(id);
 }
 
 absl::Status Audience::Change(const RosterChange& change, Time now) {
@@ -165,6 +180,17 @@ std::uint64_t Audience::Returns(std::uint64_t id) const {
   return person == nullptr ? 0 : person->returns;
 }
 
+bool Audience::IsThere(std::uint64_t id) const {
+  const std::lock_guard lock(mutex_);
+  return roster_.Find(id) != nullptr;
+}
+
+std::uint64_t Audience::Doubts(std::uint64_t id) const {
+  const std::lock_guard lock(mutex_);
+  const Person* const person = roster_.Find(id);
+  return person == nullptr ? 0 : person->doubts;
+}
+
 bool Audience::Follows(std::uint64_t id) const {
   const std::lock_guard lock(mutex_);
   const Person* const person = roster_.Find(id);
@@ -203,7 +229,11 @@ Told Audience::Scene() const {
 
 std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   std::unique_lock lock(mutex_);
-  roster_.Advance(now);
+  std::vector<std::shared_ptr<Viewer>> gone;
+  for (const std::uint64_t id : roster_.Advance(now)) {
+    gone.push_back(members_.at(id));
+    Forget(id);
+  }
   // Found without the lock, as it takes a while.
   if (!rays_.empty() && now >= pointers_.told_at + kPointersPause) {
     const auto rays = TakeRays();
@@ -234,6 +264,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   const auto members = told ? Members() : std::vector<std::shared_ptr<Viewer>>();
   lock.unlock();
   for (const auto& member : members) member->Wake();
+  for (const auto& member : gone) member->Wake();
   return next;
 }
 

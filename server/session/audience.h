@@ -67,12 +67,15 @@ class Audience {
            std::function<void()> on_due, const RosterTimeouts& timeouts = {});
 
   // `member` is woken when it is to be told something. The marks with `owner_key`, if there are
-  // any, become the newcomer's. None for a viewer where `most` people are.
+  // any, become the newcomer's. None for a viewer where `most` people are; who comes back may be
+  // one more, as the lost connection may not have ended yet.
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
                                     std::shared_ptr<Viewer> member, Time now,
                                     std::size_t most = std::numeric_limits<std::size_t>::max(),
                                     const std::string& owner_key = "");
   void Leave(std::uint64_t id, Time now);
+  // The person has said something.
+  void Heard(std::uint64_t id);
 
   // Changes the roster or the board.
   using RosterChange = std::function<absl::Status(Roster&)>;
@@ -103,6 +106,9 @@ class Audience {
   absl::Status MaySteer(std::uint64_t id) const;
   absl::Status PresenterMaySteer() const;
   absl::Status MayMark(std::uint64_t id) const;
+  // False for one who has left, or gave no sign of life when asked.
+  bool IsThere(std::uint64_t id) const;
+  std::uint64_t Doubts(std::uint64_t id) const;  // Person::doubts
   bool Follows(std::uint64_t id) const;
   std::uint64_t Returns(std::uint64_t id) const;  // Person::returns
   bool Empty() const;
@@ -126,7 +132,8 @@ class Audience {
     Time told_at;
   };
 
-  // All need mutex_. The first tells those subjects whose pause is over; true if there were any.
+  // All need mutex_. The second tells those subjects whose pause is over; true if there were any.
+  void Forget(std::uint64_t id);
   bool TellDue(Time now);
   std::map<std::uint64_t, Ray> TakeRays();
   void WithdrawPointers();

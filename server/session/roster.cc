@@ -30,26 +30,57 @@ std::string NameOf(const Person& person) {
 
 std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string key) {
   ++revision_;
-  std::erase_if(asked_and_left_,
-                [&](const auto& asked) { return now >= asked.second + timeouts_.ask_again; });
-  people_.push_back({.id = ++count_, .name = std::move(name), .role = role, .key = std::move(key)});
-  if (const auto asked = asked_and_left_.find(people_.back().key); asked != asked_and_left_.end()) {
-    people_.back().asked_at = asked->second;
+  std::erase_if(asked_and_left_, [&](const auto& asked) {
+    return now >= asked.second.asked_at + std::max(timeouts_.ask_again, timeouts_.answer);
+  });
+  for (Person& other : people_) {
+    if (key.empty() || other.key != key || other.role != role) continue;
+    ++other.doubts;
+    other.doubted_at = now;
   }
-  if (role == Role::kPresenter && away_since_.has_value()) Give(people_.back());
+  people_.push_back({.id = ++count_, .name = std::move(name), .role = role, .key = std::move(key)});
+  Person& person = people_.back();
+  if (const auto asked = asked_and_left_.find(person.key); asked != asked_and_left_.end()) {
+    person.asked_at = asked->second.asked_at;
+    person.asks = asked->second.is_open && now < asked->second.asked_at + timeouts_.answer;
+    asked_and_left_.erase(asked);
+  }
+  const bool is_awaited =
+      awaited_.has_value() && awaited_->key == person.key && awaited_->role == role;
+  const bool is_kept = away_since_.has_value() && !awaited_.has_value();
+  if (is_awaited || (is_kept && role == Role::kPresenter)) Give(person);
   return count_;
 }
 
 void Roster::Leave(std::uint64_t id, Time now) {
   const auto leaves = std::ranges::find(people_, id, &Person::id);
   if (leaves == people_.end()) return;
-  if (leaves->asked_at.has_value() && !leaves->key.empty() &&
-      now < *leaves->asked_at + timeouts_.ask_again) {
-    asked_and_left_[leaves->key] = *leaves->asked_at;
-  }
+  const Person left = std::move(*leaves);
   people_.erase(leaves);
   ++revision_;
-  if (steering_ == id) GiveBack(now);
+  Person* const heir = FindByKey(left.role, left.key);
+  if (left.asked_at.has_value() && heir != nullptr) {
+    heir->asked_at = std::max(heir->asked_at.value_or(*left.asked_at), *left.asked_at);
+    heir->asks = heir->asks || (left.asks && heir->id != steering_);
+  } else if (left.asked_at.has_value() && !left.key.empty()) {
+    asked_and_left_[left.key] = {*left.asked_at, left.asks};
+  }
+  if (steering_ != id) return;
+  if (heir != nullptr) return Give(*heir);
+  if (left.key.empty()) return GiveBack(now);
+  steering_ = 0;
+  awaited_ = {left.role, left.key, now};
+  if (left.role == Role::kPresenter) away_since_ = now;
+}
+
+void Roster::Heard(std::uint64_t id) {
+  if (Person* const person = FindPerson(id); person != nullptr) person->doubted_at.reset();
+}
+
+bool Roster::Has(Role role, const std::string& key) const {
+  return !key.empty() && std::ranges::any_of(people_, [&](const Person& person) {
+    return person.role == role && person.key == key;
+  });
 }
 
 void Roster::Rename(std::uint64_t id, std::string name) {
@@ -158,6 +189,9 @@ absl::Status Roster::SetRules(std::uint64_t id, const Rules& rules) {
   }
   rules_ = rules;
   ++revision_;
+  for (auto& [key, request] : asked_and_left_) {
+    if (rules_.control_locked) request.is_open = false;
+  }
   for (Person& other : people_) {
     if (rules_.control_locked) other.asks = false;
     if (rules_.following_locked && other.role == Role::kViewer) ReturnToView(other);
@@ -194,25 +228,42 @@ absl::Status Roster::MayMark(std::uint64_t id) const {
   return Denied("the presenter has not allowed viewers to point and draw", "MARKS_LOCKED");
 }
 
-void Roster::Advance(Time now) {
+std::vector<std::uint64_t> Roster::Advance(Time now) {
   for (Person& person : people_) {
     if (!person.asks || now < *person.asked_at + timeouts_.answer) continue;
     person.asks = false;
     ++revision_;
   }
-  if (away_since_.has_value() && rules_.free_when_away && now >= *away_since_ + timeouts_.away) {
+  std::vector<std::uint64_t> silent;
+  for (const Person& person : people_) {
+    if (person.doubted_at.has_value() && now >= *person.doubted_at + timeouts_.sign_of_life) {
+      silent.push_back(person.id);
+    }
+  }
+  for (const std::uint64_t id : silent) Leave(id, now);
+  if (awaited_.has_value() && now >= awaited_->left_at + timeouts_.come_back) {
+    GiveBack(awaited_->left_at);
+    ++revision_;
+  }
+  if (FreesWhenAway() && now >= *away_since_ + timeouts_.away) {
     Free();
     ++revision_;
   }
+  return silent;
+}
+
+bool Roster::FreesWhenAway() const {
+  return away_since_.has_value() && rules_.free_when_away && !awaited_.has_value();
 }
 
 std::optional<Roster::Time> Roster::NextDeadline() const {
   std::optional<Time> next;
-  if (away_since_.has_value() && rules_.free_when_away) next = *away_since_ + timeouts_.away;
+  const auto wait_for = [&](Time time) { next = std::min(next.value_or(time), time); };
+  if (FreesWhenAway()) wait_for(*away_since_ + timeouts_.away);
+  if (awaited_.has_value()) wait_for(awaited_->left_at + timeouts_.come_back);
   for (const Person& person : people_) {
-    if (!person.asks) continue;
-    const Time ends = *person.asked_at + timeouts_.answer;
-    next = next.has_value() ? std::min(*next, ends) : ends;
+    if (person.asks) wait_for(*person.asked_at + timeouts_.answer);
+    if (person.doubted_at.has_value()) wait_for(*person.doubted_at + timeouts_.sign_of_life);
   }
   return next;
 }
@@ -227,10 +278,19 @@ Person* Roster::FindPerson(std::uint64_t id) {
   return at == people_.end() ? nullptr : &*at;
 }
 
+Person* Roster::FindByKey(Role role, const std::string& key) {
+  if (key.empty()) return nullptr;
+  const auto last = std::find_if(people_.rbegin(), people_.rend(), [&](const Person& person) {
+    return person.role == role && person.key == key;
+  });
+  return last == people_.rend() ? nullptr : &*last;
+}
+
 void Roster::Give(Person& to) {
   ++revision_;
   steering_ = to.id;
   away_since_.reset();
+  awaited_.reset();
   // A steering person sees what is steered.
   ReturnToView(to);
   to.asks = false;
@@ -244,6 +304,7 @@ void Roster::ReturnToView(Person& person) {
 void Roster::Free() {
   steering_ = 0;
   away_since_.reset();
+  awaited_.reset();
   if (!rules_.viewers_may_steer) return;
   Person* first = nullptr;
   for (Person& person : people_) {
@@ -252,11 +313,12 @@ void Roster::Free() {
   if (first != nullptr) Give(*first);
 }
 
-void Roster::GiveBack(Time now) {
+void Roster::GiveBack(Time since) {
   const auto presenter = std::ranges::find(people_, Role::kPresenter, &Person::role);
   if (presenter != people_.end()) return Give(*presenter);
   steering_ = 0;
-  away_since_ = now;
+  away_since_ = since;
+  awaited_.reset();
 }
 
 }  // namespace thunderhead::session

@@ -1,8 +1,14 @@
 // The people of a session: who they are, who steers, who asks to, who looks around, and what the
 // rules allow each. A plain value that is told the time; knows no connections and no messages.
 //
-// One person steers at a time. Control is in one of three states: a person has it; it is kept for
-// the presenters, none of whom is there; or it is free.
+// One person steers at a time. Control is in one of four states: a person has it; it waits some
+// seconds for the one who steered and has lost the connection; it is kept for the presenters, none
+// of whom is there; or it is free.
+//
+// A person is known by a secret key, which a client brings again with the same role when it comes
+// back. The connection that it lost may not have ended yet. But the same key is also brought by a
+// browser's tab that was duplicated, whose first connection is well. So the person of the first
+// connection is doubted: asked for a sign of life, and gone if there is none.
 #pragma once
 
 #include <chrono>
@@ -40,6 +46,8 @@ struct Person {
   std::optional<std::chrono::steady_clock::time_point> asked_at;  // last
   std::uint64_t returns = 0;                                      // to the session's view, so far
   std::string key = {};                                           // that the person comes back with
+  std::uint64_t doubts = 0;                                       // how often asked whether there
+  std::optional<std::chrono::steady_clock::time_point> doubted_at;  // last, and not heard since
 
   bool operator==(const Person&) const = default;
 };
@@ -49,6 +57,10 @@ struct RosterTimeouts {
   std::chrono::milliseconds answer = std::chrono::seconds(20);    // to a request for control
   std::chrono::milliseconds ask_again = std::chrono::seconds(5);  // the least between two requests
   std::chrono::milliseconds away = std::chrono::seconds(60);      // until control becomes free
+  // Until control goes to others when the one who steered has lost the connection.
+  std::chrono::milliseconds come_back = std::chrono::seconds(10);
+  // Of one who is doubted.
+  std::chrono::milliseconds sign_of_life = std::chrono::seconds(3);
 };
 
 class Roster {
@@ -64,9 +76,16 @@ class Roster {
   // Control is free, as it was before the server started again.
   void RestoreFreeControl() { Free(); }
 
-  // Who comes back with the same key has asked for control when the one who left had.
+  // Who comes back with the same key and role steers again if control waits for that, asks for
+  // control if the one who left did, and asked last when that one did. Doubts those who are there
+  // with them.
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "");
+  // What the one who leaves had goes to who is there with the same key and role, or waits for them.
   void Leave(std::uint64_t id, Time now);
+  // The person has said something.
+  void Heard(std::uint64_t id);
+  // True if somebody is there with that key, which is not empty, and role.
+  bool Has(Role role, const std::string& key) const;
   void Rename(std::uint64_t id, std::string name);
   void SetHidden(std::uint64_t id, bool hidden);
 
@@ -98,8 +117,9 @@ class Roster {
 
   absl::Status MayMark(std::uint64_t id) const;
 
-  // Ends requests that nobody answered, and frees control that was kept for too long.
-  void Advance(Time now);
+  // Ends requests that nobody answered, and frees control that was kept for too long. Returns those
+  // who were doubted in vain: they have left.
+  std::vector<std::uint64_t> Advance(Time now);
 
   // When Advance has something to do next.
   std::optional<Time> NextDeadline() const;
@@ -110,26 +130,44 @@ class Roster {
   // 0: nobody.
   std::uint64_t steering() const { return steering_; }
   bool presenter_away() const { return away_since_.has_value(); }
-  bool control_is_free() const { return steering_ == 0 && !away_since_.has_value(); }
+  bool control_is_free() const {
+    return steering_ == 0 && !away_since_.has_value() && !awaited_.has_value();
+  }
   // Counts changes of anything above.
   std::uint64_t revision() const { return revision_; }
 
  private:
+  // The one who steered and has lost the connection.
+  struct Awaited {
+    Role role = Role::kViewer;
+    std::string key;
+    Time left_at;
+  };
+  // A request for control by one who has left.
+  struct Request {
+    Time asked_at;
+    bool is_open = false;
+  };
+
   Person* FindPerson(std::uint64_t id);
+  // The one who came last with that key and role.
+  Person* FindByKey(Role role, const std::string& key);
   absl::Status MayAnswer(std::uint64_t id) const;
   void Give(Person& to);
   void ReturnToView(Person& person);
+  bool FreesWhenAway() const;
   // Gives control to nobody, or to the viewer who waits for it longest.
   void Free();
-  // To a presenter, or kept for one.
-  void GiveBack(Time now);
+  // To a presenter, or kept for one since then.
+  void GiveBack(Time since);
 
   RosterTimeouts timeouts_;
   Rules rules_;
-  std::map<std::string, Time> asked_and_left_;  // by key, for as long as it counts
+  std::map<std::string, Request> asked_and_left_;  // by key, for as long as it counts
   std::vector<Person> people_;
   std::uint64_t steering_ = 0;
   std::optional<Time> away_since_;  // while control is kept for presenters
+  std::optional<Awaited> awaited_;  // while control waits for that one
   std::uint64_t count_ = 0;
   std::uint64_t revision_ = 1;
 };

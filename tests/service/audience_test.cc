@@ -252,6 +252,46 @@ TEST_F(AudienceTest, ControlOfAnAbsentPresenterBecomesFreeByItselfAndThatIsTold)
   EXPECT_EQ(*audience_.Presence().bytes, absl::StrCat("steers ", ben_));
 }
 
+TEST_F(AudienceTest, ALostConnectionIsAskedForASignOfLifeAndForgotten) {
+  const auto join = [&](const std::shared_ptr<ToldViewer>& viewer, std::size_t most) {
+    return audience_.Join(Role::kViewer, "Eve", viewer, now_, most, "key of Eve");
+  };
+  const auto lost_viewer = std::make_shared<ToldViewer>();
+  const std::uint64_t lost = *join(lost_viewer, 4);
+  now_ += seconds(1);
+  Tick();
+  int wakes = lost_viewer->wakes;
+  const auto again = std::make_shared<ToldViewer>();
+  EXPECT_FALSE(audience_.Join(Role::kViewer, "", again, now_, 4, "another key").has_value());
+  const auto back = join(again, 4);
+  ASSERT_TRUE(back.has_value()) << "though four are there, of whom one is gone";
+  EXPECT_FALSE(join(std::make_shared<ToldViewer>(), 4).has_value()) << "but not a third";
+  EXPECT_EQ(audience_.Doubts(lost), 1U);
+  EXPECT_EQ(audience_.Doubts(*back), 0U);
+  EXPECT_THAT(lost_viewer->wakes, Gt(wakes)) << "to ask";
+  wakes = lost_viewer->wakes;
+  now_ += seconds(3);
+  Tick();
+  EXPECT_FALSE(audience_.IsThere(lost));
+  EXPECT_TRUE(audience_.IsThere(*back));
+  EXPECT_THAT(lost_viewer->wakes, Gt(wakes)) << "to end its call";
+  audience_.Leave(lost, now_);  // as its call ends
+  EXPECT_TRUE(audience_.IsThere(*back));
+}
+
+TEST_F(AudienceTest, WhoHasSaidSomethingIsNoLostConnection) {
+  const auto join = [&] {
+    return *audience_.Join(Role::kViewer, "", std::make_shared<ToldViewer>(), now_, 9, "key");
+  };
+  const std::uint64_t first = join();
+  const std::uint64_t second = join();
+  audience_.Heard(first);
+  now_ += seconds(60);
+  Tick();
+  EXPECT_TRUE(audience_.IsThere(first));
+  EXPECT_TRUE(audience_.IsThere(second));
+}
+
 TEST_F(AudienceTest, NothingIsToldWithoutNews) {
   const Told presence = audience_.Presence();
   const Told marks = audience_.Marks();

@@ -414,8 +414,8 @@ TEST(InteractTest, ControlOfAnAbsentPresenterStaysElse) {
   }));
 }
 
-TEST(InteractTest, ASecondPresenterTakesOverFromOneWhoLeaves) {
-  Class group;
+TEST(InteractTest, ASecondPresenterTakesOverFromOneWhoStaysAway) {
+  Class group({}, With({.come_back = std::chrono::milliseconds(100)}));
   Interacting tablet(group.service.stub(), group.created.session_id(), {.name = "Tablet"});
   ASSERT_GT(tablet.viewer_id(), 0U);
   EXPECT_EQ(tablet.AnswerCode(tablet.Send(SunTo(120.0F))), grpc::StatusCode::PERMISSION_DENIED);
@@ -795,6 +795,49 @@ TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   EXPECT_TRUE(group.ben->AwaitMarks([&](const v1::Marks& marks) {
     return marks.marks_size() == 1 && drawn_by(marks, group.presenter->viewer_id()) == 1;
   }));
+}
+
+TEST(InteractTest, WhoReconnectsSteersAgain) {
+  Class group;
+  Interacting second(group.service.stub(), group.created.session_id(), Class::Named("Tablet"));
+  ASSERT_GT(second.viewer_id(), 0U);
+  const std::string key = group.presenter->participant_key();
+  group.presenter->Cancel();
+  ASSERT_TRUE(Class::SteersFor(*group.ana, 0)) << "not the other presenter";
+  Interacting back(group.service.stub(), group.created.session_id(), {.participant_key = key});
+  EXPECT_TRUE(Class::SteersFor(*group.ana, back.viewer_id()));
+  EXPECT_EQ(back.AnswerCode(back.Send(SunTo(120.0F))), grpc::StatusCode::OK);
+}
+
+// Its network is gone, so that it hears nothing and nothing ends it.
+TEST(InteractTest, ALostConnectionIsReplacedByTheOneThatComesBack) {
+  Class group({}, With({.sign_of_life = std::chrono::milliseconds(300)}));
+  Interacting lost(group.service.stub(), group.created.viewer_key(),
+                   {.name = "Eve", .hidden = true, .acknowledges = false, .answers_checks = false});
+  group.presenter->Send(Gives(lost.viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ana, lost.viewer_id()));
+  Interacting back(group.service.stub(), group.created.viewer_key(),
+                   {.name = "Eve", .participant_key = lost.participant_key()});
+  ASSERT_TRUE(Class::SteersFor(*group.ana, back.viewer_id()));
+  EXPECT_TRUE(group.ana->AwaitPresence(
+      [&](const v1::Presence& presence) { return Find(presence, lost.viewer_id()) == nullptr; }));
+  const grpc::Status end = lost.End();
+  EXPECT_EQ(end.error_code(), grpc::StatusCode::ABORTED);
+  EXPECT_EQ(ReasonOf(end), "CONNECTION_REPLACED");
+}
+
+// Its copy of the key is that of the tab that goes on.
+TEST(InteractTest, ADuplicatedTabTakesNothingFromTheOtherOne) {
+  constexpr std::chrono::milliseconds kSignOfLife{300};
+  Class group({}, With({.sign_of_life = kSignOfLife}));
+  Interacting tab(group.service.stub(), group.created.session_id(),
+                  {.participant_key = group.presenter->participant_key()});
+  ASSERT_GT(tab.viewer_id(), 0U);
+  group.presenter->AwaitNewest(Response::kCheckAlive);
+  std::this_thread::sleep_for(2 * kSignOfLife);
+  EXPECT_EQ(tab.AnswerCode(tab.Send(SunTo(120.0F))), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(SunTo(130.0F))),
+            grpc::StatusCode::OK);
 }
 
 TEST(InteractTest, AParticipantKeyThatNobodyGaveIsRefused) {

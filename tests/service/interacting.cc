@@ -58,6 +58,7 @@ std::uint64_t Interacting::Send(v1::InteractRequest request) {
 
 void Interacting::Run() {
   for (v1::InteractResponse response; call_->Read(&response);) {
+    const bool checked = response.has_check_alive() && options_.answers_checks;
     const bool acknowledge = response.has_frame() && options_.acknowledges;
     if (response.has_joined()) viewer_id_ = response.joined().viewer_id();
     v1::InteractRequest acknowledged;
@@ -69,6 +70,11 @@ void Interacting::Run() {
     }
     changed_.notify_all();
     if (acknowledge) Send(acknowledged);
+    if (checked) {
+      v1::InteractRequest alive;
+      alive.mutable_alive();
+      Send(alive);
+    }
   }
   const grpc::Status end = call_->Finish();
   const std::lock_guard lock(mutex_);

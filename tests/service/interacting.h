@@ -23,6 +23,7 @@ struct InteractingOptions {
   std::vector<v1::Codec> codecs{};
   bool saves_bytes = false;
   std::string participant_key;
+  bool answers_checks = true;  // by Alive
 };
 
 // The reason in a refusal's details; empty if it has none.

@@ -134,6 +134,7 @@ TEST(RosterTest, WhoComesBackHasAskedBefore) {
   ASSERT_TRUE(group.roster.AskControl(eve, kOpenedAt).ok());
   group.roster.Leave(eve, kOpenedAt + seconds(1));
   const std::uint64_t back = group.roster.Join(Role::kViewer, "Eve", kOpenedAt + seconds(1), "key");
+  EXPECT_TRUE(group.roster.Find(back)->asks) << "until somebody answers";
   EXPECT_EQ(ReasonOf(group.roster.AskControl(back, kOpenedAt + seconds(2))), "ASKED_TOO_OFTEN");
   const std::uint64_t other = group.roster.Join(Role::kViewer, "", kOpenedAt + seconds(1), "other");
   EXPECT_TRUE(group.roster.AskControl(other, kOpenedAt + seconds(2)).ok());
@@ -226,6 +227,144 @@ TEST(RosterTest, SecondPresenterTakesOverFromOneWhoLeaves) {
   EXPECT_EQ(group.roster.steering(), group.presenter);
   group.roster.Leave(group.presenter, kOpenedAt);
   EXPECT_EQ(group.roster.steering(), second);
+}
+
+// Two presenters with keys, and Ana with a key; the first presenter steers.
+struct ClassWithKeys {
+  ClassWithKeys() : roster({.free_when_away = true}, kOpenedAt) {
+    presenter = roster.Join(Role::kPresenter, "Teacher", kOpenedAt, "teacher");
+    tablet = roster.Join(Role::kPresenter, "Tablet", kOpenedAt, "tablet");
+    ana = roster.Join(Role::kViewer, "Ana", kOpenedAt, "ana");
+  }
+
+  std::uint64_t AnaAgain(Roster::Time now) { return roster.Join(Role::kViewer, "Ana", now, "ana"); }
+
+  Roster roster;
+  std::uint64_t presenter = 0;
+  std::uint64_t tablet = 0;
+  std::uint64_t ana = 0;
+};
+
+TEST(RosterTest, APresenterWhoReloadsSteersAgainThoughAnotherIsThere) {
+  ClassWithKeys group;
+  group.roster.Leave(group.presenter, kOpenedAt);
+  EXPECT_EQ(group.roster.steering(), 0U);
+  const Roster::Time soon = kOpenedAt + kTimeouts.come_back - seconds(1);
+  group.roster.Advance(soon);
+  const std::uint64_t third = group.roster.Join(Role::kPresenter, "Colleague", soon, "colleague");
+  EXPECT_EQ(group.roster.steering(), 0U) << "it waits for the one who steered";
+  const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher", soon, "teacher");
+  EXPECT_EQ(group.roster.steering(), back);
+  EXPECT_FALSE(group.roster.presenter_away());
+  group.roster.Advance(kOpenedAt + std::chrono::hours(1));
+  EXPECT_EQ(group.roster.steering(), back);
+  EXPECT_NE(third, back);
+}
+
+TEST(RosterTest, ControlOfAPresenterWhoStaysAwayGoesToAnother) {
+  ClassWithKeys group;
+  group.roster.Leave(group.presenter, kOpenedAt);
+  EXPECT_EQ(group.roster.NextDeadline(), kOpenedAt + kTimeouts.come_back);
+  const std::uint64_t before = group.roster.revision();
+  group.roster.Advance(kOpenedAt + kTimeouts.come_back);
+  EXPECT_EQ(group.roster.steering(), group.tablet);
+  EXPECT_GT(group.roster.revision(), before);
+  // Who comes later takes it by the button.
+  group.roster.Join(Role::kPresenter, "Teacher", kOpenedAt + seconds(20), "teacher");
+  EXPECT_EQ(group.roster.steering(), group.tablet);
+}
+
+TEST(RosterTest, APresenterNeedNotWaitForOneWhoHasLostTheConnection) {
+  ClassWithKeys group;
+  group.roster.Leave(group.presenter, kOpenedAt);
+  ASSERT_TRUE(group.roster.TakeControl(group.tablet).ok());
+  EXPECT_EQ(group.roster.steering(), group.tablet);
+  group.roster.Join(Role::kPresenter, "Teacher", kOpenedAt + seconds(1), "teacher");
+  EXPECT_EQ(group.roster.steering(), group.tablet);
+}
+
+TEST(RosterTest, AViewerWhoSteersAndReconnectsSteersAgain) {
+  ClassWithKeys group;
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  group.roster.Leave(group.ana, kOpenedAt);
+  EXPECT_EQ(group.roster.steering(), 0U);
+  EXPECT_FALSE(group.roster.control_is_free());
+  const std::uint64_t ben = group.roster.Join(Role::kViewer, "Ben", kOpenedAt, "ben");
+  ASSERT_TRUE(group.roster.AskControl(ben, kOpenedAt).ok());
+  EXPECT_EQ(group.roster.steering(), 0U);
+  // The key is no key to another role.
+  group.roster.Join(Role::kPresenter, "Ana", kOpenedAt, "ana");
+  EXPECT_EQ(group.roster.steering(), 0U);
+  const std::uint64_t back = group.AnaAgain(kOpenedAt + seconds(5));
+  EXPECT_EQ(group.roster.steering(), back);
+  group.roster.Leave(back, kOpenedAt + seconds(6));
+  group.roster.Advance(kOpenedAt + seconds(6) + kTimeouts.come_back);
+  EXPECT_EQ(group.roster.steering(), group.presenter) << "the first who is there";
+}
+
+TEST(RosterTest, ControlOfAViewerWhoStaysAwayIsKeptForAPresenterWhoIsAwayToo) {
+  Roster roster({.free_when_away = true}, kOpenedAt);
+  roster.RestoreFreeControl();
+  const std::uint64_t ana = roster.Join(Role::kViewer, "Ana", kOpenedAt, "ana");
+  ASSERT_TRUE(roster.AskControl(ana, kOpenedAt).ok());
+  roster.Leave(ana, kOpenedAt);
+  roster.Advance(kOpenedAt + kTimeouts.come_back);
+  EXPECT_TRUE(roster.presenter_away());
+  EXPECT_EQ(roster.NextDeadline(), kOpenedAt + kTimeouts.away);
+  roster.Advance(kOpenedAt + kTimeouts.away);
+  EXPECT_TRUE(roster.control_is_free());
+}
+
+// As after a change of network: the server has not noticed yet that the first connection is lost.
+TEST(RosterTest, WhoComesBackReplacesALostConnectionThatGivesNoSignOfLife) {
+  ClassWithKeys group;
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  const std::uint64_t back = group.AnaAgain(kOpenedAt);
+  EXPECT_EQ(group.roster.Find(group.ana)->doubts, 1U);
+  EXPECT_EQ(group.roster.Find(group.tablet)->doubts, 0U);
+  EXPECT_EQ(group.roster.NextDeadline(), kOpenedAt + kTimeouts.sign_of_life);
+  EXPECT_TRUE(
+      group.roster.Advance(kOpenedAt + kTimeouts.sign_of_life - std::chrono::milliseconds(1))
+          .empty());
+  EXPECT_EQ(group.roster.steering(), group.ana);
+  EXPECT_THAT(group.roster.Advance(kOpenedAt + kTimeouts.sign_of_life),
+              ::testing::ElementsAre(group.ana));
+  EXPECT_EQ(group.roster.Find(group.ana), nullptr);
+  EXPECT_EQ(group.roster.steering(), back);
+}
+
+TEST(RosterTest, WhoComesBackHasTheRequestOfTheLostConnection) {
+  ClassWithKeys group;
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
+  const std::uint64_t back = group.AnaAgain(kOpenedAt + seconds(1));
+  EXPECT_FALSE(group.roster.Find(back)->asks);
+  group.roster.Advance(kOpenedAt + seconds(1) + kTimeouts.sign_of_life);
+  EXPECT_TRUE(group.roster.Find(back)->asks);
+  EXPECT_EQ(group.roster.Find(back)->asked_at, kOpenedAt);
+}
+
+TEST(RosterTest, ARequestThatWasRefusedByLockingDoesNotComeBack) {
+  ClassWithKeys group;
+  ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
+  group.roster.Leave(group.ana, kOpenedAt);
+  ASSERT_TRUE(group.roster.SetRules(group.presenter, {.control_locked = true}).ok());
+  ASSERT_TRUE(group.roster.SetRules(group.presenter, {}).ok());
+  EXPECT_FALSE(group.roster.Find(group.AnaAgain(kOpenedAt + seconds(1)))->asks);
+}
+
+// A duplicated tab brings the key of the tab that it was made from, which is well.
+TEST(RosterTest, WhoGivesASignOfLifeStaysAndSteersOn) {
+  ClassWithKeys group;
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  const std::uint64_t duplicate = group.AnaAgain(kOpenedAt);
+  group.roster.Heard(group.ana);
+  EXPECT_EQ(group.roster.NextDeadline(), std::nullopt);
+  EXPECT_TRUE(group.roster.Advance(kOpenedAt + std::chrono::hours(1)).empty());
+  EXPECT_EQ(group.roster.steering(), group.ana);
+  EXPECT_NE(group.roster.Find(duplicate), nullptr);
+  EXPECT_EQ(group.roster.Find(duplicate)->doubts, 0U);
+  group.roster.Leave(group.ana, kOpenedAt + std::chrono::hours(1));
+  EXPECT_EQ(group.roster.steering(), duplicate) << "it is the same person";
 }
 
 TEST(RosterTest, LockedFollowingEndsLookingAround) {

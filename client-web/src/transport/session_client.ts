@@ -291,6 +291,8 @@ export class SessionClient {
             this.#participant.keep(sessionKey, message.value.participantKey);
             this.#listener.connection({ kind: "live" });
             this.#listener.joined(message.value);
+          } else if (message.case === "checkAlive") {
+            this.#sendBy(call, { case: "alive", value: {} });
           } else if (message.case === "end") {
             farewell = outcomeOfEnd(message.value);
           } else if (message.case === "sceneTaken") {
