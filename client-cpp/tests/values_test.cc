@@ -10,6 +10,7 @@
 #include "thunderhead_client/playback.h"
 #include "thunderhead_client/pose.h"
 #include "thunderhead_client/projection.h"
+#include "thunderhead_client/session_state.h"
 #include "thunderhead_client/statistics.h"
 
 namespace thunderhead::client {
@@ -125,6 +126,34 @@ const Parameter* Find(const std::vector<Parameter>& parameters, const std::strin
     if (each.path == path) return &each;
   }
   return nullptr;
+}
+
+TEST(SessionState, PutsMarksTogetherFromTheirChanges) {
+  const auto mark = [](v1::Marks* marks, std::uint64_t id, std::uint64_t viewer_id) {
+    marks->add_marks()->set_mark_id(id);
+    marks->mutable_marks()->rbegin()->set_viewer_id(viewer_id);
+  };
+  SessionState state;
+  v1::Marks all;
+  for (std::uint64_t id = 1; id <= 3; ++id) mark(&all, id, 1);
+  state.Take(all);
+  EXPECT_EQ(state.marks.marks_size(), 3);
+  v1::Marks change;
+  change.set_only_changes(true);
+  mark(&change, 2, 5);
+  mark(&change, 4, 1);
+  change.add_erased_mark_ids(1);
+  change.add_erased_mark_ids(9);
+  for (int times = 0; times < 2; ++times) {
+    state.Take(change);
+    ASSERT_EQ(state.marks.marks_size(), 3);
+    EXPECT_EQ(state.marks.marks(0).mark_id(), 2U);
+    EXPECT_EQ(state.marks.marks(0).viewer_id(), 5U);
+    EXPECT_EQ(state.marks.marks(1).mark_id(), 3U);
+    EXPECT_EQ(state.marks.marks(2).mark_id(), 4U);
+  }
+  state.Take(all);
+  EXPECT_EQ(state.marks.marks(0).mark_id(), 1U);
 }
 
 TEST(Parameters, EveryScalarOfTheSceneIsListedWithItsLimits) {

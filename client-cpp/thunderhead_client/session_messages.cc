@@ -55,7 +55,7 @@ void Session::Take(Call& call, v1::InteractResponse& response) {
         state_.pointers = response.pointers();
         break;
       case v1::InteractResponse::kMarks:
-        state_.marks = response.marks();
+        state_.Take(response.marks());
         break;
       case v1::InteractResponse::kTimesInMemory:
         state_.times_in_memory = response.times_in_memory();

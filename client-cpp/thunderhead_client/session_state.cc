@@ -1,9 +1,30 @@
 #include "thunderhead_client/session_state.h"
 
+#include <algorithm>
+
 #include "absl/strings/str_cat.h"
 #include "thunderhead_client/pose.h"
 
 namespace thunderhead::client {
+
+void SessionState::Take(const v1::Marks& told) {
+  if (!told.only_changes()) {
+    marks = told;
+    return;
+  }
+  const auto find = [this](std::uint64_t id) {
+    return std::ranges::find(*marks.mutable_marks(), id, &v1::Mark::mark_id);
+  };
+  for (const v1::Mark& mark : told.marks()) {
+    const auto at = find(mark.mark_id());
+    (at == marks.mutable_marks()->end() ? *marks.add_marks() : *at) = mark;
+  }
+  for (const std::uint64_t id : told.erased_mark_ids()) {
+    if (const auto at = find(id); at != marks.mutable_marks()->end()) {
+      marks.mutable_marks()->erase(at);
+    }
+  }
+}
 
 bool SessionState::Steers() const {
   return link == Link::kLive && viewer_id != 0 && presence.steering_viewer_id() == viewer_id;

@@ -48,6 +48,9 @@ struct SessionState {
   v1::Camera shown_camera;  // of the newest frame shown, every value filled in
   v1::Sun shown_sun;
 
+  // All marks, or their changes.
+  void Take(const v1::Marks& told);
+
   bool Steers() const;
   bool Presents() const { return role == v1::ROLE_PRESENTER; }
   bool Alone() const { return presence.people_size() <= 1; }

@@ -218,8 +218,7 @@ export class FakeSession {
         } else this.#addMark(person, message.value.rays);
         break;
       case "eraseMarks":
-        this.marks = this.marks.filter(({ viewerId }) => !presents && viewerId !== person.viewerId);
-        this.#tellAll({ case: "marks", value: { marks: this.marks } });
+        this.#eraseMarks(({ viewerId }) => presents || viewerId === person.viewerId);
         break;
       case "askControl":
         if (this.rules.controlLocked) refuse(Code.PermissionDenied, "control is locked");
@@ -323,7 +322,13 @@ export class FakeSession {
       color: COLORS[Number(viewerId) % COLORS.length],
     });
     this.marks = [...this.marks, mark];
-    this.#tellAll({ case: "marks", value: { marks: this.marks } });
+    this.#tellAll({ case: "marks", value: { marks: [mark], onlyChanges: true } });
+  }
+
+  #eraseMarks(erases: (mark: Mark) => boolean): void {
+    const erasedMarkIds = this.marks.filter(erases).map(({ markId }) => markId);
+    this.marks = this.marks.filter((mark) => !erases(mark));
+    this.#tellAll({ case: "marks", value: { erasedMarkIds, onlyChanges: true } });
   }
 
   #follow(person: FakePerson): void {

@@ -1,11 +1,12 @@
 // The state that a session's messages give the person at the page; the keys that the page keeps.
-import { create } from "@bufbuild/protobuf";
+import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { OwnKeys, trimmedName } from "../src/core/own_keys";
 import { SessionState } from "../src/core/session_state";
 import {
   JoinedSchema,
   MarkSchema,
+  MarksSchema,
   type Person,
   PersonSchema,
   PresenceSchema,
@@ -24,6 +25,8 @@ function joined(viewerId: bigint, role: Role) {
   session.joined(create(JoinedSchema, { viewerId, role, viewerKey: "viewers" }));
   return session;
 }
+
+const marks = (value: MessageInitShape<typeof MarksSchema>) => create(MarksSchema, value);
 
 const presence = (people: Person[], steeringViewerId: bigint, rules = {}) =>
   create(PresenceSchema, { people, steeringViewerId, rules });
@@ -135,12 +138,26 @@ describe("a session's state", () => {
     });
     session.pendingMarks.value = [pending(undefined, 4), pending(5n), pending(6n)];
     const others = create(MarkSchema, { markId: 1n, viewerId: 1n });
-    session.takeMarks([others]);
+    session.takeMarks(marks({ marks: [others] }));
     expect(session.pendingMarks.value).toHaveLength(3);
-    session.takeMarks([others, create(MarkSchema, { markId: 2n, viewerId: 2n })]);
+    const own = create(MarkSchema, { markId: 2n, viewerId: 2n });
+    session.takeMarks(marks({ marks: [own], onlyChanges: true }));
     // Not the one that waits to be sent again.
     expect(session.pendingMarks.value).toEqual([pending(undefined, 4), pending(6n)]);
     expect(session.marks.value).toHaveLength(2);
+  });
+
+  it("puts the marks together from their changes", () => {
+    const session = joined(2n, Role.VIEWER);
+    const mark = (markId: bigint, viewerId = 1n) => create(MarkSchema, { markId, viewerId });
+    session.takeMarks(marks({ marks: [mark(1n), mark(2n), mark(3n)] }));
+    const change = { marks: [mark(2n, 5n), mark(4n)], erasedMarkIds: [1n, 9n], onlyChanges: true };
+    session.takeMarks(marks(change));
+    expect(session.marks.value).toEqual([mark(2n, 5n), mark(3n), mark(4n)]);
+    session.takeMarks(marks(change));
+    expect(session.marks.value, "told twice").toEqual([mark(2n, 5n), mark(3n), mark(4n)]);
+    session.takeMarks(marks({ marks: [mark(4n)] }));
+    expect(session.marks.value).toEqual([mark(4n)]);
   });
 
   it("says that it has ended, and forgets who was there", () => {

@@ -236,7 +236,7 @@ class InteractCall : public InteractReactor,
       return ResponseOf(response);
     }
     if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
-    if (auto news = News(audience.Marks(), &told_marks_); news.has_value()) return news;
+    if (auto news = News(audience.Marks(told_marks_), &told_marks_); news.has_value()) return news;
     if (auto news = News(audience.TimesHeld(), &told_times_); news.has_value()) return news;
     return News(audience.Pointers(), &told_pointers_);
   }

@@ -63,6 +63,15 @@ std::string MarksOf(const std::vector<session::Mark>& marks) {
   return response.SerializeAsString();
 }
 
+std::string MarksChangeOf(const session::MarksChange& change) {
+  v1::InteractResponse response;
+  v1::Marks& message = *response.mutable_marks();
+  message.set_only_changes(true);
+  for (const session::Mark& mark : change.drawn) ToMessage(mark, *message.add_marks());
+  message.mutable_erased_mark_ids()->Add(change.erased.begin(), change.erased.end());
+  return response.SerializeAsString();
+}
+
 std::string TimesInMemoryOf(const session::HeldTimes& held) {
   v1::InteractResponse response;
   v1::TimesInMemory& message = *response.mutable_times_in_memory();
@@ -117,7 +126,7 @@ v1::End::Reason EndReason(const absl::Status& why) {
 }  // namespace
 
 session::AudienceFormat InteractFormat() {
-  return {PresenceOf, PointersOf, MarksOf, TimesInMemoryOf};
+  return {PresenceOf, PointersOf, MarksOf, MarksChangeOf, TimesInMemoryOf};
 }
 
 std::string SerializedFrame(const session::EncodedFrame& frame) {

@@ -212,9 +212,26 @@ Told Audience::Pointers() const {
   return pointers_.told;
 }
 
-Told Audience::Marks() const {
+Told Audience::Marks(std::uint64_t count) {
   const std::lock_guard lock(mutex_);
-  return marks_.told;
+  Told& all = marks_.told;
+  const std::uint64_t missed = all.count - count;
+  if (missed == 0) return all;
+  if (count > 0 && missed <= marks_changes_.size()) {
+    return {count + 1, marks_changes_[marks_changes_.size() - missed]};
+  }
+  if (all.bytes == nullptr) {
+    all.bytes = std::make_shared<const std::string>(format_.marks(board_.marks()));
+  }
+  return all;
+}
+
+// Marks are told by their changes, and all of them only where somebody asks for them.
+void Audience::TellMarks(Time now) {
+  marks_ = {{marks_.told.count + 1, nullptr}, board_.marks_revision(), now};
+  marks_changes_.push_back(
+      std::make_shared<const std::string>(format_.marks_change(board_.TakeMarksChange())));
+  if (marks_changes_.size() > kMaxMarksChanges) marks_changes_.pop_front();
 }
 
 Told Audience::TimesHeld() const {
@@ -298,7 +315,10 @@ bool Audience::TellDue(Time now) {
   };
   tell(presence_, roster_.revision(), kPresencePause, format_.presence, roster_);
   tell(pointers_, board_.pointers_revision(), kPointersPause, format_.pointers, board_.pointers());
-  tell(marks_, board_.marks_revision(), kMarksPause, format_.marks, board_.marks());
+  if (IsDue(marks_, board_.marks_revision(), kMarksPause, now)) {
+    TellMarks(now);
+    told = true;
+  }
   tell(held_times_, held_revision_, kAtOnce, format_.held_times, held_);
   tell(
       scene_, scene_revision_, kScenePause, [](std::uint64_t) { return std::string(); },

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <map>
@@ -35,6 +36,7 @@ struct AudienceFormat {
   std::function<std::string(const Roster&)> presence = [](const Roster&) { return ""; };
   std::function<std::string(const std::vector<Pointer>&)> pointers = [](const auto&) { return ""; };
   std::function<std::string(const std::vector<Mark>&)> marks = [](const auto&) { return ""; };
+  std::function<std::string(const MarksChange&)> marks_change = [](const auto&) { return ""; };
   std::function<std::string(const HeldTimes&)> held_times = [](const auto&) { return ""; };
 };
 
@@ -61,6 +63,9 @@ class Audience {
   static constexpr std::chrono::milliseconds kMarksPause{200};
   // Places of pointers found in one Tick; further people wait for the next.
   static constexpr std::size_t kMaxFound = 8;
+  // The last changes of marks, of 6 s if something is drawn all the time. Who has missed more is
+  // told all the marks.
+  static constexpr std::size_t kMaxMarksChanges = 32;
 
   // `on_due` is called, without the lock, when Tick is to be called soon.
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
@@ -115,7 +120,9 @@ class Audience {
 
   Told Presence() const;
   Told Pointers() const;
-  Told Marks() const;
+  // For one who was told of the marks `count` times: the next change, or all the marks. Those may
+  // be newer than what others were told; a change that comes twice is the same as one.
+  Told Marks(std::uint64_t count);
   Told TimesHeld() const;
   // Without bytes: it counts when people were told to take the newest scene.
   Told Scene() const;
@@ -132,8 +139,9 @@ class Audience {
     Time told_at;
   };
 
-  // All need mutex_. The second tells those subjects whose pause is over; true if there were any.
+  // All need mutex_. TellDue tells those subjects whose pause is over; true if there were any.
   void Forget(std::uint64_t id);
+  void TellMarks(Time now);
   bool TellDue(Time now);
   std::map<std::uint64_t, Ray> TakeRays();
   void WithdrawPointers();
@@ -153,7 +161,8 @@ class Audience {
   std::uint64_t last_found_ = 0;       // whose ray was taken last
   Subject presence_;
   Subject pointers_;
-  Subject marks_;
+  Subject marks_;                                                 // all of them
+  std::deque<std::shared_ptr<const std::string>> marks_changes_;  // the newest last
   Subject held_times_;
   Subject scene_;
   std::uint64_t scene_revision_ = 0;

@@ -39,8 +39,18 @@ absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
   const glm::vec3 own = kColors[person_id % kColors.size()];
   marks_.push_back(
       {++mark_count_, person_id, std::move(positions_m), color.value_or(own), owner_key});
+  drawn_.insert(mark_count_);
   ++marks_revision_;
   return mark_count_;
+}
+
+MarksChange Board::TakeMarksChange() {
+  MarksChange change{.erased = std::exchange(erased_, {})};
+  for (const Mark& mark : marks_) {
+    if (drawn_.contains(mark.id)) change.drawn.push_back(mark);
+  }
+  drawn_.clear();
+  return change;
 }
 
 void Board::HandOver(const std::string& owner_key, std::uint64_t person_id) {
@@ -49,6 +59,7 @@ void Board::HandOver(const std::string& owner_key, std::uint64_t person_id) {
   for (Mark& mark : marks_) {
     if (mark.owner_key != owner_key || mark.person_id == person_id) continue;
     mark.person_id = person_id;
+    drawn_.insert(mark.id);
     changed = true;
   }
   if (changed) ++marks_revision_;
@@ -68,8 +79,10 @@ bool Board::HasOfOthers(const std::vector<std::uint64_t>& ids, std::uint64_t per
 
 void Board::Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id) {
   const auto erased = std::erase_if(marks_, [&](const Mark& mark) {
-    return (ids.empty() || std::ranges::find(ids, mark.id) != ids.end()) &&
-           (!person_id.has_value() || mark.person_id == *person_id);
+    const bool erases = (ids.empty() || std::ranges::find(ids, mark.id) != ids.end()) &&
+                        (!person_id.has_value() || mark.person_id == *person_id);
+    if (erases) erased_.push_back(mark.id);
+    return erases;
   });
   if (erased > 0) ++marks_revision_;
 }

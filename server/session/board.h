@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,11 @@ struct Mark {
   bool operator==(const Mark&) const = default;
 };
 
+struct MarksChange {
+  std::vector<Mark> drawn;  // or now another person's
+  std::vector<std::uint64_t> erased;
+};
+
 class Board {
  public:
   static constexpr std::size_t kMaxMarks = 100;
@@ -52,6 +58,8 @@ class Board {
   void Point(std::uint64_t person_id, const std::optional<glm::dvec3>& position_m);
 
   const std::vector<Mark>& marks() const { return marks_; }
+  // What has happened to the marks since the last call.
+  MarksChange TakeMarksChange();
   // The largest id of those who drew them; 0 without marks.
   std::uint64_t LastPerson() const;
   const std::vector<Pointer>& pointers() const { return pointers_; }
@@ -61,6 +69,8 @@ class Board {
 
  private:
   std::vector<Mark> marks_;
+  std::set<std::uint64_t> drawn_;  // ids for TakeMarksChange
+  std::vector<std::uint64_t> erased_;
   std::vector<Pointer> pointers_;
   std::uint64_t mark_count_ = 0;
   std::uint64_t marks_revision_ = 0;

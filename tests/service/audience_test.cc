@@ -81,7 +81,13 @@ class AudienceTest : public ::testing::Test {
             .marks =
                 [this](const std::vector<Mark>& marks) {
                   ++formatted_;
-                  return std::to_string(marks.size());
+                  return "all " + std::to_string(marks.size());
+                },
+            .marks_change =
+                [this](const MarksChange& change) {
+                  ++formatted_;
+                  return absl::StrCat("drawn ", change.drawn.size(), ", erased ",
+                                      change.erased.size());
                 }};
   }
 
@@ -125,17 +131,51 @@ TEST_F(AudienceTest, PresenceIsToldAtMostSoOften) {
 }
 
 TEST_F(AudienceTest, MarksAreToldAtMostSoOften) {
-  const std::uint64_t told = audience_.Marks().count;
   for (int i = 0; i < 10; ++i) {
     ASSERT_TRUE(Draw(presenter_).ok());
     now_ += milliseconds(1);
   }
-  EXPECT_EQ(audience_.Marks().count, told + 1);
-  EXPECT_EQ(*audience_.Marks().bytes, "1");
+  EXPECT_EQ(audience_.Marks(0).count, 1U);
+  EXPECT_EQ(audience_.Marks(1).count, 1U) << "nothing new";
   now_ += Audience::kMarksPause;
   Tick();
-  EXPECT_EQ(audience_.Marks().count, told + 2);
-  EXPECT_EQ(*audience_.Marks().bytes, "10");
+  EXPECT_EQ(audience_.Marks(1).count, 2U);
+  EXPECT_EQ(*audience_.Marks(1).bytes, "drawn 9, erased 0");
+}
+
+TEST_F(AudienceTest, MarksAreToldByTheirChangesMadeOnce) {
+  const auto next_draws = [&] {
+    now_ += Audience::kMarksPause;
+    ASSERT_TRUE(Draw(presenter_).ok());
+  };
+  next_draws();
+  EXPECT_EQ(*audience_.Marks(0).bytes, "all 1") << "to those who have had none";
+  next_draws();
+  next_draws();
+  now_ += Audience::kMarksPause;
+  ASSERT_TRUE(audience_.Erase(presenter_, {1, 2}, now_).ok());
+  EXPECT_EQ(audience_.Marks(1).count, 2U) << "in order, whatever has come since";
+  EXPECT_EQ(*audience_.Marks(1).bytes, "drawn 1, erased 0");
+  EXPECT_EQ(*audience_.Marks(2).bytes, "drawn 1, erased 0");
+  EXPECT_EQ(audience_.Marks(3).count, 4U);
+  EXPECT_EQ(*audience_.Marks(3).bytes, "drawn 0, erased 2");
+  EXPECT_EQ(audience_.Marks(0).count, 4U);
+  EXPECT_EQ(*audience_.Marks(0).bytes, "all 1");
+  const int formatted = formatted_;
+  EXPECT_EQ(audience_.Marks(0).bytes, audience_.Marks(0).bytes) << "the same, not a copy";
+  EXPECT_EQ(audience_.Marks(3).bytes, audience_.Marks(3).bytes);
+  EXPECT_EQ(formatted_, formatted);
+}
+
+TEST_F(AudienceTest, WhoHasMissedTooManyChangesIsToldAllMarks) {
+  for (std::size_t i = 0; i < Audience::kMaxMarksChanges + 2; ++i) {
+    now_ += Audience::kMarksPause;
+    ASSERT_TRUE(Draw(presenter_).ok());
+  }
+  EXPECT_EQ(*audience_.Marks(2).bytes, "drawn 1, erased 0");
+  EXPECT_EQ(audience_.Marks(2).count, 3U);
+  EXPECT_EQ(audience_.Marks(1).count, Audience::kMaxMarksChanges + 2);
+  EXPECT_EQ(*audience_.Marks(1).bytes, absl::StrCat("all ", Audience::kMaxMarksChanges + 2));
 }
 
 // The page sends a place for each movement of the mouse.
@@ -294,7 +334,7 @@ TEST_F(AudienceTest, WhoHasSaidSomethingIsNoLostConnection) {
 
 TEST_F(AudienceTest, NothingIsToldWithoutNews) {
   const Told presence = audience_.Presence();
-  const Told marks = audience_.Marks();
+  const std::uint64_t marks = audience_.Marks(0).count;
   const int wakes = viewers_[0]->wakes;
   for (int i = 0; i < 100; ++i) {
     EXPECT_EQ(Tick(), std::nullopt);
@@ -302,7 +342,7 @@ TEST_F(AudienceTest, NothingIsToldWithoutNews) {
   }
   EXPECT_TRUE(audience_.Erase(presenter_, {}, now_).ok());
   EXPECT_EQ(audience_.Presence().count, presence.count);
-  EXPECT_EQ(audience_.Marks().count, marks.count);
+  EXPECT_EQ(audience_.Marks(0).count, marks);
   EXPECT_EQ(viewers_[0]->wakes, wakes);
 }
 
@@ -336,6 +376,21 @@ TEST(BoardTest, ThereIsAMaximumOfMarks) {
   EXPECT_TRUE(absl::IsFailedPrecondition(board.Add(1, {{}}, {}).status()));
   board.Erase({5}, std::nullopt);
   EXPECT_TRUE(board.Add(1, {{}}, {}).ok());
+}
+
+TEST(BoardTest, TellsWhatHasHappenedToItsMarks) {
+  Board board;
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(board.Add(1, {{}}, {}, "key").ok());
+  EXPECT_EQ(board.TakeMarksChange().drawn.size(), 3U);
+  EXPECT_TRUE(board.TakeMarksChange().drawn.empty());
+  board.Erase({2}, std::nullopt);
+  board.HandOver("key", 7);
+  ASSERT_TRUE(board.Add(7, {{}}, {}).ok());
+  board.Erase({4}, std::nullopt);
+  const MarksChange change = board.TakeMarksChange();
+  EXPECT_THAT(change.erased, ::testing::ElementsAre(2U, 4U));
+  ASSERT_EQ(change.drawn.size(), 2U) << "which are another person's now";
+  EXPECT_EQ(change.drawn[0].person_id, 7U);
 }
 
 TEST(BoardTest, MarksWithoutAKeyAreHandedOverToNobody) {

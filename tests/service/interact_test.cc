@@ -756,6 +756,35 @@ TEST(InteractTest, ViewersMarkIfAllowedAndEraseTheirOwn) {
   EXPECT_TRUE(marks_are(0));
 }
 
+TEST(InteractTest, OnlyChangesOfMarksAreToldAndAllOfThemToNewcomers) {
+  Class group;
+  const auto has = [](Interacting& person, int count) {
+    return person.AwaitMarks([&](const v1::Marks& marks) { return marks.marks_size() == count; });
+  };
+  for (int drawn = 1; drawn <= 4; ++drawn) {
+    group.presenter->Send(Draws());
+    ASSERT_TRUE(has(*group.ana, drawn));
+  }
+  const v1::Marks all = group.ana->AwaitNewest(Response::kMarks).marks();
+  v1::InteractRequest erase;
+  erase.mutable_erase_marks()->add_mark_ids(all.marks(1).mark_id());
+  group.presenter->Send(erase);
+  ASSERT_TRUE(has(*group.ana, 3));
+  const std::vector<v1::Marks> told = group.ana->MarksAsTold();
+  ASSERT_EQ(told.size(), 5U);
+  for (int drawn = 2; drawn <= 4; ++drawn) {
+    const v1::Marks& change = told[static_cast<std::size_t>(drawn - 1)];
+    EXPECT_TRUE(change.only_changes());
+    ASSERT_EQ(change.marks_size(), 1);
+    EXPECT_EQ(change.marks(0).mark_id(), all.marks(drawn - 1).mark_id());
+  }
+  EXPECT_EQ(told[4].marks_size(), 0);
+  EXPECT_THAT(told[4].erased_mark_ids(), ::testing::ElementsAre(all.marks(1).mark_id()));
+  Interacting newcomer(group.service.stub(), group.created.viewer_key());
+  ASSERT_TRUE(has(newcomer, 3));
+  EXPECT_FALSE(newcomer.MarksAsTold().front().only_changes());
+}
+
 TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   Class group(ViewersMayMark());
   EXPECT_THAT(group.ana->participant_key(), ::testing::MatchesRegex("[0-9a-f]{32}"));

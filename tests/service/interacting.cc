@@ -6,6 +6,28 @@
 #include "google/rpc/error_details.pb.h"
 
 namespace thunderhead::testing {
+namespace {
+
+void Apply(const v1::Marks& told, v1::Marks* all) {
+  if (!told.only_changes()) {
+    *all = told;
+    return;
+  }
+  for (const std::uint64_t id : told.erased_mark_ids()) {
+    const auto at = std::ranges::find(all->marks(), id, &v1::Mark::mark_id);
+    if (at != all->marks().end()) all->mutable_marks()->erase(at);
+  }
+  for (const v1::Mark& mark : told.marks()) {
+    const auto at = std::ranges::find(*all->mutable_marks(), mark.mark_id(), &v1::Mark::mark_id);
+    if (at != all->mutable_marks()->end()) {
+      *at = mark;
+    } else {
+      *all->add_marks() = mark;
+    }
+  }
+}
+
+}  // namespace
 
 std::string ReasonOf(const google::rpc::Status& refusal) {
   google::rpc::ErrorInfo info;
@@ -66,6 +88,11 @@ void Interacting::Run() {
     acknowledged.mutable_acknowledge()->set_own_view(response.frame().own_view());
     {
       const std::lock_guard lock(mutex_);
+      if (response.has_marks()) {
+        marks_as_told_.push_back(response.marks());
+        Apply(response.marks(), &marks_);
+        *response.mutable_marks() = marks_;
+      }
       messages_.push_back(std::move(response));
     }
     changed_.notify_all();
@@ -135,6 +162,11 @@ bool Interacting::AwaitMarks(const std::function<bool(const v1::Marks&)>& wanted
                                  [](const auto& message) { return message.has_marks(); });
     return at != messages.rend() && wanted(at->marks());
   });
+}
+
+std::vector<v1::Marks> Interacting::MarksAsTold() {
+  const std::lock_guard lock(mutex_);
+  return marks_as_told_;
 }
 
 v1::Scene Interacting::AwaitScene(std::uint64_t revision) {

@@ -59,8 +59,11 @@ class Interacting {
   bool AwaitFrame(std::uint64_t revision, bool own_view = false);
   Messages All();
 
+  // Messages with marks have all of them, as put together from their changes.
   // Waits until the newest marks are as wanted.
   bool AwaitMarks(const std::function<bool(const v1::Marks&)>& wanted);
+  // The messages with marks as they came.
+  std::vector<v1::Marks> MarksAsTold();
 
   // Of this person; known once joined.
   std::uint64_t viewer_id();
@@ -82,6 +85,8 @@ class Interacting {
   std::mutex mutex_;
   std::condition_variable changed_;
   Messages messages_;
+  v1::Marks marks_;  // all of them
+  std::vector<v1::Marks> marks_as_told_;
   std::uint64_t request_count_ = 0;
   grpc::Status end_;
   std::thread thread_;

@@ -5,6 +5,7 @@ import { batch, computed, signal } from "@preact/signals-core";
 import {
   type Joined,
   type Mark,
+  type Marks,
   type Person,
   type Pointer,
   type Presence,
@@ -137,13 +138,14 @@ export class SessionState {
   }
 
   // Each new mark of one's own takes the place of the pending one that was sent first.
-  takeMarks(marks: readonly Mark[]): void {
-    const known = new Set(this.marks.value.map((mark) => mark.markId));
-    const fresh = marks.filter((mark) => !known.has(mark.markId) && this.isMe(mark.viewerId));
+  takeMarks(told: Marks): void {
+    const before = this.marks.value;
+    const known = new Set(before.map((mark) => mark.markId));
+    const fresh = told.marks.filter((mark) => !known.has(mark.markId) && this.isMe(mark.viewerId));
     const pending = this.pendingMarks.value;
     const placed = pending.filter((mark) => mark.requestId !== undefined).slice(0, fresh.length);
     batch(() => {
-      this.marks.value = marks;
+      this.marks.value = told.onlyChanges ? changed(before, told) : told.marks;
       this.pendingMarks.value = pending.filter((mark) => !placed.includes(mark));
     });
   }
@@ -159,4 +161,11 @@ export class SessionState {
       this.lookingAround.value = false;
     });
   }
+}
+
+function changed(before: readonly Mark[], { marks, erasedMarkIds }: Marks): readonly Mark[] {
+  const erased = new Set(erasedMarkIds);
+  const after = new Map(before.map((mark) => [mark.markId, mark]));
+  for (const mark of marks) after.set(mark.markId, mark);
+  return [...after.values()].filter(({ markId }) => !erased.has(markId));
 }

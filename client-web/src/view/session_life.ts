@@ -204,7 +204,7 @@ export class SessionLife implements SessionListener {
         session.pointers.value = message.value.pointers;
         break;
       case "marks":
-        session.takeMarks(message.value.marks);
+        session.takeMarks(message.value);
         break;
       case "timesInMemory":
         this.#parts.state.timesInMemory.value = message.value;
