@@ -252,7 +252,7 @@ void App::Advance(Clock::time_point now) {
   if (flags_.kiosk) kiosk_.Advance(ui_, now);
   if (const auto next =
           ui_.playback.Advance(ui_.time_index(), ui_.time_count(), ui_.IsShown(), now)) {
-    ui_.ShowTime(*next);
+    ui_.ShowTime(*next, Ui::Recording::kUnrecorded);
   }
 }
 

@@ -1,16 +1,25 @@
 #include "desktop/ui.h"
 
+#include <google/protobuf/util/message_differencer.h>
+
 #include <algorithm>
 #include <utility>
+
+#include "desktop/scene_edits.h"
 
 namespace thunderhead::desktop {
 
 using Clock = std::chrono::steady_clock;
+using google::protobuf::util::MessageDifferencer;
 
-void Ui::Edit(const std::string& subject, client::SceneSync::Edit edit) {
+void Ui::Edit(const std::string& subject, client::SceneSync::Edit edit, Recording recording) {
   const v1::Scene before = state.scene;
-  if (!session.Edit(std::move(edit))) return;
-  history.Record(before, subject, Clock::now());
+  v1::Scene after = before;
+  edit(after);
+  if (MessageDifferencer::Equals(before, after) || !session.Edit(std::move(edit))) return;
+  if (recording == Recording::kRecorded) history.Record(before, after, subject, Clock::now());
+  // Another storm is not taken for somebody else's doing.
+  state.scene = std::move(after);
   Refresh();
 }
 
@@ -20,20 +29,30 @@ void Ui::Move(const std::function<client::Pose(const client::Pose&)>& motion) {
 }
 
 void Ui::ShowCamera(const v1::Camera& camera) {
-  if (state.Steers()) history.Record(state.scene, "camera", Clock::now());
+  if (state.Steers()) {
+    return Edit("camera", [camera](v1::Scene& scene) { *scene.mutable_camera() = camera; });
+  }
   session.ShowCamera(camera);
   Refresh();
 }
 
-void Ui::ShowTime(int index) {
-  Edit("time", [index](v1::Scene& scene) {
+void Ui::ShowTime(int index, Recording recording) {
+  const auto edit = [index](v1::Scene& scene) {
     scene.set_time_index(static_cast<std::uint32_t>(std::max(0, index)));
-  });
+  };
+  Edit("time", edit, recording);
+}
+
+void Ui::ShowStorm(const std::string& storm_id) {
+  playback.Pause();
+  Edit("storm", [storm_id](v1::Scene& scene) { ChooseStorm(scene, storm_id); });
 }
 
 void Ui::TogglePlay() {
   if (!state.Steers()) return;
-  if (const auto index = playback.Toggle(time_index(), time_count())) ShowTime(*index);
+  if (const auto index = playback.Toggle(time_index(), time_count())) {
+    ShowTime(*index, Recording::kUnrecorded);
+  }
 }
 
 void Ui::StepTime(int by) {
@@ -41,22 +60,20 @@ void Ui::StepTime(int by) {
 }
 
 void Ui::Undo() {
-  if (!state.Steers()) return;
-  ShowAgain(history.Undo(state.scene));
+  if (state.Steers()) Make(history.Undo());
 }
 
 void Ui::Redo() {
-  if (!state.Steers()) return;
-  ShowAgain(history.Redo(state.scene));
+  if (state.Steers()) Make(history.Redo());
 }
 
-void Ui::ShowAgain(std::optional<v1::Scene> scene) {
-  if (!scene) return;
-  session.Edit([scene = *std::move(scene)](v1::Scene& edited) { edited = scene; });
-  Refresh();
+void Ui::Make(const std::optional<History::Edit>& step) {
+  if (step) Edit("history", *step, Recording::kUnrecorded);
 }
 
-int Ui::time_count() const { return storms.storm.times_size(); }
+int Ui::time_count() const {
+  return storms.storm.id() == state.scene.storm_id() ? storms.storm.times_size() : 0;
+}
 
 int Ui::time_index() const {
   if (!state.scene.has_time_index()) return std::max(0, time_count() - 1);
@@ -76,6 +93,7 @@ bool Ui::Refresh() {
                     newer->notice_count != state.notice_count ||
                     newer->problem.has_value() != state.problem.has_value() ||
                     newer->presence.ByteSizeLong() != state.presence.ByteSizeLong();
+    if (newer->scene.storm_id() != state.scene.storm_id()) history.Clear();
     state = *std::move(newer);
     parameters = client::ParametersOf(state.scene);
     any = true;

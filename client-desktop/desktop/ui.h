@@ -43,17 +43,24 @@ struct Ui {
   float width = 0.0F;  // of the window, in its units
   float height = 0.0F;
 
+  // Whether a change can be undone.
+  enum class Recording { kRecorded, kUnrecorded };
+
   // Changes the scene, if this window steers. `subject` names what is changed, for undo.
-  void Edit(const std::string& subject, client::SceneSync::Edit edit);
+  void Edit(const std::string& subject, client::SceneSync::Edit edit,
+            Recording recording = Recording::kRecorded);
   // Moves the camera of the view shown.
   void Move(const std::function<client::Pose(const client::Pose&)>& motion);
   void ShowCamera(const v1::Camera& camera);
-  void ShowTime(int index);
+  void ShowTime(int index, Recording recording = Recording::kRecorded);
+  // Shows another storm's last time. Play ends.
+  void ShowStorm(const std::string& storm_id);
   void TogglePlay();
   void StepTime(int by);
   void Undo();
   void Redo();
 
+  // Of the storm shown; none before it is described.
   int time_count() const;
   int time_index() const;
   // True once the picture of the newest scene is on the screen.
@@ -64,8 +71,8 @@ struct Ui {
   bool texts_changed = false;
 
  private:
-  // A scene of the history, if there is one.
-  void ShowAgain(std::optional<v1::Scene> scene);
+  // A step of the history, if there is one.
+  void Make(const std::optional<History::Edit>& step);
 };
 
 }  // namespace thunderhead::desktop

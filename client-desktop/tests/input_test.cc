@@ -266,24 +266,6 @@ TEST(Keyboard, TextWithControlOrInAFieldDoesNothing) {
   EXPECT_NEAR(DistanceOf(keys), 50'000.0, 1e-6);
 }
 
-TEST(History, OneDragIsOneStep) {
-  History history;
-  const History::TimePoint start{std::chrono::seconds(100)};
-  v1::Scene first;
-  first.set_time_index(1);
-  v1::Scene second;
-  second.set_time_index(2);
-  history.Record(first, "camera", start);
-  history.Record(second, "camera", start + std::chrono::milliseconds(100));
-  v1::Scene now;
-  now.set_time_index(3);
-  const auto undone = history.Undo(now);
-  ASSERT_TRUE(undone.has_value());
-  EXPECT_EQ(undone->time_index(), 1U);
-  EXPECT_FALSE(history.Undo(*undone).has_value());
-  EXPECT_EQ(history.Redo(*undone)->time_index(), 3U);
-}
-
 TEST(Texts, AreThePages) {
   EXPECT_EQ(FormatNumber(0.02), "0.02");
   EXPECT_EQ(FormatNumber(8.449), "8.45");

@@ -74,6 +74,9 @@ test("times are stepped and played by keys", async () => {
   display.key("space");
   await desktop.until("another time", (now) => now.time_index !== last - 1);
   display.key("space");
+  // Played times are no steps of the history.
+  display.key("ctrl+z");
+  await desktop.until("the time before the step", (now) => rests(now) && now.time_index === last);
 });
 
 const PANELS = { camera: "m", time: "t", light: "l", look: "k", fields: "f", marks: "d" };

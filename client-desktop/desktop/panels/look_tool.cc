@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "desktop/controls.h"
 #include "desktop/panels/panels.h"
+#include "desktop/scene_edits.h"
 
 namespace thunderhead::desktop {
 namespace {
@@ -15,8 +16,14 @@ namespace {
 constexpr std::array<v1::Preset, 3> kQualities{v1::PRESET_FAST, v1::PRESET_BALANCED,
                                                v1::PRESET_TRUE};
 
-// The server replaces a preset by what it stands for. -1 for none of the three.
+bool HasGoal(const v1::Scene& scene) {
+  return scene.accuracy().limit_case() != v1::Accuracy::LIMIT_NOT_SET;
+}
+
+// The server replaces a preset by what it stands for. -1 for none of the three, or while an
+// accuracy goal overrides it.
 int QualityOf(const Ui& ui) {
+  if (HasGoal(ui.state.scene)) return -1;
   const v1::Rendering& rendering = ui.state.scene.rendering();
   for (int i = 0; i < static_cast<int>(kQualities.size()); ++i) {
     const v1::Preset preset = kQualities.at(static_cast<std::size_t>(i));
@@ -35,15 +42,14 @@ void DrawQuality(Ui& ui) {
   int quality = QualityOf(ui);
   if (Segments("quality", {"Fast", "Balanced", "True"}, quality)) {
     const v1::Preset preset = kQualities.at(static_cast<std::size_t>(quality));
-    ui.Edit("rendering", [=](v1::Scene& scene) {
-      scene.mutable_rendering()->set_preset(preset);
-      scene.clear_accuracy();
-    });
+    ui.Edit("rendering", [=](v1::Scene& scene) { ChoosePreset(scene, preset); });
   }
-  constexpr std::array<const char*, 4> kWords{
-      "Custom: as every setting (X) says.", "Fewer samples and no fine detail.",
-      "Fine detail; traced light while it rests.", "As Balanced; files wait for traced light."};
-  Quiet(kWords.at(static_cast<std::size_t>(quality + 1)));
+  const std::array<const char*, 4> words{
+      HasGoal(ui.state.scene) ? "Set by the accuracy goal, which is among every setting (X)."
+                              : "Custom: as every setting (X) says.",
+      "Fewer samples and no fine detail.", "Fine detail; traced light while it rests.",
+      "As Balanced; files wait for traced light."};
+  Quiet(words.at(static_cast<std::size_t>(quality + 1)));
   std::string missing;
   for (const v1::NotShown& each : ui.frame.modelled().not_shown()) {
     absl::StrAppend(&missing, missing.empty() ? "Not shown: " : ", ", each.message());

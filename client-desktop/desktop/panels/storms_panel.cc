@@ -13,13 +13,7 @@ void DrawStorm(Ui& ui, const v1::StormSummary& storm) {
   const float height = 2.0F * ImGui::GetTextLineHeight() + 10.0F * ui.scale;
   const ImVec2 at = ImGui::GetCursorPos();
   if (ImGui::Selectable("##storm", shown, 0, {0.0F, height})) {
-    ui.Edit("storm", [id = storm.id()](v1::Scene& scene) {
-      if (scene.storm_id() == id) return;
-      scene.set_storm_id(id);
-      // Those of the other storm's place; the server chooses.
-      scene.clear_time_index();
-      scene.clear_camera();
-    });
+    ui.ShowStorm(storm.id());
   }
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
     ImGui::SetTooltip("%s\n%s", storm.title().c_str(), storm.id().c_str());

@@ -1,0 +1,22 @@
+// Edits of a scene that concern several of its parts, as the page makes them
+// (client-web/src/core/scene.ts). They know no window.
+#pragma once
+
+#include <string>
+
+#include "thunderhead/v1/scene.pb.h"
+
+namespace thunderhead::desktop {
+
+// Shows another storm's last time. What belongs to the old one goes, so that the server chooses it
+// anew: camera, fields and the sun's clock. Light, rendering and picture stay.
+void ChooseStorm(v1::Scene& scene, const std::string& storm_id);
+
+// Replaces technique and settings by a preset, which also stands for where particles' sizes come
+// from. Drops an accuracy goal, for which the server would choose other settings.
+void ChoosePreset(v1::Scene& scene, v1::Preset preset);
+
+// Where the sizes of all fields' particles come from: the fields no longer say so themselves.
+void ChooseParticleSizes(v1::Scene& scene, v1::ParticleSizes sizes);
+
+}  // namespace thunderhead::desktop

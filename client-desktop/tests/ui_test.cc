@@ -1,0 +1,114 @@
+// What the panels act upon, with a session of a service in this process.
+#include "desktop/ui.h"
+
+#include <thread>
+
+#include "client-cpp/tests/fake_service.h"
+#include "gtest/gtest.h"
+
+namespace thunderhead::desktop {
+namespace {
+
+using client::testing::FakeService;
+
+class Listener final : public client::SessionListener {
+ public:
+  void Changed() override {}
+  void StreamBegan() override {}
+  void Received(v1::Frame /*frame*/, std::size_t /*bytes*/) override {}
+  void SceneTaken(std::uint64_t /*revision*/, std::chrono::steady_clock::time_point) override {}
+};
+
+// This window steers a storm of six times.
+class UiTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(Await([&] { return ui.state.link == client::Link::kLive; }));
+    v1::Scene scene;
+    scene.set_storm_id("moore");
+    scene.set_time_index(3);
+    service.SendScene(scene, 1);
+    service.SendPresence(FakeService::kClient);
+    ASSERT_TRUE(Await([&] { return ui.state.Steers() && ui.state.scene.time_index() == 3; }));
+    ui.storms.storm.set_id("moore");
+    for (int i = 0; i < 6; ++i) ui.storms.storm.add_times();
+  }
+  bool Await(const std::function<bool()>& wanted) {
+    const auto deadline = std::chrono::steady_clock::now() + client::testing::kPatience;
+    while (!wanted()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      ui.Refresh();
+    }
+    return true;
+  }
+  void TurnSun() {
+    ui.Edit("sun", [](v1::Scene& scene) { scene.mutable_sun()->set_azimuth_deg(10.0F); });
+  }
+  const v1::Scene& scene() const { return ui.state.scene; }
+
+  FakeService service;
+  Listener listener;
+  client::Session session{service.Connect(), {}, listener};
+  client::Catalogue catalogue{service.Connect(), [] {}};
+  Ui ui{session, catalogue};
+};
+
+TEST_F(UiTest, TimesThatArePlayedAreNoStepsOfTheHistory) {
+  ui.ShowTime(2);
+  TurnSun();
+  ui.ShowTime(4, Ui::Recording::kUnrecorded);
+  ui.Undo();
+  EXPECT_FALSE(scene().sun().has_azimuth_deg());
+  EXPECT_EQ(scene().time_index(), 4U);
+  ui.Undo();
+  EXPECT_EQ(scene().time_index(), 3U);
+  ui.ShowTime(5, Ui::Recording::kUnrecorded);
+  ui.Redo();
+  ui.Redo();
+  EXPECT_TRUE(scene().sun().has_azimuth_deg());
+  EXPECT_EQ(scene().time_index(), 2U);
+}
+
+TEST_F(UiTest, PlayFromTheStartIsNoStepEither) {
+  TurnSun();
+  ui.ShowTime(5, Ui::Recording::kUnrecorded);
+  ui.playback.loops = false;
+  ui.TogglePlay();
+  EXPECT_EQ(scene().time_index(), 0U);
+  ui.Undo();
+  EXPECT_FALSE(scene().sun().has_azimuth_deg());
+  EXPECT_EQ(scene().time_index(), 0U);
+}
+
+TEST_F(UiTest, AnEditThatChangesNothingIsNoStep) {
+  TurnSun();
+  ui.ShowStorm("moore");
+  ui.Undo();
+  EXPECT_FALSE(scene().sun().has_azimuth_deg());
+}
+
+TEST_F(UiTest, AnotherStormEndsPlayAndCanBeUndone) {
+  ui.TogglePlay();
+  ui.ShowStorm("supercell");
+  EXPECT_EQ(scene().storm_id(), "supercell");
+  EXPECT_FALSE(ui.playback.playing());
+  EXPECT_EQ(ui.time_count(), 0) << "the times of the storm before it";
+  ui.Undo();
+  EXPECT_EQ(scene().storm_id(), "moore");
+  EXPECT_EQ(scene().time_index(), 3U);
+}
+
+TEST_F(UiTest, AStormThatSomebodyElseChoosesEndsTheHistory) {
+  TurnSun();
+  ASSERT_TRUE(Await([&] { return ui.state.scene_revision == 2; }));
+  v1::Scene others = scene();
+  others.set_storm_id("supercell");
+  service.SendScene(others, 9);
+  ASSERT_TRUE(Await([&] { return scene().storm_id() == "supercell"; }));
+  ui.Undo();
+  EXPECT_TRUE(scene().sun().has_azimuth_deg());
+}
+
+}  // namespace
+}  // namespace thunderhead::desktop
