@@ -121,6 +121,43 @@ TEST(Statistics, TellsRateBytesAndLatency) {
   EXPECT_EQ(statistics.At(now + std::chrono::seconds(3)).frames_per_s, 0.0);
 }
 
+class SessionStateTest : public ::testing::Test {
+ protected:
+  SessionStateTest() {
+    state.link = Link::kLive;
+    state.viewer_id = 7;
+    state.role = v1::ROLE_VIEWER;
+  }
+  v1::SessionRules& rules() { return *state.presence.mutable_rules(); }
+
+  SessionState state;
+};
+
+TEST_F(SessionStateTest, WhoSteersMayMarkWhateverTheRules) {
+  rules().set_viewers_may_mark(false);
+  EXPECT_FALSE(state.MayMark());
+  state.presence.set_steering_viewer_id(7);
+  EXPECT_TRUE(state.MayMark());
+  state.presence.set_steering_viewer_id(3);
+  EXPECT_FALSE(state.MayMark());
+  rules().set_viewers_may_mark(true);
+  EXPECT_TRUE(state.MayMark());
+}
+
+TEST_F(SessionStateTest, WhoAsksSteersOnlyWhileControlIsFree) {
+  EXPECT_FALSE(state.SteersWhoAsks());
+  rules().set_viewers_may_steer(true);
+  EXPECT_TRUE(state.SteersWhoAsks());
+  state.presence.set_presenter_away(true);
+  EXPECT_FALSE(state.SteersWhoAsks()) << "an absent presenter keeps control";
+  state.presence.set_presenter_away(false);
+  state.presence.set_steering_viewer_id(3);
+  EXPECT_FALSE(state.SteersWhoAsks());
+  state.presence.set_steering_viewer_id(0);
+  rules().set_control_locked(true);
+  EXPECT_FALSE(state.SteersWhoAsks());
+}
+
 const Parameter* Find(const std::vector<Parameter>& parameters, const std::string& path) {
   for (const Parameter& each : parameters) {
     if (each.path == path) return &each;

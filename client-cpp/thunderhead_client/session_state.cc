@@ -35,12 +35,18 @@ bool SessionState::AsksControl() const {
   return me != nullptr && me->asks_control();
 }
 
+bool SessionState::SteersWhoAsks() const {
+  // A presenter who is away keeps control, though nobody steers.
+  const bool free = presence.steering_viewer_id() == 0 && !presence.presenter_away();
+  return free && presence.rules().viewers_may_steer() && !presence.rules().control_locked();
+}
+
 bool SessionState::MayLookAround() const {
   return link == Link::kLive && (Presents() || !presence.rules().following_locked());
 }
 
 bool SessionState::MayMark() const {
-  return link == Link::kLive && (Presents() || presence.rules().viewers_may_mark());
+  return link == Link::kLive && (Presents() || Steers() || presence.rules().viewers_may_mark());
 }
 
 const v1::Person* SessionState::Steerer() const { return PersonOf(presence.steering_viewer_id()); }

@@ -55,6 +55,8 @@ struct SessionState {
   bool Presents() const { return role == v1::ROLE_PRESENTER; }
   bool Alone() const { return presence.people_size() <= 1; }
   bool AsksControl() const;
+  // Nobody steers, and whoever asks gets control at once.
+  bool SteersWhoAsks() const;
   bool MayLookAround() const;
   bool MayMark() const;
   // Nothing for nobody.

@@ -19,24 +19,29 @@ std::string WhoSteers(const client::SessionState& state) {
   return steerer == nullptr ? "Nobody steers" : absl::StrCat(state.NameOf(*steerer), " steers");
 }
 
+void DisabledButton(const char* label, const char* reason = nullptr) {
+  ImGui::BeginDisabled();
+  ImGui::Button(label);
+  ImGui::EndDisabled();
+  if (reason != nullptr && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+    ImGui::SetTooltip("%s", reason);
+  }
+}
+
 void ControlButton(Ui& ui) {
   const client::SessionState& state = ui.state;
-  const v1::SessionRules& rules = state.presence.rules();
   if (state.Steers()) {
     if (ImGui::Button(state.Presents() ? "Let control go" : "Give control back")) {
       ui.session.GiveControl(0);
     }
   } else if (state.Presents()) {
     if (AccentButton("Take control")) ui.session.TakeControl();
+  } else if (state.presence.rules().control_locked()) {
+    DisabledButton("Ask to steer", "The presenter has locked control");
   } else if (state.AsksControl()) {
-    ImGui::BeginDisabled();
-    ImGui::Button("Asked to steer …");
-    ImGui::EndDisabled();
-  } else {
-    ImGui::BeginDisabled(rules.control_locked());
-    const bool at_once = rules.viewers_may_steer() && state.Steerer() == nullptr;
-    if (ImGui::Button(at_once ? "Steer" : "Ask to steer")) ui.session.AskControl();
-    ImGui::EndDisabled();
+    DisabledButton("Asked to steer …");
+  } else if (ImGui::Button(state.SteersWhoAsks() ? "Steer" : "Ask to steer")) {
+    ui.session.AskControl();
   }
 }
 
