@@ -70,6 +70,42 @@ TEST(Projection, APointOnAPixelsRayIsAtThatPixel) {
   EXPECT_FALSE(Project(AView(), position).has_value());
 }
 
+v1::Mark AMark(const std::vector<std::array<float, 3>>& corners_m) {
+  v1::Mark mark;
+  for (const auto& [x, y, z] : corners_m) {
+    v1::Position& position = *mark.add_positions();
+    position.set_x_m(x);
+    position.set_y_m(y);
+    position.set_z_m(z);
+  }
+  return mark;
+}
+
+TEST(Projection, OfALineIsCutOffBehindTheEye) {
+  // Comes from behind, goes back, and comes again.
+  const v1::Mark mark = AMark({{0.0F, -9.0F, 1000.0F},
+                               {8.0F, 11.0F, 1000.0F},
+                               {8.0F, 21.0F, 1000.0F},
+                               {8.0F, -9.0F, 1000.0F},
+                               {0.0F, -9.0F, 1000.0F},
+                               {0.0F, 11.0F, 1000.0F}});
+  const auto parts = ProjectLine(AView(), mark.positions());
+  ASSERT_EQ(parts.size(), 2U);
+  ASSERT_EQ(parts[0].size(), 4U);
+  // A metre before the eye, half way to a corner that is 8 m to the right.
+  EXPECT_NEAR(parts[0][0].x, 4.0 / 0.8, 1e-6);
+  EXPECT_NEAR(parts[0][1].x, 8.0 / 0.8 / 11.0, 1e-6);
+  EXPECT_NEAR(parts[0][3].x, 8.0 / 0.8, 1e-6);
+  EXPECT_EQ(parts[1].size(), 2U);
+  EXPECT_TRUE(ProjectLine(v1::View(), mark.positions()).empty());
+  v1::View above = AView();
+  above.set_parallel(true);
+  const auto whole = ProjectLine(above, mark.positions());
+  ASSERT_EQ(whole.size(), 1U);
+  EXPECT_EQ(whole[0].size(), 6U);
+  EXPECT_NEAR(whole[0][1].x, 8.0 / 0.8, 1e-6);
+}
+
 TEST(BackOff, DelaysGrowAreSpreadAndKeepWhatTheServerAsks) {
   double sum_ms = 0.0;
   milliseconds least{1 << 20};

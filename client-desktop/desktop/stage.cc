@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "desktop/field_colors.h"
+#include "desktop/mark_strokes.h"
 #include "desktop/style.h"
 #include "thunderhead_client/projection.h"
 
@@ -19,6 +20,24 @@ constexpr std::size_t kMaxCorners = 256;
 ImU32 ColorOf(const v1::Color& color) {
   const auto [red, green, blue] = ScreenColorOf(color);
   return ImGui::GetColorU32({red, green, blue, 1.0F});
+}
+
+// A line and the dark edge that shows it over bright clouds; the page's measures, but that its ink
+// swells and thins.
+struct Pen {
+  float thickness;
+  float with_edge;
+};
+constexpr Pen kStraight{2.5F, 5.0F};
+constexpr Pen kInk{5.0F, 7.0F};
+
+void DrawLine(const std::vector<ImVec2>& line, ImU32 color, const Pen& pen, float scale) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto draw = [&](ImU32 paint, float thickness) {
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), paint, 0, thickness * scale);
+  };
+  draw(ImGui::GetColorU32({0.0F, 0.0F, 0.0F, 0.45F}), pen.with_edge);
+  draw(color, pen.thickness);
 }
 
 }  // namespace
@@ -73,42 +92,31 @@ void Stage::Draw(const PictureTexture& picture) {
   DrawPointers();
 }
 
-void Stage::DrawMarks() {
-  ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const float thickness = 3.0F * ui_.scale;
-  std::vector<ImVec2> line;
+void Stage::DrawMarks() const {
   for (const v1::Mark& mark : ui_.state.marks.marks()) {
-    line.clear();
-    const ImU32 color = ColorOf(mark.color());
-    const auto draw = [&] {
-      if (line.size() > 1)
-        list.AddPolyline(line.data(), static_cast<int>(line.size()), color, 0, thickness);
-      line.clear();
-    };
-    for (const v1::Position& position : mark.positions()) {
-      const auto place = PlaceOf(position);
-      if (place) {
-        line.emplace_back(place->x, place->y);
-      } else {
-        draw();
+    const ImU32 color = mark.has_color() ? ColorOf(mark.color()) : ImGui::GetColorU32(kAccent);
+    for (const MarkStroke& stroke : StrokesOf(mark, ui_.frame.view())) {
+      std::vector<ImVec2> line;
+      for (const client::PicturePoint& point : stroke.points) {
+        const ScreenPoint place = PlaceAt(point);
+        line.emplace_back(place.x, place.y);
       }
+      DrawLine(line, color, stroke.ink ? kInk : kStraight, ui_.scale);
     }
-    draw();
   }
+  std::vector<ImVec2> line;
   for (const ScreenPoint& point : stroke_) line.emplace_back(point.x, point.y);
-  if (line.size() > 1) {
-    list.AddPolyline(line.data(), static_cast<int>(line.size()), ImGui::GetColorU32(kAccent), 0,
-                     thickness);
-  }
+  if (line.size() > 1) DrawLine(line, ImGui::GetColorU32(kAccent), kInk, ui_.scale);
 }
 
 void Stage::DrawPointers() {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   for (const v1::Pointer& pointer : ui_.state.pointers.pointers()) {
     if (pointer.viewer_id() == ui_.state.viewer_id || !pointer.has_position()) continue;
-    const auto place = PlaceOf(pointer.position());
-    if (!place) continue;
-    const ImVec2 at(place->x, place->y);
+    const auto point = client::Project(ui_.frame.view(), pointer.position());
+    if (!point || std::abs(point->x) > 1.0 || std::abs(point->y) > 1.0) continue;
+    const ScreenPoint place = PlaceAt(*point);
+    const ImVec2 at(place.x, place.y);
     list.AddCircleFilled(at, 5.0F * ui_.scale, ImGui::GetColorU32(kAccent));
     list.AddCircle(at, 10.0F * ui_.scale, ImGui::GetColorU32(kAccent), 0, 2.0F * ui_.scale);
     const v1::Person* const person = ui_.state.PersonOf(pointer.viewer_id());
@@ -125,11 +133,9 @@ std::optional<v1::Ray> Stage::RayAt(ScreenPoint point) const {
   return client::RayAt(ui_.frame.view(), at);
 }
 
-std::optional<ScreenPoint> Stage::PlaceOf(const v1::Position& position) const {
-  const auto point = client::Project(ui_.frame.view(), position);
-  if (!point) return {};
-  return ScreenPoint{box_.left + 0.5F * (1.0F + static_cast<float>(point->x)) * box_.width,
-                     box_.top + 0.5F * (1.0F - static_cast<float>(point->y)) * box_.height};
+ScreenPoint Stage::PlaceAt(const client::PicturePoint& point) const {
+  return {box_.left + 0.5F * (1.0F + static_cast<float>(point.x)) * box_.width,
+          box_.top + 0.5F * (1.0F - static_cast<float>(point.y)) * box_.height};
 }
 
 }  // namespace thunderhead::desktop

@@ -7,6 +7,7 @@
 #include "desktop/picture_texture.h"
 #include "desktop/pointer_input.h"
 #include "desktop/ui.h"
+#include "thunderhead_client/projection.h"
 
 namespace thunderhead::desktop {
 
@@ -27,10 +28,10 @@ class Stage {
     float height = 1.0F;
   };
 
-  void DrawMarks();
+  void DrawMarks() const;
   void DrawPointers();
   std::optional<v1::Ray> RayAt(ScreenPoint point) const;
-  std::optional<ScreenPoint> PlaceOf(const v1::Position& position) const;
+  ScreenPoint PlaceAt(const client::PicturePoint& point) const;
   void EndStroke(bool cancelled);
 
   Ui& ui_;
