@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
@@ -11,6 +13,49 @@
 #include "absl/strings/str_format.h"
 
 namespace thunderhead::desktop {
+namespace {
+
+// A valid time's parts, UTC.
+struct Moment {
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  int hour = 0;
+  int minute = 0;
+  int second = 0;
+
+  // Idealised runs begin in year 1.
+  bool IsIdealised() const { return year < 100; }
+  // From an instant of its own, for differences.
+  double Seconds() const {
+    const std::chrono::sys_days date =
+        std::chrono::year(year) / month / std::chrono::day(static_cast<unsigned>(day));
+    const std::chrono::seconds clock =
+        std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second);
+    return static_cast<double>((date.time_since_epoch() + clock) / std::chrono::seconds(1));
+  }
+};
+
+// Nothing for a text that is no time.
+std::optional<Moment> MomentOf(const std::string& valid_time) {
+  Moment moment;
+  const int read =
+      std::sscanf(valid_time.c_str(), "%d-%d-%d%*1[T_ ]%d:%d:%d", &moment.year, &moment.month,
+                  &moment.day, &moment.hour, &moment.minute, &moment.second);
+  return read < 5 ? std::nullopt : std::optional(moment);
+}
+
+std::string DateOf(const Moment& moment) {
+  return absl::StrFormat("%04d-%02d-%02d", moment.year, moment.month, moment.day);
+}
+
+// "20:00", with seconds where there are any.
+std::string ClockOf(const Moment& moment) {
+  const std::string seconds = moment.second > 0 ? absl::StrFormat(":%02d", moment.second) : "";
+  return absl::StrFormat("%02d:%02d%s", moment.hour, moment.minute, seconds);
+}
+
+}  // namespace
 
 DisplayUnit DisplayUnitOf(const client::Limits& limits) {
   if (limits.unit == "m" && limits.maximum <= 1.0) return {1e3, "mm"};
@@ -64,20 +109,27 @@ std::string FormatBitRate(double bytes_per_s) {
 }
 
 std::string FormatValidTime(const v1::StormTime& time) {
-  int year = 0;
-  int month = 0;
-  int day = 0;
-  int hour = 0;
-  int minute = 0;
-  int second = 0;
-  const int read = std::sscanf(time.valid_time().c_str(), "%d-%d-%d%*1[T_ ]%d:%d:%d", &year, &month,
-                               &day, &hour, &minute, &second);
-  if (read < 5) {
+  const auto moment = MomentOf(time.valid_time());
+  if (!moment) {
     return time.valid_time().empty() ? FormatElapsed(time.elapsed_s()) : time.valid_time();
   }
-  const std::string seconds = second > 0 ? absl::StrFormat(":%02d", second) : "";
-  if (year < 100) return absl::StrFormat("day %d, %02d:%02d%s", day, hour, minute, seconds);
-  return absl::StrFormat("%04d-%02d-%02d %02d:%02d%s UTC", year, month, day, hour, minute, seconds);
+  const std::string clock = ClockOf(*moment);
+  if (moment->IsIdealised()) return absl::StrFormat("day %d, %s", moment->day, clock);
+  return absl::StrFormat("%s %s UTC", DateOf(*moment), clock);
+}
+
+std::string NameOfRun(const v1::StormDescription& storm) {
+  if (storm.run_start().empty()) return "";
+  const auto moment = MomentOf(storm.run_start());
+  if (!moment) return "run " + storm.run_start();
+  const std::string date = moment->IsIdealised() ? "" : DateOf(*moment) + " ";
+  return absl::StrCat("run ", date, ClockOf(*moment), "Z");
+}
+
+double LeadSeconds(const v1::StormDescription& storm, const v1::StormTime& time) {
+  const auto start = MomentOf(storm.run_start());
+  const auto valid = MomentOf(time.valid_time());
+  return start && valid ? valid->Seconds() - start->Seconds() : time.elapsed_s();
 }
 
 std::string FormatElapsed(double elapsed_s) {

@@ -25,7 +25,13 @@ std::string FormatBytes(double bytes);          // "1.2 MB"
 std::string FormatBitRate(double bytes_per_s);  // "1.4 Mbit/s"
 // "2013-05-20 20:00 UTC"; of idealised runs, which begin in year 1, "day 1, 00:20".
 std::string FormatValidTime(const v1::StormTime& time);
-std::string FormatElapsed(double elapsed_s);   // "+1 h 20 min"
+std::string FormatElapsed(double elapsed_s);  // "+1 h 20 min"
+// "run 2013-05-20 06:00Z"; of an idealised run, which has no date, "run 06:00Z"; empty where the
+// files do not tell.
+std::string NameOfRun(const v1::StormDescription& storm);
+// From the run's start to one of the storm's times; from the first time where the start is not
+// known.
+double LeadSeconds(const v1::StormDescription& storm, const v1::StormTime& time);
 std::string CompassPoint(double azimuth_deg);  // "NNE"
 std::string DescribePose(const client::Pose& pose);
 std::string DescribeSun(const v1::Sun& sun);

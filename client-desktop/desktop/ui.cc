@@ -43,6 +43,11 @@ void Ui::ShowTime(int index, Recording recording) {
   Edit("time", edit, recording);
 }
 
+void Ui::ChooseTime(int index) {
+  playback.Pause();
+  ShowTime(index);
+}
+
 void Ui::ShowStorm(const std::string& storm_id) {
   playback.Pause();
   Edit("storm", [storm_id](v1::Scene& scene) { ChooseStorm(scene, storm_id); });

@@ -53,6 +53,8 @@ struct Ui {
   void Move(const std::function<client::Pose(const client::Pose&)>& motion);
   void ShowCamera(const v1::Camera& camera);
   void ShowTime(int index, Recording recording = Recording::kRecorded);
+  // Shows a time that is picked. Play ends.
+  void ChooseTime(int index);
   // Shows another storm's last time. Play ends.
   void ShowStorm(const std::string& storm_id);
   void TogglePlay();

@@ -278,9 +278,34 @@ TEST(Texts, AreThePages) {
   EXPECT_EQ(FormatValidTime(time), "2013-05-20 20:00 UTC");
   time.set_valid_time("0001-01-01T00:20:00Z");
   EXPECT_EQ(FormatValidTime(time), "day 1, 00:20");
+  time.set_valid_time("");
+  time.set_elapsed_s(30.0);
+  EXPECT_EQ(FormatValidTime(time), "+30 s");
   EXPECT_EQ(CompassPoint(22.0), "NNE");
   EXPECT_EQ(DescribePose(OrbitPose{{}, 200.0, 4.0, 61'000.0, 35.0}),
             "Seen from SSW (200°), 4° high, 61 km away");
+}
+
+TEST(Texts, TheRunIsNamedByItsStartAsOnThePage) {
+  v1::StormDescription storm;
+  EXPECT_EQ(NameOfRun(storm), "");
+  storm.set_run_start("2013-05-20T06:00:00Z");
+  EXPECT_EQ(NameOfRun(storm), "run 2013-05-20 06:00Z");
+  storm.set_run_start("0001-01-01T00:00:00Z");
+  EXPECT_EQ(NameOfRun(storm), "run 00:00Z");
+}
+
+TEST(Texts, TheLeadTimeIsSinceTheRunsStart) {
+  v1::StormDescription storm;
+  v1::StormTime time;
+  time.set_elapsed_s(3600.0);
+  time.set_valid_time("2013-03-01T01:20:00Z");
+  EXPECT_EQ(LeadSeconds(storm, time), 3600.0) << "without a start, since the first time";
+  storm.set_run_start("2013-02-28T23:00:30Z");
+  EXPECT_EQ(LeadSeconds(storm, time), 8370.0);
+  storm.set_run_start("0001-01-01T00:00:00Z");
+  time.set_valid_time("0001-01-01T01:20:00Z");
+  EXPECT_EQ(LeadSeconds(storm, time), 4800.0);
 }
 
 TEST(FieldColors, ComeBackFromTheScreen) {

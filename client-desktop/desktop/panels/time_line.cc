@@ -83,7 +83,7 @@ void DrawTrack(Ui& ui, float width, float height) {
   ImGui::InvisibleButton("track", {std::max(1.0F, width), height});
   if (ImGui::IsItemActive() && ui.state.Steers()) {
     const int index = track.IndexAt(ImGui::GetIO().MousePos.x);
-    if (index != ui.time_index()) ui.ShowTime(index);
+    if (index != ui.time_index()) ui.ChooseTime(index);
   }
   if (ImGui::IsItemHovered()) {
     const int index = track.IndexAt(ImGui::GetIO().MousePos.x);

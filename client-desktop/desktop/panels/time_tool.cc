@@ -15,11 +15,9 @@ namespace thunderhead::desktop {
 
 void TimeTool(Ui& ui) {
   const auto& storm = ui.storms.storm;
-  if (!storm.run_start().empty()) {
-    v1::StormTime start;
-    start.set_valid_time(storm.run_start());
-    Quiet(absl::StrCat("Run of ", FormatValidTime(start)));
-  }
+  const std::string run = NameOfRun(storm);
+  Quiet(run.empty() ? "The file does not tell when the run began."
+                    : absl::StrCat("Lead times are since the start of the ", run, "."));
   ImGui::BeginDisabled(!ui.state.Steers());
   std::vector<std::pair<int, std::string>> rates;
   int chosen = 0;
@@ -39,9 +37,9 @@ void TimeTool(Ui& ui) {
   for (int i = 0; i < storm.times_size(); ++i) {
     ImGui::PushID(i);
     const bool shown = i == ui.time_index();
-    if (ImGui::Selectable(FormatValidTime(storm.times(i)).c_str(), shown)) ui.ShowTime(i);
+    if (ImGui::Selectable(FormatValidTime(storm.times(i)).c_str(), shown)) ui.ChooseTime(i);
     ImGui::SameLine(ImGui::GetContentRegionAvail().x - 90.0F * ui.scale);
-    QuietLine(FormatElapsed(storm.times(i).elapsed_s()));
+    QuietLine(FormatElapsed(LeadSeconds(storm, storm.times(i))));
     ImGui::PopID();
   }
   ImGui::EndChild();

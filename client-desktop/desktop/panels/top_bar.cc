@@ -36,15 +36,16 @@ std::string LinkText(const Ui& ui) {
   return "";
 }
 
-// `right` is where the connection begins.
+// `right` is where the connection begins. The time comes first, then the title, then how long after
+// the run's start that is, then the run.
 void DrawStorm(Ui& ui, float right) {
   const auto& storm = ui.storms.storm;
   const bool known = storm.id() == ui.state.scene.storm_id() && !storm.id().empty();
   const int index = ui.time_index();
   const bool has_time = known && index < storm.times_size();
+  const float gap = 16.0F * ui.scale;
   ImGui::PushFont(BoldFont());
   const std::string time = has_time ? FormatValidTime(storm.times(index)) : "";
-  const float gap = 16.0F * ui.scale;
   const float room = right - ImGui::GetCursorPosX() - 2.0F * gap -
                      (has_time ? ImGui::CalcTextSize(time.c_str()).x + gap : 0.0F);
   const std::string title =
@@ -52,18 +53,31 @@ void DrawStorm(Ui& ui, float right) {
   if (ImGui::Button(absl::StrCat(title.empty() ? "Storms" : title, "###storm").c_str())) {
     ui.choices.Toggle(Panel::kStorms);
   }
+  float left_room = room - ImGui::CalcTextSize(title.c_str()).x;
   ImGui::PopFont();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Storms (S)");
   if (!has_time || room < 2.0F * gap) return;
+  const auto fits = [&](const std::string& text) {
+    const float width = ImGui::CalcTextSize(text.c_str()).x + gap;
+    const bool does = !text.empty() && width <= left_room;
+    if (does) left_room -= width;
+    return does;
+  };
+  const std::string lead = FormatElapsed(LeadSeconds(storm, storm.times(index)));
+  const bool shows_lead = fits(lead);
+  const std::string run = NameOfRun(storm);
+  if (fits(run)) {
+    ImGui::SameLine(0.0F, gap);
+    QuietLine(run);
+  }
   ImGui::SameLine(0.0F, gap);
   ImGui::PushFont(BoldFont());
   ImGui::TextUnformatted(time.c_str());
   ImGui::PopFont();
-  const std::string elapsed = FormatElapsed(storm.times(index).elapsed_s());
+  if (!shows_lead) return;
   ImGui::SameLine(0.0F, gap);
-  if (ImGui::GetCursorPosX() + ImGui::CalcTextSize(elapsed.c_str()).x + gap < right) {
-    QuietLine(elapsed);
-  }
+  QuietLine(lead);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Lead time: since the run's start");
 }
 
 ImVec4 LinkColor(client::Link link) {
