@@ -114,16 +114,7 @@ void App::FocusPanel() {
 }
 
 void App::Escape() {
-  Choices& choices = ui_.choices;
-  if (choices.hand != Hand::kCamera) {
-    choices.hand = Hand::kCamera;
-  } else if (choices.panel != Panel::kNone) {
-    choices.panel = Panel::kNone;
-  } else if (choices.tool != Tool::kNone) {
-    choices.tool = Tool::kNone;
-  } else if (window_->full_screen()) {
-    window_->ToggleFullScreen();
-  }
+  if (!ui_.choices.Close() && window_->full_screen()) window_->ToggleFullScreen();
 }
 
 void App::StreamBegan() {

@@ -17,8 +17,15 @@ struct Choices {
   std::string query;           // of the drawer
   std::string name;            // typed, not yet sent
 
-  void Toggle(Tool chosen) { tool = tool == chosen ? Tool::kNone : chosen; }
+  // Opens a tool in place of the one that is open, or closes it. The pen is put down with the
+  // marks.
+  void Toggle(Tool chosen) {
+    tool = tool == chosen ? Tool::kNone : chosen;
+    if (tool != Tool::kMarks) hand = Hand::kCamera;
+  }
   void Toggle(Panel chosen) { panel = panel == chosen ? Panel::kNone : chosen; }
+  // Closes what is uppermost, in the page's order; false if there was nothing to close.
+  bool Close();
 };
 
 }  // namespace thunderhead::desktop

@@ -89,7 +89,7 @@ std::optional<Panel> PanelOf(SDL_Keycode key) {
   switch (key) {
     case SDLK_x:
       return Panel::kDrawer;
-    case SDLK_s:
+    case SDLK_o:
       return Panel::kStorms;
     case SDLK_h:
       return Panel::kPeople;
@@ -141,8 +141,8 @@ bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyAct
     actions.escape();
     return true;
   }
-  if ((event.keysym.mod & KMOD_CTRL) != 0) return Edits(key, shift, actions);
-  if ((event.keysym.mod & (KMOD_ALT | KMOD_GUI)) != 0) return false;
+  if ((event.keysym.mod & KMOD_ALT) != 0) return false;
+  if ((event.keysym.mod & (KMOD_CTRL | KMOD_GUI)) != 0) return Edits(key, shift, actions);
   if (const auto arrow = ArrowOf(key)) {
     if (focus.controls) return false;
     const auto [right, down] = *arrow;

@@ -1,5 +1,5 @@
-// The keys: those of the page (docs/guide/look-at-a-storm.md). Reads SDL's events and knows no
-// window.
+// The keys: those of the page (docs/guide/look-at-a-storm.md) for what the window has, too. Those
+// of its own are none of the page's. Reads SDL's events and knows no window.
 #pragma once
 
 #include <SDL.h>
@@ -51,8 +51,8 @@ inline constexpr std::array<std::pair<const char*, const char*>, 16> kKeyTexts{{
     {"M T L K F D", "camera, time, light, look, fields, marks"},
     {"1 2 3 4 5 7", "the same"},
     {"X", "every setting"},
-    {"S", "storms"},
-    {"H", "people, keys and control"},
+    {"H", "share: people, keys and control"},
+    {"O", "storms"},
     {"I", "figures of the pictures"},
     {"Tab", "go into the open panel by keys"},
     {"Ctrl + Z, Ctrl + Y", "undo, redo"},

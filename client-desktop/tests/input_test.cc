@@ -194,6 +194,54 @@ TEST(Keyboard, HasThePagesKeys) {
   EXPECT_EQ(keys.undone, 1);
 }
 
+// What the page saves, compares and probes by has no other meaning here.
+TEST(Keyboard, KeysOfThePageAloneDoNothing) {
+  Keys keys;
+  for (const SDL_Keycode key : {SDLK_s, SDLK_c, SDLK_p, SDLK_RETURN}) EXPECT_FALSE(keys.Press(key));
+  EXPECT_FALSE(keys.Press(SDL_SCANCODE_6, SDLK_6));
+  keys.Press(SDLK_o);
+  EXPECT_EQ(keys.choices.panel, Panel::kStorms);
+  keys.Press(SDLK_h);
+  EXPECT_EQ(keys.choices.panel, Panel::kPeople);
+}
+
+TEST(Keyboard, UndoIsWithControlOrCommandAlone) {
+  Keys keys;
+  EXPECT_TRUE(keys.Press(SDLK_z, KMOD_LGUI));
+  EXPECT_TRUE(keys.Press(SDLK_z, KMOD_RCTRL));
+  EXPECT_FALSE(keys.Press(SDLK_z, KMOD_LCTRL | KMOD_LALT));
+  EXPECT_EQ(keys.undone, 2);
+}
+
+TEST(Choices, AnotherToolPutsThePenDown) {
+  Choices choices;
+  choices.Toggle(Tool::kMarks);
+  choices.hand = Hand::kPen;
+  choices.Toggle(Tool::kLook);
+  EXPECT_EQ(choices.hand, Hand::kCamera);
+}
+
+TEST(Choices, AreClosedFromTheUppermostDown) {
+  Choices choices;
+  choices.Toggle(Tool::kMarks);
+  choices.hand = Hand::kPen;
+  choices.Toggle(Panel::kPeople);
+  EXPECT_TRUE(choices.Close());
+  EXPECT_EQ(choices.panel, Panel::kNone);
+  EXPECT_EQ(choices.hand, Hand::kPen);
+  // Every setting stays beside the picture while the pen is put down.
+  choices.Toggle(Panel::kDrawer);
+  EXPECT_TRUE(choices.Close());
+  EXPECT_EQ(choices.hand, Hand::kCamera);
+  EXPECT_EQ(choices.panel, Panel::kDrawer);
+  EXPECT_TRUE(choices.Close());
+  EXPECT_EQ(choices.panel, Panel::kNone);
+  EXPECT_EQ(choices.tool, Tool::kMarks);
+  EXPECT_TRUE(choices.Close());
+  EXPECT_EQ(choices.tool, Tool::kNone);
+  EXPECT_FALSE(choices.Close());
+}
+
 TEST(Keyboard, ATextUsesAllKeysAndAControlItsOwn) {
   Keys keys;
   EXPECT_FALSE(keys.Press(SDLK_k, 0, {true, true}));

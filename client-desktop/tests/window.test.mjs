@@ -80,7 +80,7 @@ test("times are stepped and played by keys", async () => {
 });
 
 const PANELS = { camera: "m", time: "t", light: "l", look: "k", fields: "f", marks: "d" };
-const RIGHT = { storms: "s", people: "h", figures: "i", settings: "x", keys: "question" };
+const RIGHT = { storms: "o", people: "h", figures: "i", settings: "x", keys: "question" };
 
 // Where each side's panel has its title: over the sky, which hardly changes meanwhile.
 const TITLE = { left: { x: 110, y: 82, width: 200, height: 24 }, right: { x: 876, y: 82, width: 150, height: 24 } };

@@ -20,7 +20,7 @@ struct PanelText {
 };
 
 constexpr std::array<PanelText, 5> kPanels{{
-    {Panel::kStorms, "Storms", "S", StormsPanel, false},
+    {Panel::kStorms, "Storms", "O", StormsPanel, false},
     {Panel::kPeople, "People", "H", PeoplePanel, false},
     {Panel::kReadout, "Figures", "I", ReadoutPanel, false},
     {Panel::kDrawer, "Every setting", "X", DrawerPanel, true},

@@ -55,7 +55,7 @@ void DrawStorm(Ui& ui, float right) {
   }
   float left_room = room - ImGui::CalcTextSize(title.c_str()).x;
   ImGui::PopFont();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Storms (S)");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Storms (O)");
   if (!has_time || room < 2.0F * gap) return;
   const auto fits = [&](const std::string& text) {
     const float width = ImGui::CalcTextSize(text.c_str()).x + gap;
