@@ -185,4 +185,13 @@ std::string NameOf(v1::Hydrometeor hydrometeor) {
   return name;
 }
 
+bool IsExtinction(const v1::FieldDescription& field) { return field.units() == "m-1"; }
+
+std::string DescribeAmount(const v1::FieldDescription& field) {
+  const char* const unit = IsExtinction(field)         ? "/km"
+                           : field.units() == "kg m-3" ? "g/m³"
+                                                       : "g/kg";
+  return absl::StrCat("up to ", FormatNumber(1000.0 * field.maximum()), " ", unit);
+}
+
 }  // namespace thunderhead::desktop

@@ -356,6 +356,17 @@ TEST(Texts, TheLeadTimeIsSinceTheRunsStart) {
   EXPECT_EQ(LeadSeconds(storm, time), 4800.0);
 }
 
+TEST(Texts, AmountsAreInThePagesUnits) {
+  v1::FieldDescription field;
+  field.set_maximum(0.00823F);
+  for (const auto& [units, amount] : {std::pair{"kg kg-1", "up to 8.23 g/kg"},
+                                      {"kg m-3", "up to 8.23 g/m³"},
+                                      {"m-1", "up to 8.23 /km"}}) {
+    field.set_units(units);
+    EXPECT_EQ(DescribeAmount(field), amount);
+  }
+}
+
 TEST(FieldColors, ComeBackFromTheScreen) {
   v1::Color color;
   color.set_red(0.5F);

@@ -2,12 +2,14 @@
 // amount, and where its particles' sizes come from.
 #include <imgui.h>
 
+#include <algorithm>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "desktop/controls.h"
 #include "desktop/field_colors.h"
 #include "desktop/panels/panels.h"
+#include "desktop/scene_edits.h"
 #include "desktop/style.h"
 #include "desktop/texts.h"
 
@@ -59,9 +61,7 @@ void DrawField(Ui& ui, const v1::FieldDescription& field) {
     ui.Edit(subject, [=](v1::Scene& scene) { MutableIn(scene, hydrometeor).set_visible(visible); });
   }
   const bool empty = field.maximum() <= 0.0F;
-  const std::string amount =
-      empty ? "none at this time"
-            : absl::StrCat("up to ", FormatNumber(field.maximum()), " ", field.units());
+  const std::string amount = empty ? "none at this time" : DescribeAmount(field);
   ImGui::PushFont(SmallFont());
   SameLineAtRight(ImGui::CalcTextSize(amount.c_str()).x);
   QuietLine(amount);
@@ -71,6 +71,23 @@ void DrawField(Ui& ui, const v1::FieldDescription& field) {
   if (Slider("Amount, times the model's", client::LimitsOf<v1::FieldParameters>("scale"), scale)) {
     ui.Edit(subject, [=](v1::Scene& scene) {
       MutableIn(scene, hydrometeor).set_scale(static_cast<float>(scale));
+    });
+  }
+}
+
+// For all fields at once.
+void DrawParticleSizes(Ui& ui) {
+  const auto& fields = ui.storms.storm.fields();
+  if (std::all_of(fields.begin(), fields.end(), IsExtinction)) return;
+  const v1::ParticleSizes now = ui.state.scene.particle_sizes();
+  int sizes = now == v1::PARTICLE_SIZES_UNSPECIFIED ? v1::PARTICLE_SIZES_MODEL : now;
+  ImGui::Spacing();
+  if (Choice("Particle sizes",
+             {{v1::PARTICLE_SIZES_MODEL, "As the model has them"},
+              {v1::PARTICLE_SIZES_PAPERS, "The papers' constants"}},
+             sizes)) {
+    ui.Edit("particle_sizes", [=](v1::Scene& scene) {
+      ChooseParticleSizes(scene, static_cast<v1::ParticleSizes>(sizes));
     });
   }
 }
@@ -86,8 +103,7 @@ void FieldsTool(Ui& ui) {
     DrawField(ui, field);
     ImGui::PopID();
   }
-  ImGui::Spacing();
-  Setting(ui, "particle_sizes", "Sizes of the particles");
+  DrawParticleSizes(ui);
   ImGui::EndDisabled();
   Quiet("Radius, albedo and phase function of each field are among every setting (X).");
 }
