@@ -16,8 +16,8 @@ namespace thunderhead::desktop {
 void TimeTool(Ui& ui) {
   const auto& storm = ui.storms.storm;
   const std::string run = NameOfRun(storm);
-  Quiet(run.empty() ? "The file does not tell when the run began."
-                    : absl::StrCat("Lead times are since the start of the ", run, "."));
+  Quiet(run.empty() ? "The file does not say when the run began: times count from the first."
+                    : absl::StrCat("Model ", run, ". Lead times count from its start."));
   ImGui::BeginDisabled(!ui.state.Steers());
   std::vector<std::pair<int, std::string>> rates;
   int chosen = 0;
