@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -59,6 +60,11 @@ View ViewOf(const Ui& ui) {
     return {"spotter", spotter->azimuth_deg};
   }
   return {"top_down", 0.0};
+}
+
+// Of all threads of this process.
+double ProcessorSeconds() {
+  return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
 }
 
 }  // namespace
@@ -126,10 +132,11 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
           ui.state.pointers.pointers_size(), view) +
       absl::StrFormat(
           R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"
-          R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"scale":%.2f,"resident_bytes":%d})",
+          R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"scale":%.2f,)"
+          R"("processor_s":%.3f,"resident_bytes":%d})",
           ui.encoding, ui.frame.width_px(), ui.frame.height_px(), ui.figures.frames,
           ui.figures.frames_per_s, ui.figures.latency_ms.value_or(0.0), ui.figures.bytes_per_s,
-          ui.figures.decode_ms, ui.dropped, ui.scale, ResidentBytes()));
+          ui.figures.decode_ms, ui.dropped, ui.scale, ProcessorSeconds(), ResidentBytes()));
 }
 
 }  // namespace thunderhead::desktop
