@@ -1,8 +1,7 @@
 #include "gateway/byte_range.h"
 
 #include <algorithm>
-#include <boost/beast/http/error.hpp>
-#include <string>
+#include <cstddef>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
@@ -33,22 +32,6 @@ ByteRange RangeOf(std::string_view header, std::uint64_t file_bytes) {
   if (from >= file_bytes) return {ByteRange::Asked::kNothingThere, 0, 0};
   to = last.empty() ? file_bytes - 1 : std::min(to, file_bytes - 1);
   return {ByteRange::Asked::kPart, from, to - from + 1};
-}
-
-boost::optional<std::pair<FileRangeBody::writer::const_buffers_type, bool>>
-FileRangeBody::writer::get(boost::system::error_code& error) {
-  error = {};
-  if (left_ == 0) return boost::none;
-  const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(left_, buffer_.size()));
-  const std::size_t bytes = body_.file.read(buffer_.data(), wanted, error);
-  if (error) return boost::none;
-  if (bytes == 0) {
-    // The file was cut off meanwhile.
-    error = boost::beast::http::make_error_code(boost::beast::http::error::short_read);
-    return boost::none;
-  }
-  left_ -= bytes;
-  return std::pair{const_buffers_type(buffer_.data(), bytes), left_ > 0};
 }
 
 }  // namespace thunderhead::gateway

@@ -55,10 +55,11 @@ ClientLink::ClientLink(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::co
                        address_.is_v6() ? "]" : "", ":", endpoint.port());
 }
 
-net::awaitable<bool> ClientLink::WriteAll(std::vector<net::const_buffer> buffers) {
+net::awaitable<bool> ClientLink::WriteAll(std::vector<net::const_buffer> buffers,
+                                          Clock::time_point end) {
   boost::beast::buffers_suffix<std::vector<net::const_buffer>> rest(std::move(buffers));
   while (net::buffer_size(rest) > 0) {
-    ExpireIdleWrite();
+    ExpireIdleWrite(end);
     error_code error;
     const size_t written =
         co_await stream_.async_write_some(rest, net::redirect_error(net::use_awaitable, error));

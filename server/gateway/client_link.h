@@ -59,8 +59,9 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   void ExpireIdleWrite(Clock::time_point end) {
     stream_.expires_at(std::min(end, Clock::now() + write_stall_timeout_));
   }
-  // False if the client is gone or accepted nothing for the stall timeout.
-  boost::asio::awaitable<bool> WriteAll(std::vector<boost::asio::const_buffer> buffers);
+  // False if the client is gone, accepted nothing for the stall timeout, or not all by `end`.
+  boost::asio::awaitable<bool> WriteAll(std::vector<boost::asio::const_buffer> buffers,
+                                        Clock::time_point end);
 
   // Calls `on_gone` once if the client closes or half-closes its side before StopWatching(). Bytes
   // that it sends meanwhile are kept in Received(), up to a limit beyond which it counts as gone

@@ -69,8 +69,10 @@ absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error
 // Everything but construction and Stop() runs on `thread_`, so nothing here needs a lock.
 class Gateway::Listener {
  public:
-  Listener(Site site, std::optional<TlsContexts> tls)
-      : site_(std::move(site)),
+  Listener(const GatewayOptions& options, StaticFiles files, HttpPolicy policy,
+           std::shared_ptr<grpc::Channel> channel, std::optional<TlsContexts> tls)
+      : site_{options, std::make_shared<const StaticFiles>(std::move(files)), std::move(policy),
+              grpc::GenericStub(std::move(channel))},
         acceptor_(io_),
         tls_(std::move(tls)),
         links_(site_.options.max_connections, site_.options.max_connections_per_address,
@@ -137,6 +139,8 @@ class Gateway::Listener {
     error_code ignored;
     acceptor_.close(ignored);
     links_.StopAll();
+    site_.page_threads.StopWaiting();
+    site_.kept_threads.StopWaiting();
   }
 
   Site site_;
@@ -159,10 +163,9 @@ absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& op
     THUNDERHEAD_ASSIGN_OR_RETURN(tls, TlsContexts::Open(options.tls_certificate, options.tls_key));
   }
   auto listener = std::make_unique<Listener>(
-      Site{options, std::move(files),
-           HttpPolicy(address.is_loopback(), options.allowed_hosts, options.allowed_origins),
-           grpc::GenericStub(std::move(channel))},
-      std::move(tls));
+      options, std::move(files),
+      HttpPolicy(address.is_loopback(), options.allowed_hosts, options.allowed_origins),
+      std::move(channel), std::move(tls));
   THUNDERHEAD_RETURN_IF_ERROR(listener->Listen(tcp::endpoint(address, options.port)));
   return std::unique_ptr<Gateway>(new Gateway(std::move(listener)));
 }

@@ -32,7 +32,7 @@ struct KeptFile {
 // A connection or request that broke a rule or a limit of the gateway, and so became no call.
 struct GatewayRefusal {
   std::string peer;  // for whom it was, with X-Forwarded-For of trusted proxies
-  std::string act;   // "Connect", "Request", "Preflight", "WebSocket" or "Message"
+  std::string act;   // "Connect", "Request", "Preflight", "WebSocket", "Message" or "Answer"
   absl::Status why;  // with a reason for programs; repeats nothing that the client sent
 };
 
@@ -61,8 +61,12 @@ struct GatewayOptions {
   // there are in all.
   base::TrustedProxies trusted_proxies;
   // Largest request message; larger ones get RESOURCE_EXHAUSTED, or close a WebSocket with 1009.
-  // Responses are limited only by the channel.
+  // Responses are limited only by the channel, and by max_unsent_bytes.
   size_t max_message_bytes = 4u << 20;
+  // Messages of calls' answers that wait for their clients to take them, all together. Beyond it,
+  // the clients that take theirs at the lowest rate, and have had five seconds, are cut off; where
+  // that makes no room, the call ends with RESOURCE_EXHAUSTED.
+  size_t max_unsent_bytes = size_t{512} << 20;
   // Maximum numbers of connections, in all and from one address. At a maximum, a new connection
   // takes the place of the most expendable one: the longest that has sent no whole request, or a
   // WebSocket that the service has not answered, else one that takes long to read a file. Where all
@@ -74,14 +78,26 @@ struct GatewayOptions {
   // A request's header, and a TLS handshake, must be complete within this time, a WebSocket's first
   // message must begin within it, and the body after a header within three times as long.
   std::chrono::milliseconds header_timeout = std::chrono::seconds(10);
-  // A file or text must be read within three header timeouts and the time that it takes at this
-  // rate. (Calls have write_stall_timeout alone: their own clients wait for them.)
+  // A file must be found and opened within this time, else the answer is 503; each part of it must
+  // be read from its storage within it, else the connection is closed.
+  std::chrono::milliseconds file_timeout = std::chrono::seconds(10);
+  // A file, a text and each message of a call's answer must be taken by the client within three
+  // header timeouts and the time that it takes at this rate.
   double min_bytes_per_second = 8192.0;
-  // Closes a connection whose client accepts no bytes for this time, and cancels its call.
+  // Closes a connection whose client accepts no bytes for this time, too, and cancels its call.
   std::chrono::milliseconds write_stall_timeout = std::chrono::seconds(120);
   // Pings the client of a WebSocket that sent nothing for this time, and drops it, cancelling its
   // call, if nothing comes for this time again.
   std::chrono::milliseconds websocket_ping_interval = std::chrono::seconds(15);
+
+  // Timeout of a body, of a text and of the first bytes of a file, in timeouts of a header.
+  static constexpr int kHeaderTimeouts = 3;
+  // How long a client may take for so many bytes.
+  std::chrono::milliseconds DeliveryTime(uint64_t bytes) const {
+    return kHeaderTimeouts * header_timeout +
+           std::chrono::ceil<std::chrono::milliseconds>(
+               std::chrono::duration<double>(static_cast<double>(bytes) / min_bytes_per_second));
+  }
 };
 
 class Gateway {

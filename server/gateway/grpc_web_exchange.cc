@@ -3,6 +3,7 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/serializer.hpp>
 #include <boost/beast/http/write.hpp>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/status.h"
 #include "gateway/call_header.h"
 #include "gateway/message_slices.h"
+#include "gateway/refusals.h"
 #include "gateway/text_view.h"
 
 namespace thunderhead::gateway {
@@ -61,12 +63,26 @@ net::awaitable<bool> GrpcWebExchange::Relay(const UpstreamCall::Lease& call) {
   while (written) {
     std::optional<grpc::ByteBuffer> message = co_await call->ReadMessage();
     if (!message.has_value()) break;
+    const std::shared_ptr<const void> place = site_.unsent_answers.Take(link_, message->Length());
+    if (place == nullptr) {
+      written = co_await RefuseAnswer();
+      co_return written;
+    }
     written = co_await WriteMessage(std::move(*message));
   }
   if (!written) co_return false;
   const grpc::Status status = co_await call->Finish();
   const Metadata trailers = TrailersOf(status, call->TrailingMetadata());
   written = co_await WriteTrailers(trailers);
+  co_return written;
+}
+
+net::awaitable<bool> GrpcWebExchange::RefuseAnswer() {
+  const absl::Status status = AnswersNotTaken();
+  TellOfRefusal(site_.options, ClientOf(request_, link_.Peer(), site_.options.trusted_proxies),
+                "Answer", status);
+  const Metadata trailers = Trailers(status.code(), std::string(status.message()), {});
+  const bool written = co_await WriteTrailers(trailers);
   co_return written;
 }
 
@@ -91,7 +107,9 @@ net::awaitable<bool> GrpcWebExchange::WriteMessage(grpc::ByteBuffer message) {
   std::vector<net::const_buffer> buffers = {net::buffer(chunk), net::buffer(frame)};
   slices.AppendTo(buffers);
   buffers.emplace_back("\r\n", 2);
-  const bool written = co_await link_.WriteAll(std::move(buffers));
+  const bool written = co_await link_.WriteAll(
+      std::move(buffers),
+      ClientLink::Clock::now() + site_.options.DeliveryTime(slices.SizeBytes()));
   co_return written;
 }
 
@@ -99,7 +117,8 @@ net::awaitable<bool> GrpcWebExchange::WriteTrailers(const Metadata& trailers) {
   const std::string frame = TrailerFrame(trailers);
   const std::string end = absl::StrFormat("%x\r\n%s\r\n0\r\n\r\n", frame.size(), frame);
   std::vector<net::const_buffer> buffers = {net::buffer(end)};
-  const bool written = co_await link_.WriteAll(std::move(buffers));
+  const bool written = co_await link_.WriteAll(
+      std::move(buffers), ClientLink::Clock::now() + site_.options.DeliveryTime(end.size()));
   co_return written;
 }
 

@@ -31,6 +31,8 @@ class GrpcWebExchange {
  private:
   absl::StatusOr<UpstreamRequest> Translate() const;
   boost::asio::awaitable<bool> Relay(const UpstreamCall::Lease& call);
+  // Ends the answer for which there is no room, after its headers.
+  boost::asio::awaitable<bool> RefuseAnswer();
   boost::asio::awaitable<bool> WriteHeaders(const Metadata& metadata);
   boost::asio::awaitable<bool> WriteMessage(grpc::ByteBuffer message);
   boost::asio::awaitable<bool> WriteTrailers(const Metadata& trailers);

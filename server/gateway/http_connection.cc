@@ -1,8 +1,8 @@
 #include "gateway/http_connection.h"
 
+#include <algorithm>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/error.hpp>
-#include <boost/beast/http/file_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/serializer.hpp>
@@ -10,20 +10,26 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "gateway/byte_range.h"
 #include "gateway/call_header.h"
+#include "gateway/file_threads.h"
 #include "gateway/grpc_web_exchange.h"
 #include "gateway/grpc_web_protocol.h"
+#include "gateway/open_file.h"
 #include "gateway/refusals.h"
 #include "gateway/text_view.h"
 #include "gateway/websocket_exchange.h"
@@ -40,9 +46,10 @@ using Request = GrpcWebExchange::Request;
 
 constexpr uint32_t kMaxHeaderBytes = 16 << 10;
 constexpr size_t kFirstRead = 4 << 10;
-// Timeout of a body, of a text and of the first bytes of a file, in timeouts of a header.
-constexpr int kHeaderTimeouts = 3;
 constexpr char kPageMethods[] = "GET, HEAD";
+constexpr size_t kFilePart = 64 << 10;
+// Seconds after which to ask again for a file whose storage hangs.
+constexpr char kFileRetry[] = "10";
 
 const char* PictureTypeOf(const std::string& path) {
   if (path.ends_with(".png")) return "image/png";
@@ -50,9 +57,31 @@ const char* PictureTypeOf(const std::string& path) {
   return "application/octet-stream";
 }
 
+void DescribeKept(const std::string& entity_tag, http::fields& header) {
+  header.set(http::field::etag, entity_tag);
+  header.set(http::field::cache_control, "private, no-cache");
+  header.set(http::field::accept_ranges, "bytes");
+}
+
+// What a thread of files finds for the gateway's.
+using FileOr = absl::StatusOr<std::shared_ptr<const OpenFile>>;
+struct PageFile {
+  std::optional<StaticFile> about;  // none: there is nothing at that path
+  FileOr file = absl::NotFoundError("there is none");
+};
+
+// The part of a file that is sent.
+struct FilePart {
+  FileThreads& threads;
+  std::shared_ptr<const OpenFile> file;
+  std::uint64_t first = 0;
+  std::uint64_t bytes = 0;
+};
+
 class HttpConnection {
  public:
-  HttpConnection(ClientLink& link, Site& site) : link_(link), site_(site) {}
+  HttpConnection(ClientLink& link, Site& site)
+      : link_(link), site_(site), executor_(link.Stream().get_executor()) {}
 
   // False if it was the last request of the connection.
   net::awaitable<bool> ServeOne();
@@ -72,12 +101,25 @@ class HttpConnection {
   net::awaitable<bool> AnswerCall(Parser& parser);
   net::awaitable<bool> AnswerBadHeader(error_code error);
   net::awaitable<bool> RefuseLargeCall(const Request& request);
-  net::awaitable<bool> SendFile(const Request& request, const StaticFile& file);
+  // Looks for the page's file at that path, and opens it. An error if its storage hangs.
+  net::awaitable<absl::StatusOr<PageFile>> FindPageFile(const Request& request,
+                                                        const std::string& path);
+  net::awaitable<bool> SendFile(const Request& request, const PageFile& page);
   net::awaitable<bool> SendKept(const Request& request, const KeptFile& file);
+  net::awaitable<bool> SendKeptPart(const Request& request, const KeptFile& file,
+                                    std::shared_ptr<const OpenFile> opened);
+  // Sends `header`, which must tell the part's length, and then the part.
+  net::awaitable<bool> SendPart(const Request& request, http::response<http::empty_body>& header,
+                                FilePart part);
+  net::awaitable<bool> SendStorageHangs(const Request& request);
   net::awaitable<bool> SendText(const Request& request, http::status status,
                                 const std::string& text, std::string_view allowed_methods = {});
   template <typename Body>
   net::awaitable<bool> Send(const Request& request, http::response<Body>& response);
+  // Completes a header that is to be sent; true if the connection may be used again afterwards.
+  template <typename Body>
+  bool Complete(const Request& request, http::response<Body>& response);
+  ClientLink::Clock::time_point EndOfSending(std::uint64_t bytes) const;
   net::awaitable<error_code> ReadBody(Parser& parser);
   void Tell(const Request& request, const char* act, const absl::Status& refusal) {
     TellOfRefusal(site_.options, ClientOf(request, link_.Peer(), site_.options.trusted_proxies),
@@ -86,6 +128,7 @@ class HttpConnection {
 
   ClientLink& link_;
   Site& site_;
+  const net::any_io_executor executor_;
   bool is_first_ = true;
   bool unread_input_ = false;
   bool sent_whole_ = false;  // the last response
@@ -148,7 +191,7 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
     keep = co_await SendText(request, http::status::bad_request,
                              "The request's target must be a path that begins with '/'.\n");
   } else if (parser.is_done() && boost::beast::websocket::is_upgrade(request) &&
-             IsMethodPath(path) && !site_.files.Find(path).has_value()) {
+             IsMethodPath(path)) {
     keep = co_await AnswerUpgrade(request);
   } else if (request.method() == http::verb::get || request.method() == http::verb::head) {
     keep = co_await AnswerPage(request, path);
@@ -168,14 +211,19 @@ net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const st
   bool keep = false;
   if (path == "/healthz") {
     keep = co_await SendText(request, http::status::ok, "ok\n");
-  } else if (const std::optional<StaticFile> file =
-                 site_.files.Find(path, View(request[http::field::accept_encoding]));
-             file.has_value()) {
-    keep = co_await SendFile(request, *file);
-  } else if (const std::optional<KeptFile> kept =
-                 site_.options.find_kept_file ? site_.options.find_kept_file(path) : std::nullopt;
-             kept.has_value()) {
+    co_return keep;
+  }
+  const std::optional<KeptFile> kept =
+      site_.options.find_kept_file ? site_.options.find_kept_file(path) : std::nullopt;
+  if (kept.has_value()) {
     keep = co_await SendKept(request, *kept);
+    co_return keep;
+  }
+  const absl::StatusOr<PageFile> page = co_await FindPageFile(request, path);
+  if (!page.ok()) {
+    keep = co_await SendStorageHangs(request);
+  } else if (page->about.has_value()) {
+    keep = co_await SendFile(request, *page);
   } else if (IsMethodPath(path) && path.find('.') < path.rfind('/')) {
     keep = co_await SendText(
         request, http::status::method_not_allowed,
@@ -216,23 +264,33 @@ net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
 net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::string& path) {
   const Request& request = parser.get();
   bool keep = false;
-  if (path == "/healthz" || site_.files.Find(path).has_value()) {
+  // Calls look for no file, whose storage may hang.
+  const bool is_call =
+      IsMethodPath(path) && IsBinaryGrpcWeb(View(request[http::field::content_type]));
+  if (is_call && request.version() < 11) {
+    keep = co_await SendText(request, http::status::http_version_not_supported,
+                             "Calls need HTTP/1.1, as responses are streamed in chunks.\n");
+    co_return keep;
+  }
+  if (is_call) {
+    keep = co_await AnswerCall(parser);
+    co_return keep;
+  }
+  const absl::StatusOr<PageFile> page = co_await FindPageFile(request, path);
+  if (!page.ok()) {
+    keep = co_await SendStorageHangs(request);
+  } else if (path == "/healthz" || page->about.has_value()) {
     keep = co_await SendText(request, http::status::method_not_allowed,
                              "Read this path with GET.\n", kPageMethods);
   } else if (!IsMethodPath(path)) {
     keep = co_await SendText(request, http::status::not_found,
                              "There is nothing at this path; gRPC methods are at "
                              "/package.Service/Method.\n");
-  } else if (!IsBinaryGrpcWeb(View(request[http::field::content_type]))) {
+  } else {
     keep = co_await SendText(request, http::status::unsupported_media_type,
                              "Send calls as application/grpc-web or "
                              "application/grpc-web+proto; grpc-web-text, JSON and plain gRPC are "
                              "not supported on this port.\n");
-  } else if (request.version() < 11) {
-    keep = co_await SendText(request, http::status::http_version_not_supported,
-                             "Calls need HTTP/1.1, as responses are streamed in chunks.\n");
-  } else {
-    keep = co_await AnswerCall(parser);
   }
   co_return keep;
 }
@@ -288,7 +346,7 @@ net::awaitable<error_code> HttpConnection::ReadBody(Parser& parser) {
     if (error) co_return error;
   }
   link_.Begin(LinkUse::kReceiving);
-  link_.Stream().expires_after(kHeaderTimeouts * site_.options.header_timeout);
+  link_.Stream().expires_after(GatewayOptions::kHeaderTimeouts * site_.options.header_timeout);
   co_await http::async_read(link_.Stream(), link_.Received(), parser,
                             net::redirect_error(net::use_awaitable, error));
   link_.Begin(LinkUse::kSending);
@@ -325,90 +383,152 @@ net::awaitable<bool> HttpConnection::AnswerBadHeader(error_code error) {
   co_return keep;
 }
 
-net::awaitable<bool> HttpConnection::SendFile(const Request& request, const StaticFile& file) {
+net::awaitable<absl::StatusOr<PageFile>> HttpConnection::FindPageFile(const Request& request,
+                                                                      const std::string& path) {
+  if (site_.files->IsEmpty()) co_return PageFile();
+  const auto found = std::make_shared<PageFile>();
+  // Named, as GCC 12 destroys some temporaries of a co_await twice.
+  std::function<void()> find = [found, files = site_.files, path,
+                                accepted =
+                                    std::string(View(request[http::field::accept_encoding]))] {
+    found->about = files->Find(path, accepted);
+    if (found->about.has_value()) found->file = OpenFile::Open(found->about->path);
+  };
+  const absl::Status done = co_await site_.page_threads.Run(executor_, std::move(find));
+  if (!done.ok()) co_return done;
+  co_return *found;
+}
+
+net::awaitable<bool> HttpConnection::SendFile(const Request& request, const PageFile& page) {
+  const StaticFile& about = *page.about;
   http::response<http::empty_body> header(http::status::ok, request.version());
-  header.set(http::field::etag, file.entity_tag);
-  header.set(http::field::cache_control, file.cache_control);
-  if (file.varies) header.set(http::field::vary, "Accept-Encoding");
+  header.set(http::field::etag, about.entity_tag);
+  header.set(http::field::cache_control, about.cache_control);
+  if (about.varies) header.set(http::field::vary, "Accept-Encoding");
   bool keep = false;
-  if (MatchesEntityTag(View(request[http::field::if_none_match]), file.entity_tag)) {
+  if (MatchesEntityTag(View(request[http::field::if_none_match]), about.entity_tag)) {
     header.result(http::status::not_modified);
     keep = co_await Send(request, header);
     co_return keep;
   }
-  http::file_body::value_type body;
-  error_code error;
-  body.open(file.path.c_str(), boost::beast::file_mode::scan, error);
-  if (error) {
-    spdlog::warn("cannot read {}: {}", file.path.string(), error.message());
+  if (!page.file.ok()) {
+    spdlog::warn("{}", std::string(page.file.status().message()));
     keep = co_await SendText(request, http::status::not_found, "This file cannot be read.\n");
     co_return keep;
   }
-  header.set(http::field::content_type, file.content_type);
-  if (!file.content_encoding.empty()) {
-    header.set(http::field::content_encoding, file.content_encoding);
+  const std::shared_ptr<const OpenFile>& file = *page.file;
+  header.set(http::field::content_type, about.content_type);
+  if (!about.content_encoding.empty()) {
+    header.set(http::field::content_encoding, about.content_encoding);
   }
-  header.content_length(body.size());
-  if (request.method() == http::verb::head) {
-    keep = co_await Send(request, header);
-    co_return keep;
-  }
-  http::response<http::file_body> response(std::move(header.base()), std::move(body));
-  keep = co_await Send(request, response);
+  header.content_length(file->Bytes());
+  FilePart all{site_.page_threads, file, 0, file->Bytes()};
+  keep = co_await SendPart(request, header, std::move(all));
   co_return keep;
 }
 
 net::awaitable<bool> HttpConnection::SendKept(const Request& request, const KeptFile& file) {
-  http::response<http::empty_body> header(http::status::ok, request.version());
-  const std::string entity_tag = absl::StrCat("\"", file.entity_tag, "\"");
-  header.set(http::field::etag, entity_tag);
-  header.set(http::field::cache_control, "private, no-cache");
-  header.set(http::field::accept_ranges, "bytes");
   bool keep = false;
+  const std::string entity_tag = absl::StrCat("\"", file.entity_tag, "\"");
   if (MatchesEntityTag(View(request[http::field::if_none_match]), entity_tag)) {
-    header.result(http::status::not_modified);
+    http::response<http::empty_body> header(http::status::not_modified, request.version());
+    DescribeKept(entity_tag, header);
     keep = co_await Send(request, header);
     co_return keep;
   }
-  FileRangeBody::value_type body;
-  error_code error;
-  std::uint64_t file_bytes = 0;
-  body.file.open(file.path.c_str(), boost::beast::file_mode::scan, error);
-  if (!error) file_bytes = body.file.size(error);
-  if (error) {
+  const auto opened = std::make_shared<FileOr>(absl::NotFoundError("not opened"));
+  std::function<void()> open = [opened, path = file.path] { *opened = OpenFile::Open(path); };
+  const absl::Status done = co_await site_.kept_threads.Run(executor_, std::move(open));
+  if (!done.ok()) {
+    keep = co_await SendStorageHangs(request);
+  } else if (!opened->ok()) {
     keep = co_await SendText(request, http::status::not_found, "This file is gone.\n");
-    co_return keep;
+  } else {
+    std::shared_ptr<const OpenFile> result = **opened;
+    keep = co_await SendKeptPart(request, file, std::move(result));
   }
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::SendKeptPart(const Request& request, const KeptFile& file,
+                                                  std::shared_ptr<const OpenFile> opened) {
+  http::response<http::empty_body> header(http::status::ok, request.version());
+  const std::string entity_tag = absl::StrCat("\"", file.entity_tag, "\"");
+  DescribeKept(entity_tag, header);
   // All is sent if the contents are not those that the client has a part of.
   const std::string_view only_if = View(request[http::field::if_range]);
   const ByteRange range =
       RangeOf(only_if.empty() || only_if == entity_tag ? View(request[http::field::range]) : "",
-              file_bytes);
+              opened->Bytes());
+  bool keep = false;
   if (range.asked == ByteRange::Asked::kNothingThere) {
     header.result(http::status::range_not_satisfiable);
-    header.set(http::field::content_range, absl::StrCat("bytes */", file_bytes));
+    header.set(http::field::content_range, absl::StrCat("bytes */", opened->Bytes()));
     header.content_length(0);
     keep = co_await Send(request, header);
     co_return keep;
   }
   if (range.asked == ByteRange::Asked::kPart) {
     header.result(http::status::partial_content);
-    header.set(
-        http::field::content_range,
-        absl::StrCat("bytes ", range.first, "-", range.first + range.bytes - 1, "/", file_bytes));
+    header.set(http::field::content_range,
+               absl::StrCat("bytes ", range.first, "-", range.first + range.bytes - 1, "/",
+                            opened->Bytes()));
   }
   header.set(http::field::content_type, PictureTypeOf(file.path));
   header.content_length(range.bytes);
-  if (request.method() == http::verb::head) {
-    keep = co_await Send(request, header);
-    co_return keep;
-  }
-  body.file.seek(range.first, error);
-  body.bytes = range.bytes;
-  http::response<FileRangeBody> response(std::move(header.base()), std::move(body));
-  keep = co_await Send(request, response);
-  const bool to_its_end = range.first + range.bytes == file_bytes;
+  const std::uint64_t file_bytes = opened->Bytes();
+  FilePart part{site_.kept_threads, std::move(opened), range.first, range.bytes};
+  keep = co_await SendPart(request, header, std::move(part));
+  const bool to_its_end =
+      request.method() == http::verb::get && range.first + range.bytes == file_bytes;
   if (sent_whole_ && to_its_end && file.on_sent != nullptr) file.on_sent();
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::SendPart(const Request& request,
+                                              http::response<http::empty_body>& header,
+                                              FilePart part) {
+  const bool keep = Complete(request, header);
+  const auto end = EndOfSending(part.bytes);
+  std::ostringstream text;
+  text << header.base();
+  // Goes with the first of the file.
+  std::string unsent_header = text.str();
+  if (request.method() == http::verb::head) part.bytes = 0;
+  sent_whole_ = false;
+  // Owned by the thread that reads, too, as it may hang.
+  struct Read {
+    std::vector<char> into = std::vector<char>(kFilePart);
+    std::ptrdiff_t bytes = 0;
+  };
+  const auto read = std::make_shared<Read>();
+  do {
+    if (part.bytes > 0) {
+      const auto most = static_cast<size_t>(std::min<std::uint64_t>(part.bytes, kFilePart));
+      std::function<void()> work = [read, file = part.file, first = part.first, most] {
+        read->bytes = file->Read(first, read->into.data(), most);
+      };
+      const absl::Status done = co_await part.threads.Run(executor_, std::move(work));
+      // The storage hangs or fails, or the file was cut off meanwhile.
+      if (!done.ok() || read->bytes <= 0) co_return false;
+    }
+    const auto bytes = static_cast<size_t>(read->bytes);
+    std::vector<net::const_buffer> buffers = {net::buffer(unsent_header),
+                                              net::buffer(read->into.data(), bytes)};
+    const bool written = co_await link_.WriteAll(std::move(buffers), end);
+    if (!written) co_return false;
+    unsent_header.clear();
+    part.first += bytes;
+    part.bytes -= bytes;
+  } while (part.bytes > 0);
+  sent_whole_ = true;
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::SendStorageHangs(const Request& request) {
+  const bool keep =
+      co_await SendText(request, http::status::service_unavailable,
+                        "The storage of this file does not answer; try again later.\n");
   co_return keep;
 }
 
@@ -419,6 +539,7 @@ net::awaitable<bool> HttpConnection::SendText(const Request& request, http::stat
   header.set(http::field::content_type, "text/plain; charset=utf-8");
   header.set(http::field::cache_control, "no-store");
   if (!allowed_methods.empty()) header.set(http::field::allow, BeastView(allowed_methods));
+  if (status == http::status::service_unavailable) header.set(http::field::retry_after, kFileRetry);
   header.content_length(text.size());
   bool keep = false;
   if (request.method() == http::verb::head) {
@@ -432,17 +553,10 @@ net::awaitable<bool> HttpConnection::SendText(const Request& request, http::stat
 
 template <typename Body>
 net::awaitable<bool> HttpConnection::Send(const Request& request, http::response<Body>& response) {
-  const bool keep_alive = request.keep_alive() && !unread_input_;
-  site_.policy.Decorate(View(request[http::field::origin]), response);
-  response.keep_alive(keep_alive);
+  const bool keep_alive = Complete(request, response);
   http::response_serializer<Body> serializer(response);
-  link_.Begin(LinkUse::kSending);
   sent_whole_ = false;
-  const std::chrono::duration<double> at_least(
-      static_cast<double>(response.payload_size().value_or(0)) /
-      site_.options.min_bytes_per_second);
-  const auto end = ClientLink::Clock::now() + kHeaderTimeouts * site_.options.header_timeout +
-                   std::chrono::duration_cast<ClientLink::Clock::duration>(at_least);
+  const auto end = EndOfSending(response.payload_size().value_or(0));
   // In parts, so that it also times out without any progress.
   while (!serializer.is_done()) {
     link_.ExpireIdleWrite(end);
@@ -453,6 +567,19 @@ net::awaitable<bool> HttpConnection::Send(const Request& request, http::response
   }
   sent_whole_ = true;
   co_return keep_alive;
+}
+
+template <typename Body>
+bool HttpConnection::Complete(const Request& request, http::response<Body>& response) {
+  const bool keep_alive = request.keep_alive() && !unread_input_;
+  site_.policy.Decorate(View(request[http::field::origin]), response);
+  response.keep_alive(keep_alive);
+  link_.Begin(LinkUse::kSending);
+  return keep_alive;
+}
+
+ClientLink::Clock::time_point HttpConnection::EndOfSending(std::uint64_t bytes) const {
+  return ClientLink::Clock::now() + site_.options.DeliveryTime(bytes);
 }
 
 }  // namespace

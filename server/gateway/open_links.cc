@@ -1,6 +1,7 @@
 #include "gateway/open_links.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
 
 #include "spdlog/spdlog.h"
@@ -12,6 +13,15 @@ namespace {
 constexpr std::chrono::seconds kFairReading{5};
 // Between two lines of the log about refusals: a flood must not fill the disk.
 constexpr std::chrono::seconds kTellingPause{10};
+
+// Of IPv6, a network (/64) is one client's.
+bool IsSameClient(const boost::asio::ip::address& a, const boost::asio::ip::address& b) {
+  if (!a.is_v6() || !b.is_v6() || a.to_v6().is_v4_mapped()) return a == b;
+  constexpr std::ptrdiff_t kNetworkBytes = 8;
+  const auto first = a.to_v6().to_bytes();
+  const auto second = b.to_v6().to_bytes();
+  return std::equal(first.begin(), first.begin() + kNetworkBytes, second.begin());
+}
 
 bool CanBeSpared(const ClientLink& link, ClientLink::Clock::time_point now) {
   switch (link.Use()) {
@@ -35,7 +45,7 @@ auto Rank(const ClientLink& link) {
 
 bool OpenLinks::MakeRoom(const ClientLink& newcomer) {
   const auto own = std::ranges::count_if(
-      links_, [&](const auto& link) { return link->Address() == newcomer.Address(); });
+      links_, [&](const auto& link) { return IsSameClient(link->Address(), newcomer.Address()); });
   if (static_cast<size_t>(own) >= most_per_address_ && !proxies_.Holds(newcomer.Peer())) {
     if (CloseLeastNeeded(&newcomer.Address())) return true;
   } else if (links_.size() < most_ || CloseLeastNeeded(nullptr)) {
@@ -49,7 +59,7 @@ bool OpenLinks::CloseLeastNeeded(const boost::asio::ip::address* address) {
   const auto now = ClientLink::Clock::now();
   std::shared_ptr<ClientLink> least;
   for (const std::shared_ptr<ClientLink>& link : links_) {
-    if (address != nullptr && link->Address() != *address) continue;
+    if (address != nullptr && !IsSameClient(link->Address(), *address)) continue;
     if (CanBeSpared(*link, now) && (least == nullptr || Rank(*link) < Rank(*least))) least = link;
   }
   if (least == nullptr) return false;

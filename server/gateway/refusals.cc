@@ -29,6 +29,13 @@ absl::Status TooManyConnections() {
                            {.reason = "TOO_MANY_CONNECTIONS"});
 }
 
+absl::Status AnswersNotTaken() {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(
+          "too many answers wait for slow clients to take them; try again in a few seconds"),
+      {.reason = "ANSWERS_NOT_TAKEN"});
+}
+
 void TellOfRefusal(const GatewayOptions& options, const std::string& peer, const char* act,
                    const absl::Status& why) {
   if (options.on_refusal) options.on_refusal({peer, act, why});

@@ -13,6 +13,7 @@ absl::Status OriginNotAllowed();
 absl::Status HeaderTooLarge();
 absl::Status MessageTooLarge();
 absl::Status TooManyConnections();
+absl::Status AnswersNotTaken();
 
 void TellOfRefusal(const GatewayOptions& options, const std::string& peer, const char* act,
                    const absl::Status& why);

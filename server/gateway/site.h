@@ -1,18 +1,26 @@
 // Shared by all connections of a gateway.
 #pragma once
 
+#include <memory>
+
+#include "gateway/file_threads.h"
 #include "gateway/gateway.h"
 #include "gateway/http_policy.h"
 #include "gateway/static_files.h"
+#include "gateway/unsent_answers.h"
 #include "grpcpp/generic/generic_stub.h"
 
 namespace thunderhead::gateway {
 
 struct Site {
   GatewayOptions options;
-  StaticFiles files;
+  std::shared_ptr<const StaticFiles> files;  // their threads may outlive the site
   HttpPolicy policy;
   grpc::GenericStub stub;
+  // Apart, so that a storage of results that hangs leaves the page alone.
+  FileThreads page_threads{options.file_timeout};
+  FileThreads kept_threads{options.file_timeout};
+  UnsentAnswers unsent_answers{options.max_unsent_bytes};
 };
 
 }  // namespace thunderhead::gateway

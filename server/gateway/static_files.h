@@ -1,7 +1,7 @@
-// The files of the built page: finds the file for a request's path, with its HTTP headers. Never
-// leaves the page's directory. Knows no socket. Compresses nothing: a file with its gzip file
-// beside it, as the page's build writes them ("index.js.gz" beside "index.js"), can be had in
-// either encoding.
+// The files of the built page: finds the file for a request's path, with its HTTP headers, which
+// may take as long as the storage does. Never leaves the page's directory. Knows no socket.
+// Compresses nothing: a file with its gzip file beside it, as the page's build writes them
+// ("index.js.gz" beside "index.js"), can be had in either encoding.
 #pragma once
 
 #include <filesystem>
@@ -27,6 +27,8 @@ class StaticFiles {
  public:
   // An empty `directory` means a server without a page; any other must contain index.html.
   static absl::StatusOr<StaticFiles> Open(const std::string& directory);
+  // There is no page.
+  bool IsEmpty() const { return root_.empty(); }
 
   // The file for a percent-encoded URL path, without its query; "/" is index.html. In the encoding
   // that the Accept-Encoding header `accept_encoding` prefers.

@@ -110,9 +110,22 @@ net::awaitable<void> WebSocketExchange::ForwardResponses() {
     if (!message.has_value()) break;
     // Only now has the service let it in: until then it makes room for others.
     if (link_->Use() != LinkUse::kCalling) link_->Begin(LinkUse::kCalling);
+    const std::shared_ptr<const void> place = site_.unsent_answers.Take(*link_, message->Length());
+    if (place == nullptr) {
+      TellOfRefusal(site_.options, client_, "Answer", AnswersNotTaken());
+      const Metadata refusal =
+          Trailers(AnswersNotTaken().code(), std::string(AnswersNotTaken().message()), {});
+      written = co_await WriteTrailers(refusal);
+      if (written) EndWith(websocket::close_code::normal);
+      co_return;
+    }
     written = co_await WriteMessage(*message);
   }
-  if (written) written = co_await WriteTrailers();
+  if (!written) co_return;
+  const grpc::Status status = co_await call_->Finish();
+  if (is_closing_) co_return;
+  const Metadata trailers = TrailersOf(status, call_->TrailingMetadata());
+  written = co_await WriteTrailers(trailers);
   if (written) EndWith(websocket::close_code::normal);
 }
 
@@ -124,18 +137,17 @@ net::awaitable<bool> WebSocketExchange::WriteMessage(const grpc::ByteBuffer& mes
   co_return written;
 }
 
-net::awaitable<bool> WebSocketExchange::WriteTrailers() {
-  const grpc::Status status = co_await call_->Finish();
-  if (is_closing_) co_return false;
-  const std::string trailers = TrailerBlock(TrailersOf(status, call_->TrailingMetadata()));
+net::awaitable<bool> WebSocketExchange::WriteTrailers(const Metadata& trailers) {
+  const std::string text = TrailerBlock(trailers);
   const std::vector<net::const_buffer> buffers = {net::buffer(&kTrailersKind, 1),
-                                                  net::buffer(trailers)};
+                                                  net::buffer(text)};
   const bool written = co_await Write(buffers);
   co_return written;
 }
 
 net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffer>& buffers) {
   is_writing_ = true;
+  write_end_ = PeerLiveness::Clock::now() + site_.options.DeliveryTime(net::buffer_size(buffers));
   error_code error;
   co_await socket_.async_write(buffers, net::redirect_error(net::use_awaitable, error));
   is_writing_ = false;
@@ -219,8 +231,9 @@ void WebSocketExchange::Judge(PeerLiveness& liveness) {
   if (!has_begun_ && now - accepted_at_ > site_.options.header_timeout) {
     EndWith({websocket::close_code::policy_error, "no message came in time"});
   }
+  const bool is_too_slow = is_writing_ && now > write_end_;
   const bool must_leave = leave_by_.has_value() && now >= *leave_by_;
-  if (verdict == PeerLiveness::Verdict::kDrop || must_leave ||
+  if (verdict == PeerLiveness::Verdict::kDrop || is_too_slow || must_leave ||
       (is_held_back_ && link_->HasHungUp())) {
     Abandon();
   } else if (verdict == PeerLiveness::Verdict::kPing) {

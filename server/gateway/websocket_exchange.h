@@ -49,7 +49,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   // Runs until the trailers are sent, or the client or the gateway ends the call early.
   boost::asio::awaitable<void> ForwardResponses();
   boost::asio::awaitable<bool> WriteMessage(const grpc::ByteBuffer& message);
-  boost::asio::awaitable<bool> WriteTrailers();
+  boost::asio::awaitable<bool> WriteTrailers(const Metadata& trailers);
   boost::asio::awaitable<bool> Write(const std::vector<boost::asio::const_buffer>& buffers);
   boost::asio::awaitable<void> Close();
 
@@ -80,6 +80,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   PeerLiveness::Clock::time_point accepted_at_{};
   bool has_begun_ = false;  // the client's first message has come, or it has ended
   bool is_writing_ = false;
+  PeerLiveness::Clock::time_point write_end_{};  // the client must have taken it by then
   bool is_pinging_ = false;
   bool is_held_back_ = false;
   bool is_closing_ = false;

@@ -17,6 +17,7 @@
 #include "grpcpp/security/credentials.h"
 #include "grpcpp/security/server_credentials.h"
 #include "grpcpp/server_builder.h"
+#include "grpcpp/support/channel_arguments.h"
 
 namespace thunderhead::gateway::test {
 namespace {
@@ -233,7 +234,10 @@ std::unique_ptr<EchoSite> EchoSite::Start(const GatewayOptions& options) {
   builder.AddListeningPort(address, grpc::InsecureServerCredentials());
   builder.RegisterService(&site->service_);
   site->server_ = builder.BuildAndStart();
-  const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(-1);
+  const auto channel =
+      grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
   absl::StatusOr<std::unique_ptr<Gateway>> gateway = Gateway::Start(options, channel);
   THUNDERHEAD_CHECK(gateway.ok(), gateway.status().ToString());
   site->gateway_ = *std::move(gateway);

@@ -1,0 +1,80 @@
+#include "gateway/file_threads.h"
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace thunderhead::gateway {
+namespace {
+
+namespace net = boost::asio;
+using std::chrono::milliseconds;
+
+// Beyond this, work on a file counts as hanging, and another thread takes its place.
+constexpr milliseconds kHangsAfter{1000};
+
+base::Executor::Limits LimitsFor(milliseconds timeout) {
+  base::Executor::Limits limits;
+  limits.threads = 4;
+  limits.max_waiting = 1024;
+  limits.hangs_after = std::min(kHangsAfter, timeout);
+  limits.max_hanging = 16;
+  limits.max_wait = timeout;
+  return limits;
+}
+
+}  // namespace
+
+// Of a coroutine for work that may outlive it, and even the executor.
+struct FileThreads::Wait {
+  std::mutex mutex;
+  net::steady_timer* timer = nullptr;  // null: nobody waits any more
+  std::optional<absl::Status> outcome;
+
+  // On any thread.
+  static void Tell(const std::shared_ptr<Wait>& wait, const absl::Status& status) {
+    const std::lock_guard lock(wait->mutex);
+    wait->outcome = status;
+    if (wait->timer == nullptr) return;
+    net::post(wait->timer->get_executor(), [wait] {
+      // Only this thread ends the wait.
+      if (wait->timer != nullptr) wait->timer->cancel();
+    });
+  }
+
+  absl::Status End() {
+    const std::lock_guard lock(mutex);
+    timer = nullptr;
+    return outcome.value_or(absl::DeadlineExceededError("the file's storage does not answer"));
+  }
+};
+
+FileThreads::FileThreads(milliseconds timeout) : timeout_(timeout), threads_(LimitsFor(timeout)) {}
+
+net::awaitable<absl::Status> FileThreads::Run(const net::any_io_executor& executor,
+                                              std::function<void()> work) {
+  if (stopped_) co_return absl::CancelledError("the gateway is going away");
+  net::steady_timer timer(executor, timeout_);
+  const auto wait = std::make_shared<Wait>();
+  wait->timer = &timer;
+  threads_.Submit([wait, work = std::move(work)](const absl::Status& status) {
+    if (status.ok()) work();
+    Wait::Tell(wait, status);
+  });
+  waits_.insert(wait.get());
+  boost::system::error_code woken;
+  co_await timer.async_wait(net::redirect_error(net::use_awaitable, woken));
+  waits_.erase(wait.get());
+  const absl::Status outcome = wait->End();
+  co_return outcome;
+}
+
+void FileThreads::StopWaiting() {
+  stopped_ = true;
+  for (Wait* const wait : waits_) wait->timer->cancel();
+}
+
+}  // namespace thunderhead::gateway

@@ -1,0 +1,33 @@
+#include "gateway/open_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+
+namespace thunderhead::gateway {
+
+absl::StatusOr<std::shared_ptr<const OpenFile>> OpenFile::Open(const std::string& path) {
+  base::FileDescriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat information = {};
+  if (!descriptor.IsOpen() || ::fstat(descriptor.Get(), &information) != 0) {
+    return absl::NotFoundError(absl::StrCat("cannot read ", path, ": ", strerror(errno)));
+  }
+  if (!S_ISREG(information.st_mode)) {
+    return absl::NotFoundError(absl::StrCat("cannot read ", path, ": it is no regular file"));
+  }
+  ::posix_fadvise(descriptor.Get(), 0, 0, POSIX_FADV_SEQUENTIAL);
+  return std::shared_ptr<const OpenFile>(
+      new OpenFile(std::move(descriptor), static_cast<std::uint64_t>(information.st_size)));
+}
+
+std::ptrdiff_t OpenFile::Read(std::uint64_t offset, char* into, std::size_t most) const {
+  return ::pread(descriptor_.Get(), into, most, static_cast<off_t>(offset));
+}
+
+}  // namespace thunderhead::gateway

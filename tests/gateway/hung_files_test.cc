@@ -1,0 +1,122 @@
+// Files whose storage does not answer, by named pipes: opening one for reading waits for a writer.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "tests/gateway/echo_service.h"
+#include "tests/gateway/raw_client.h"
+#include "tests/gateway/websocket_client.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::gateway::test {
+namespace {
+
+namespace http = boost::beast::http;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using ::testing::HasSubstr;
+
+class HungFilesTest : public ::testing::Test {
+ protected:
+  HungFilesTest() {
+    std::ofstream(folder_.File("index.html")) << "<html>storm</html>";
+    std::ofstream(folder_.File("result.png")) << "picture";
+    options_.page_directory = folder_.Path().string();
+    EXPECT_EQ(mkfifo(hung_.c_str(), 0600), 0);
+    options_.find_kept_file = [this](std::string_view path) -> std::optional<KeptFile> {
+      if (path == "/results/hung/0") return KeptFile{hung_, "hung"};
+      if (path == "/results/fine/0") return KeptFile{folder_.File("result.png"), "fine"};
+      return std::nullopt;
+    };
+  }
+  ~HungFilesTest() override {
+    // The storage comes back: who waits in the kernel goes on.
+    const int storage = open(hung_.c_str(), O_RDWR | O_NONBLOCK);
+    site_.reset();
+    close(storage);
+  }
+
+  EchoSite& Site() {
+    if (site_ == nullptr) site_ = EchoSite::Start(options_);
+    return *site_;
+  }
+  // Asks without waiting for the answer.
+  std::unique_ptr<RawClient> AskHung() {
+    auto client = std::make_unique<RawClient>(Site().Port());
+    client->Send("GET /results/hung/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    return client;
+  }
+  Response Ask(const std::string& target) { return RawClient(Site().Port()).Ask("GET", target); }
+
+  testing::TemporaryFolder folder_;
+  const std::string hung_ = folder_.File("hung.png");
+  GatewayOptions options_;
+  std::unique_ptr<EchoSite> site_;
+};
+
+TEST_F(HungFilesTest, OnlyWhoWantsThemWaits) {
+  WebSocketClient viewer(Site().Port());
+  const std::string message("\0\x0a\x05storm", 8);
+  std::vector<std::unique_ptr<RawClient>> hung;
+  for (int i = 0; i < 4; ++i) hung.push_back(AskHung());
+  std::this_thread::sleep_for(milliseconds(100));
+  const auto start = steady_clock::now();
+  viewer.Send(message);
+  EXPECT_TRUE(viewer.Receive().has_value());
+  EXPECT_EQ(Ask("/").body(), "<html>storm</html>");
+  EXPECT_EQ(Call(Site().Port(), "Say", "").Trailer("grpc-status"), "0");
+  EXPECT_LT(steady_clock::now() - start, milliseconds(1000));
+  // As many as there are threads hang, and yet another result comes.
+  EXPECT_EQ(Ask("/results/fine/0").body(), "picture");
+  EXPECT_LT(steady_clock::now() - start, milliseconds(5000));
+  viewer.Vanish();
+}
+
+TEST_F(HungFilesTest, WhoWantsThemIsToldToTryAgain) {
+  options_.file_timeout = milliseconds(200);
+  // More than may hang at once.
+  std::vector<std::unique_ptr<RawClient>> hung;
+  for (int i = 0; i < 40; ++i) hung.push_back(AskHung());
+  const auto start = steady_clock::now();
+  for (const auto& client : hung) {
+    const Response answer = client->Read();
+    EXPECT_EQ(answer.result(), http::status::service_unavailable);
+    EXPECT_EQ(answer["Retry-After"], "10");
+    EXPECT_THAT(answer.body(), HasSubstr("does not answer"));
+  }
+  EXPECT_LT(steady_clock::now() - start, milliseconds(3000));
+  EXPECT_EQ(Ask("/").body(), "<html>storm</html>");
+}
+
+TEST_F(HungFilesTest, TheGatewayEndsWithoutThem) {
+  options_.file_timeout = std::chrono::seconds(60);
+  const auto hung = AskHung();
+  std::this_thread::sleep_for(milliseconds(100));
+  const auto start = steady_clock::now();
+  site_->StopGateway();
+  // It leaves the thread behind after a few seconds.
+  EXPECT_LT(steady_clock::now() - start, std::chrono::seconds(20));
+  EXPECT_TRUE(hung->IsEnded());
+}
+
+TEST_F(HungFilesTest, PartsOfResultsAreSent) {
+  const Response part =
+      RawClient(Site().Port()).Ask("GET", "/results/fine/0", {{"Range", "bytes=2-4"}});
+  EXPECT_EQ(part.result(), http::status::partial_content);
+  EXPECT_EQ(part.body(), "ctu");
+  EXPECT_EQ(part["Content-Range"], "bytes 2-4/7");
+}
+
+}  // namespace
+}  // namespace thunderhead::gateway::test
