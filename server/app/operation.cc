@@ -8,7 +8,9 @@
 #include <ctime>
 #include <mutex>
 #include <stop_token>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -16,6 +18,7 @@
 #include "app/address.h"
 #include "app/json_log.h"
 #include "base/status.h"
+#include "gateway/http_policy.h"
 #include "spdlog/sinks/sink.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/exposition.h"
@@ -81,7 +84,8 @@ void SetLogFormat(const std::string& format) {
   }
 }
 
-absl::StatusOr<std::unique_ptr<Operation>> Operation::Start(const OperationFlags& flags) {
+absl::StatusOr<std::unique_ptr<Operation>> Operation::Start(
+    const OperationFlags& flags, const std::vector<std::string>& allowed_hosts) {
   SetLogFormat(flags.log_format);
   std::unique_ptr<Operation> operation(new Operation(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(operation->watchdog_,
@@ -90,11 +94,15 @@ absl::StatusOr<std::unique_ptr<Operation>> Operation::Start(const OperationFlags
   if (flags.metrics.empty()) return operation;
   THUNDERHEAD_ASSIGN_OR_RETURN(const Address address, ParseAddress("--metrics", flags.metrics));
   Operation* const self = operation.get();
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      operation->port_,
-      telemetry::OperatorPort::Open(address.host, address.port,
-                                    {.metrics = [self] { return self->MetricsText(); },
-                                     .health = [self] { return self->HealthNow(); }}));
+  telemetry::OperatorPages pages{.metrics = [self] { return self->MetricsText(); },
+                                 .health = [self] { return self->HealthNow(); },
+                                 .allows_host = {}};
+  if (!allowed_hosts.empty()) {
+    pages.allows_host = [policy = gateway::HttpPolicy(/*loopback=*/false, allowed_hosts, {})](
+                            std::string_view host) { return policy.AllowsHost(host); };
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(operation->port_, telemetry::OperatorPort::Open(
+                                                     address.host, address.port, std::move(pages)));
   spdlog::info("operators at http://{}/metrics, /healthz and /readyz",
                ToString({address.host, operation->port_->Port()}));
   return operation;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
@@ -37,7 +38,10 @@ std::jthread EndIfToldWhileStarting(const sigset_t& signals);
 // once, and says that the server starts until it is given one.
 class Operation {
  public:
-  static absl::StatusOr<std::unique_ptr<Operation>> Start(const OperationFlags& flags);
+  // With `allowed_hosts` the port answers to them, and to what the page does besides; without, to
+  // any name.
+  static absl::StatusOr<std::unique_ptr<Operation>> Start(
+      const OperationFlags& flags, const std::vector<std::string>& allowed_hosts = {});
   ~Operation();
   Operation(const Operation&) = delete;
   Operation& operator=(const Operation&) = delete;

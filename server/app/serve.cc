@@ -123,7 +123,7 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Address grpc, ParseAddress("--grpc", flags.grpc));
   THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
-                               Operation::Start(flags.operation));
+                               Operation::Start(flags.operation, flags.allowed_hosts));
   // Reading the storms' headers takes long on some storages, and for ever on one that hangs.
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));

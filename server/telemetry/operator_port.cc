@@ -1,18 +1,18 @@
 #include "telemetry/operator_port.h"
 
-#include <poll.h>
-#include <sys/socket.h>
-
-#include <array>
-#include <atomic>
 #include <chrono>
-#include <sstream>
+#include <cstddef>
+#include <deque>
+#include <memory>
 #include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "boost/asio/io_context.hpp"
 #include "boost/asio/ip/tcp.hpp"
+#include "boost/asio/steady_timer.hpp"
+#include "boost/beast/core/flat_buffer.hpp"
+#include "boost/beast/core/tcp_stream.hpp"
 #include "boost/beast/http.hpp"
 
 namespace thunderhead::telemetry {
@@ -21,22 +21,18 @@ namespace {
 namespace asio = boost::asio;
 namespace http = boost::beast::http;
 using asio::ip::tcp;
+using boost::system::error_code;
+using Response = http::response<http::string_body>;
 
-using std::chrono::steady_clock;
-
-// A client that takes longer to ask or to listen is cut off, so that the next can be answered.
+// A client that takes longer to ask and to listen is cut off.
 constexpr std::chrono::seconds kPatience{2};
+// With more connections the oldest of them is closed.
+constexpr std::size_t kMaxConnections = 64;
+constexpr std::size_t kMaxRequestBytes = 16 << 10;
+constexpr std::chrono::milliseconds kAcceptPause{100};
 
-// False at the deadline.
-bool AwaitReady(int socket, short events, steady_clock::time_point deadline) {
-  const auto left =
-      std::chrono::ceil<std::chrono::milliseconds>(deadline - steady_clock::now()).count();
-  pollfd polled{socket, events, 0};
-  return left > 0 && poll(&polled, 1, static_cast<int>(left)) > 0;
-}
-
-http::response<http::string_body> Text(http::status status, const std::string& text) {
-  http::response<http::string_body> response(status, 11);
+Response Text(http::status status, const std::string& text) {
+  Response response(status, 11);
   response.set(http::field::content_type, "text/plain; version=0.0.4; charset=utf-8");
   response.set(http::field::cache_control, "no-store");
   response.keep_alive(false);
@@ -45,8 +41,12 @@ http::response<http::string_body> Text(http::status status, const std::string& t
   return response;
 }
 
-http::response<http::string_body> Answer(const http::request<http::empty_body>& request,
-                                         const OperatorPages& pages) {
+Response Answer(const http::request<http::empty_body>& request, const OperatorPages& pages) {
+  const auto host = request[http::field::host];
+  if (pages.allows_host && !pages.allows_host({host.data(), host.size()})) {
+    return Text(http::status::forbidden,
+                "this server does not answer to that name; start it with --allow-host and it\n");
+  }
   if (request.method() != http::verb::get) {
     return Text(http::status::method_not_allowed, "only GET is answered here\n");
   }
@@ -60,19 +60,53 @@ http::response<http::string_body> Answer(const http::request<http::empty_body>& 
   return Text(good ? http::status::ok : http::status::service_unavailable, health.state + "\n");
 }
 
+// One request and its answer, within the patience. Keeps itself until then.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(tcp::socket socket, const OperatorPages& pages)
+      : stream_(std::move(socket)), pages_(pages) {}
+
+  void Start() {
+    // For all of it.
+    stream_.expires_after(kPatience);
+    http::async_read(stream_, buffer_, request_,
+                     [self = shared_from_this()](const error_code& error, std::size_t) {
+                       if (!error) self->Respond();
+                     });
+  }
+
+  void Close() { stream_.close(); }
+
+ private:
+  void Respond() {
+    response_ = Answer(request_, pages_);
+    http::async_write(stream_, response_,
+                      [self = shared_from_this()](const error_code&, std::size_t) {
+                        error_code ignored;
+                        self->stream_.socket().shutdown(tcp::socket::shutdown_both, ignored);
+                      });
+  }
+
+  boost::beast::tcp_stream stream_;
+  const OperatorPages& pages_;
+  boost::beast::flat_buffer buffer_{kMaxRequestBytes};
+  http::request<http::empty_body> request_;
+  Response response_;
+};
+
 class RunningPort final : public OperatorPort {
  public:
-  explicit RunningPort(OperatorPages pages) : pages_(std::move(pages)), acceptor_(io_) {}
+  explicit RunningPort(OperatorPages pages)
+      : pages_(std::move(pages)), acceptor_(io_), pause_(io_) {}
 
   ~RunningPort() override {
-    stopping_ = true;
-    // Wakes the thread from accept; closing would not.
-    if (acceptor_.is_open()) shutdown(acceptor_.native_handle(), SHUT_RDWR);
+    // What is open ends with it.
+    io_.stop();
     if (thread_.joinable()) thread_.join();
   }
 
   absl::Status Listen(const std::string& host, std::uint16_t port) {
-    boost::system::error_code error;
+    error_code error;
     const tcp::endpoint endpoint(asio::ip::make_address(host, error), port);
     if (!error) acceptor_.open(endpoint.protocol(), error);
     if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
@@ -83,62 +117,46 @@ class RunningPort final : public OperatorPort {
                                                  " (", error.message(), "); choose another"));
     }
     port_ = acceptor_.local_endpoint().port();
-    thread_ = std::thread([this] { Run(); });
+    Accept();
+    thread_ = std::thread([this] { io_.run(); });
     return absl::OkStatus();
   }
 
   std::uint16_t Port() const override { return port_; }
 
  private:
-  void Run() {
-    while (!stopping_) {
-      tcp::socket socket(io_);
-      boost::system::error_code error;
-      acceptor_.accept(socket, error);
-      if (stopping_) return;
-      if (error) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // out of descriptors
-        continue;
+  void Accept() {
+    acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
+      if (!error) {
+        Serve(std::move(socket));
+        Accept();
+        return;
       }
-      Serve(socket);
-    }
+      // Probably out of descriptors.
+      pause_.expires_after(kAcceptPause);
+      pause_.async_wait([this](const error_code& ended) {
+        if (!ended) Accept();
+      });
+    });
   }
 
-  void Serve(tcp::socket& socket) {
-    const auto deadline = steady_clock::now() + kPatience;
-    const int native = socket.native_handle();
-    // By system calls, as Asio's have no deadline without a second thread.
-    http::request_parser<http::empty_body> parser;
-    std::string received;
-    std::array<char, 4096> buffer{};
-    boost::system::error_code error;
-    while (!parser.is_done()) {
-      if (!AwaitReady(native, POLLIN, deadline)) return;
-      const ssize_t bytes = recv(native, buffer.data(), buffer.size(), MSG_DONTWAIT);
-      if (bytes <= 0) return;
-      received.append(buffer.data(), static_cast<std::size_t>(bytes));
-      const std::size_t taken = parser.put(asio::buffer(received), error);
-      if (error && error != http::error::need_more) return;
-      received.erase(0, taken);
+  void Serve(tcp::socket socket) {
+    std::erase_if(connections_, [](const auto& connection) { return connection.expired(); });
+    if (connections_.size() >= kMaxConnections) {
+      if (const auto oldest = connections_.front().lock()) oldest->Close();
+      connections_.pop_front();
     }
-    std::ostringstream answer;
-    answer << Answer(parser.get(), pages_);
-    const std::string text = answer.str();
-    for (std::size_t sent = 0; sent < text.size();) {
-      if (!AwaitReady(native, POLLOUT, deadline)) return;
-      const ssize_t bytes =
-          send(native, text.data() + sent, text.size() - sent, MSG_DONTWAIT | MSG_NOSIGNAL);
-      if (bytes < 0) return;
-      sent += static_cast<std::size_t>(bytes);
-    }
-    socket.shutdown(tcp::socket::shutdown_both, error);
+    const auto connection = std::make_shared<Connection>(std::move(socket), pages_);
+    connections_.push_back(connection);
+    connection->Start();
   }
 
   const OperatorPages pages_;
-  asio::io_context io_;
+  asio::io_context io_{1};
   tcp::acceptor acceptor_;
+  asio::steady_timer pause_;
   std::uint16_t port_ = 0;
-  std::atomic<bool> stopping_{false};
+  std::deque<std::weak_ptr<Connection>> connections_;  // in their order; on the thread
   std::thread thread_;
 };
 

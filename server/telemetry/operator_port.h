@@ -1,11 +1,12 @@
-// The operator's port: HTTP for Prometheus and for whoever restarts servers. Answers one request
-// after another, each within seconds, on a thread of its own.
+// The operator's port: HTTP for Prometheus and for whoever restarts servers. Answers all that ask
+// at once, each within seconds, on a thread of its own; who says nothing holds up nobody.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "absl/status/statusor.h"
 
@@ -20,6 +21,9 @@ struct Health {
 struct OperatorPages {
   std::function<std::string()> metrics;  // in Prometheus's text format
   std::function<Health()> health;
+  // Whether this server answers to the name of a Host header; empty: to any. A foreign web site may
+  // have a name of its own lead here (DNS rebinding).
+  std::function<bool(std::string_view host)> allows_host;
 };
 
 class OperatorPort {

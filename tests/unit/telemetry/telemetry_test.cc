@@ -8,7 +8,10 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <string_view>
 #include <thread>
+#include <vector>
 
 #include "boost/asio/io_context.hpp"
 #include "boost/asio/ip/tcp.hpp"
@@ -100,10 +103,10 @@ class Port : public ::testing::Test {
     return socket;
   }
 
-  std::string Get(const std::string& path) {
+  std::string Get(const std::string& path, const std::string& host = "here") {
     auto socket = Connect();
-    boost::asio::write(socket,
-                       boost::asio::buffer("GET " + path + " HTTP/1.1\r\nHost: here\r\n\r\n"));
+    boost::asio::write(
+        socket, boost::asio::buffer("GET " + path + " HTTP/1.1\r\nHost: " + host + "\r\n\r\n"));
     std::string answer;
     boost::system::error_code error;
     boost::asio::read(socket, boost::asio::dynamic_buffer(answer), error);
@@ -134,6 +137,35 @@ TEST_F(Port, ASlowClientIsCutOff) {
   const auto began = std::chrono::steady_clock::now();
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200"));
   EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(10));
+}
+
+TEST_F(Port, SilentClientsHoldUpNobody) {
+  // More than there may be.
+  std::vector<boost::asio::ip::tcp::socket> silent;
+  for (int i = 0; i < 100; ++i) silent.push_back(Connect());
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200"));
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1000));
+  // The oldest made room, the newest is still there.
+  boost::system::error_code error;
+  char byte = 0;
+  boost::asio::read(silent.front(), boost::asio::buffer(&byte, 1), error);
+  EXPECT_TRUE(error);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1500));
+  silent.back().non_blocking(true);
+  silent.back().read_some(boost::asio::buffer(&byte, 1), error);
+  EXPECT_EQ(error, boost::asio::error::would_block);
+}
+
+TEST_F(Port, AnswersToItsNamesAlone) {
+  port_ =
+      *OperatorPort::Open("127.0.0.1", 0,
+                          {.metrics = [this] { return Expose(metrics_, {}); },
+                           .health = [this] { return health_; },
+                           .allows_host = [](std::string_view host) { return host == "here"; }});
+  EXPECT_THAT(Get("/metrics"), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(Get("/metrics", "evil.example"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(Get("/readyz", "evil.example"), StartsWith("HTTP/1.1 403"));
 }
 
 TEST_F(Port, TheSamePortTwiceIsAnError) {
