@@ -29,7 +29,7 @@ struct Pen {
   float with_edge;
 };
 constexpr Pen kStraight{2.5F, 5.0F};
-constexpr Pen kInk{5.0F, 7.0F};
+constexpr Pen kInk{3.5F, 5.5F};
 
 void DrawLine(const std::vector<ImVec2>& line, ImU32 color, const Pen& pen, float scale) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();

@@ -18,7 +18,7 @@ void Ui::Edit(const std::string& subject, client::SceneSync::Edit edit, Recordin
   edit(after);
   if (MessageDifferencer::Equals(before, after) || !session.Edit(std::move(edit))) return;
   if (recording == Recording::kRecorded) history.Record(before, after, subject, Clock::now());
-  // Another storm is not taken for somebody else's doing.
+  // Refresh() would take another storm for somebody else's choice.
   state.scene = std::move(after);
   Refresh();
 }
