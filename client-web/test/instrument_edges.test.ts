@@ -2,7 +2,8 @@
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { awayInWords, type ComparisonChoice, timeOfB } from "../src/core/comparison";
-import { joined, leftOutInWords, letterStrokes, MAX_LETTERS } from "../src/core/lettering";
+import { joined, leftOutInWords, letterStrokes, MAX_LETTERS, parted } from "../src/core/lettering";
+import type { StrokePoint } from "../src/core/stroke";
 import { dayInWords, sunHeightsDeg } from "../src/core/sun_clock";
 import { SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { type StormDescription, StormDescriptionSchema } from "../src/gen/thunderhead/v1/storm_pb";
@@ -76,6 +77,10 @@ test("German words and the signs of a forecast are written in full", () => {
     expect(written(sign).length, sign).toBeGreaterThan(0);
     expect(leftOutInWords(sign), sign).toBeUndefined();
   }
+  // No stroke is a mere point, which a repeated corner would be: that lifts the pen.
+  const same = (a: StrokePoint, b: StrokePoint) => a.left === b.left && a.top === b.top;
+  for (const sign of "?!:.,ÄÖÜ°%")
+    expect(parted(joined(written(sign)), same).length, sign).toBe(written(sign).length);
   expect(written("Ö")).not.toEqual(written("O"));
   expect(written("ß")).toEqual(written("SS"));
   expect(written("é")).toEqual(written("E"));
