@@ -55,12 +55,13 @@ struct FileThreads::Wait {
 FileThreads::FileThreads(milliseconds timeout) : timeout_(timeout), threads_(LimitsFor(timeout)) {}
 
 net::awaitable<absl::Status> FileThreads::Run(const net::any_io_executor& executor,
+                                              const std::string& owner,
                                               std::function<void()> work) {
   if (stopped_) co_return absl::CancelledError("the gateway is going away");
   net::steady_timer timer(executor, timeout_);
   const auto wait = std::make_shared<Wait>();
   wait->timer = &timer;
-  threads_.Submit([wait, work = std::move(work)](const absl::Status& status) {
+  threads_.Submit(owner, [wait, work = std::move(work)](const absl::Status& status) {
     if (status.ok()) work();
     Wait::Tell(wait, status);
   });

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <string>
 #include <unordered_set>
 
 #include "absl/status/status.h"
@@ -20,11 +21,12 @@ class FileThreads {
   FileThreads(const FileThreads&) = delete;
   FileThreads& operator=(const FileThreads&) = delete;
 
-  // Runs `work` on one of the threads; OK once it has returned. DEADLINE_EXCEEDED if it does not in
-  // time, or RESOURCE_EXHAUSTED if too many wait. `work` must own all that it uses, as it may go on
-  // after that. Called on the one thread of `executor`.
+  // Runs `work` on one of the threads for the client `owner`; OK once it has returned.
+  // DEADLINE_EXCEEDED if it does not in time, or RESOURCE_EXHAUSTED if too much waits, of this
+  // client or in all. `work` must own all that it uses, as it may go on after that. Called on the
+  // one thread of `executor`.
   boost::asio::awaitable<absl::Status> Run(const boost::asio::any_io_executor& executor,
-                                           std::function<void()> work);
+                                           const std::string& owner, std::function<void()> work);
 
   // Ends all waits now, and each later one at once; on the executor's thread.
   void StopWaiting();

@@ -121,9 +121,12 @@ class HttpConnection {
   bool Complete(const Request& request, http::response<Body>& response);
   ClientLink::Clock::time_point EndOfSending(std::uint64_t bytes) const;
   net::awaitable<error_code> ReadBody(Parser& parser);
+  // The client's address.
+  std::string OwnerOf(const Request& request) const {
+    return ClientOf(request, link_.Peer(), site_.options.trusted_proxies);
+  }
   void Tell(const Request& request, const char* act, const absl::Status& refusal) {
-    TellOfRefusal(site_.options, ClientOf(request, link_.Peer(), site_.options.trusted_proxies),
-                  act, refusal);
+    TellOfRefusal(site_.options, OwnerOf(request), act, refusal);
   }
 
   ClientLink& link_;
@@ -394,7 +397,8 @@ net::awaitable<absl::StatusOr<PageFile>> HttpConnection::FindPageFile(const Requ
     found->about = files->Find(path, accepted);
     if (found->about.has_value()) found->file = OpenFile::Open(found->about->path);
   };
-  const absl::Status done = co_await site_.page_threads.Run(executor_, std::move(find));
+  const std::string owner = OwnerOf(request);
+  const absl::Status done = co_await site_.page_threads.Run(executor_, owner, std::move(find));
   if (!done.ok()) co_return done;
   co_return *found;
 }
@@ -438,7 +442,8 @@ net::awaitable<bool> HttpConnection::SendKept(const Request& request, const Kept
   }
   const auto opened = std::make_shared<FileOr>(absl::NotFoundError("not opened"));
   std::function<void()> open = [opened, path = file.path] { *opened = OpenFile::Open(path); };
-  const absl::Status done = co_await site_.kept_threads.Run(executor_, std::move(open));
+  const std::string owner = OwnerOf(request);
+  const absl::Status done = co_await site_.kept_threads.Run(executor_, owner, std::move(open));
   if (!done.ok()) {
     keep = co_await SendStorageHangs(request);
   } else if (!opened->ok()) {
@@ -502,13 +507,14 @@ net::awaitable<bool> HttpConnection::SendPart(const Request& request,
     std::ptrdiff_t bytes = 0;
   };
   const auto read = std::make_shared<Read>();
+  const std::string owner = OwnerOf(request);
   do {
     if (part.bytes > 0) {
       const auto most = static_cast<size_t>(std::min<std::uint64_t>(part.bytes, kFilePart));
       std::function<void()> work = [read, file = part.file, first = part.first, most] {
         read->bytes = file->Read(first, read->into.data(), most);
       };
-      const absl::Status done = co_await part.threads.Run(executor_, std::move(work));
+      const absl::Status done = co_await part.threads.Run(executor_, owner, std::move(work));
       // The storage hangs or fails, or the file was cut off meanwhile.
       if (!done.ok() || read->bytes <= 0) co_return false;
     }

@@ -59,8 +59,8 @@ export class SessionLife implements SessionListener {
   #presenterKey: string | undefined;
   // True until the first presence of a session that this page opened.
   #opened = false;
-  // It steered as a presenter when the connection was lost; the server may still see that connection steer.
-  #resumesSteering = false;
+  // This page's former connection, by which it steered as a presenter: the server may still see that steer.
+  #lostSteerer: bigint | undefined;
   #newestProblem: Problem | undefined;
 
   constructor(parts: SessionLifeParts) {
@@ -168,7 +168,8 @@ export class SessionLife implements SessionListener {
   joined(joined: Joined): void {
     const { session } = this.#parts.state;
     const presenting = joined.role === Role.PRESENTER;
-    this.#resumesSteering = presenting && session.steering.peek();
+    this.#lostSteerer =
+      presenting && session.steering.peek() ? session.me.peek()?.viewerId : undefined;
     session.joined(joined);
     if (presenting && this.#presenterKey !== undefined)
       this.#parts.keys.keep(joined.viewerKey, this.#presenterKey);
@@ -266,7 +267,7 @@ export class SessionLife implements SessionListener {
       this.#sync.hold();
       this.#parts.pausePlayback();
       if (this.#opened && presence.steeringViewerId === 0n) this.#parts.takeControl();
-      else if (this.#resumesSteering && presenterSteers(presence)) this.#parts.takeControl();
+      else if (presence.steeringViewerId === this.#lostSteerer) this.#parts.takeControl();
       else
         this.#sync.discard(() => {
           const why = session.editBlock.peek() ?? "";
@@ -274,7 +275,7 @@ export class SessionLife implements SessionListener {
         });
     }
     this.#opened = false;
-    this.#resumesSteering = false;
+    this.#lostSteerer = undefined;
   }
 
   #problem(problem: Problem): void {
@@ -302,9 +303,4 @@ export class SessionLife implements SessionListener {
       throw error;
     }
   }
-}
-
-function presenterSteers(presence: Presence): boolean {
-  const steerer = presence.people.find(({ viewerId }) => viewerId === presence.steeringViewerId);
-  return steerer?.role === Role.PRESENTER;
 }
