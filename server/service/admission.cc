@@ -1,5 +1,6 @@
 #include "service/admission.h"
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,13 +34,20 @@ std::string ForwardedFor(const grpc::CallbackServerContext& context) {
   return all;
 }
 
-// "1.2.3.4:80" or "[::1]:80" of gRPC's "ipv4:1.2.3.4:80" or "ipv6:%5B::1%5D:80".
-std::string PeerOf(const access::Door& door, const grpc::CallbackServerContext& context) {
+// The connection's other end, "1.2.3.4:80" or "[::1]:80" of gRPC's "ipv4:1.2.3.4:80" or
+// "ipv6:%5B::1%5D:80"; nothing for the local socket.
+std::optional<std::string> ConnectionOf(const grpc::CallbackServerContext& context) {
   const std::string peer = context.peer();
   absl::string_view address = peer;
   if (absl::ConsumePrefix(&address, "ipv4:") || absl::ConsumePrefix(&address, "ipv6:")) {
-    return door.Proxies().ClientOf(absl::StrReplaceAll(address, {{"%5B", "["}, {"%5D", "]"}}),
-                                   ForwardedFor(context));
+    return absl::StrReplaceAll(address, {{"%5B", "["}, {"%5D", "]"}});
+  }
+  return std::nullopt;
+}
+
+std::string PeerOf(const access::Door& door, const grpc::CallbackServerContext& context) {
+  if (const auto connection = ConnectionOf(context); connection.has_value()) {
+    return door.Proxies().ClientOf(*connection, ForwardedFor(context));
   }
   // The local socket, to which only this user's processes connect: the gateway tells its client.
   return Metadata(context, "x-forwarded-for").value_or("");
@@ -61,7 +69,16 @@ CallerOr Entrance::Enter(const grpc::CallbackServerContext& context, const char*
                          access::CallKind kind) const {
   CallerOr caller = Admit(door_, context, method, kind);
   if (caller.ok() && !closed_.ok()) return closed_;
-  return caller;
+  const std::optional<std::string> connection = ConnectionOf(context);
+  if (!caller.ok() || !connection.has_value()) return caller;
+  // Counts while somebody has the caller.
+  struct Counted {
+    std::shared_ptr<const access::Caller> caller;
+    std::shared_ptr<const void> call;
+  };
+  const auto counted =
+      std::make_shared<const Counted>(Counted{*std::move(caller), calls_.Begin(*connection)});
+  return std::shared_ptr<const access::Caller>(counted, counted->caller.get());
 }
 
 }  // namespace thunderhead::service

@@ -10,6 +10,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "access/door.h"
+#include "service/connection_calls.h"
 #include "service/finished.h"
 
 namespace thunderhead::service {
@@ -24,9 +25,10 @@ CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, c
 // The entrance of one service: each call is answered by its handler, or by a refusal.
 class Entrance {
  public:
-  // `closed` is why those whom the door lets in are refused all the same; OK: they are not.
-  explicit Entrance(access::Door& door, absl::Status closed = absl::OkStatus())
-      : door_(door), closed_(std::move(closed)) {}
+  // `closed` is why those whom the door lets in are refused all the same; OK: they are not. `calls`
+  // counts the calls that are let in.
+  Entrance(access::Door& door, ConnectionCalls& calls, absl::Status closed = absl::OkStatus())
+      : door_(door), calls_(calls), closed_(std::move(closed)) {}
 
   // `handle` takes the caller and returns the call's reactor.
   template <typename Handler>
@@ -49,6 +51,7 @@ class Entrance {
                  access::CallKind kind) const;
 
   access::Door& door_;
+  ConnectionCalls& calls_;
   const absl::Status closed_;
 };
 

@@ -28,6 +28,12 @@ absl::Status TooLarge(const std::string& what, std::uint64_t number, std::uint64
 
 }  // namespace
 
+std::chrono::milliseconds DeliveryTime(const Limits& limits, std::size_t bytes) {
+  return limits.delivery_time +
+         std::chrono::ceil<std::chrono::milliseconds>(std::chrono::duration<double>(
+             static_cast<double>(bytes) / limits.min_bytes_per_second));
+}
+
 absl::Status CheckSize(const Limits& limits, const v1::Scene& scene) {
   const std::uint64_t pixels =
       std::uint64_t{scene.output().width_px()} * scene.output().height_px();

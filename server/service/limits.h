@@ -23,6 +23,10 @@ struct Limits {
   // Of one picture outside sessions, from the reading of its fields on: waiting for others does not
   // count.
   std::chrono::milliseconds max_render_time = std::chrono::minutes(30);
+  // A picture that is ready, or each part of it, must be taken by its client within this and the
+  // time that it takes at this rate; then the call is cancelled.
+  std::chrono::milliseconds delivery_time = std::chrono::minutes(2);
+  double min_bytes_per_second = 8192.0;
   // Until a client of Interact has joined.
   std::chrono::milliseconds join_timeout = std::chrono::seconds(10);
   // A scene is at most a few kilobytes.
@@ -32,6 +36,9 @@ struct Limits {
   // Further calls of a connection wait in its client.
   int max_streams_per_connection = 1024;
 };
+
+// How long a client may take for so many bytes of a picture.
+std::chrono::milliseconds DeliveryTime(const Limits& limits, std::size_t bytes);
 
 // RESOURCE_EXHAUSTED for a picture that is larger, or has more samples, than the limits allow.
 // `scene` has its defaults.

@@ -6,16 +6,21 @@
 
 #include <algorithm>
 #include <array>
-#include <string_view>
+#include <limits>
+#include <tuple>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "access/identity.h"
 
 namespace thunderhead::service {
 namespace {
 
 constexpr std::chrono::milliseconds kLookPause{100};
 
-std::string_view AddressOf(std::string_view peer) { return peer.substr(0, peer.rfind(':')); }
+// So long after its last call a connection counts as used: some handlers answer after they have let
+// go of the caller.
+constexpr std::chrono::seconds kJustUsed{10};
 
 }  // namespace
 
@@ -41,25 +46,69 @@ std::optional<std::string> OpenSockets::PeerOf(int socket) {
 
 bool OpenSockets::Take(int socket, const std::string& peer, Clock::time_point now) {
   // Its number was another's that is closed.
-  peers_.erase(socket);
-  if (!HasRoomFor(peer)) ForgetClosed(now);
-  if (!HasRoomFor(peer)) return false;
-  peers_.emplace(socket, peer);
+  if (const auto closed = open_.find(socket); closed != open_.end()) Forget(closed);
+  const Open newcomer{peer, access::NetworkOf(peer), now};
+  const auto is_full = [&] { return open_.size() >= most_ || HasItsShare(newcomer); };
+  if (is_full()) ForgetClosed(now);
+  if (is_full()) {
+    const std::string* const own = HasItsShare(newcomer) ? &newcomer.network : nullptr;
+    if (!CloseLeastNeeded(own, now)) return false;
+  }
+  // Its peer may have been another's.
+  calls_->Forget(peer);
+  open_.emplace(socket, newcomer);
   return true;
 }
 
-bool OpenSockets::HasRoomFor(const std::string& peer) const {
-  if (peers_.size() >= most_) return false;
-  if (proxies_.Holds(peer)) return true;
+bool OpenSockets::HasItsShare(const Open& newcomer) const {
+  if (proxies_.Holds(newcomer.peer)) return false;
   const auto own = std::ranges::count_if(
-      peers_, [&](const auto& open) { return AddressOf(open.second) == AddressOf(peer); });
-  return static_cast<std::size_t>(own) < most_per_address_;
+      open_, [&](const auto& open) { return open.second.network == newcomer.network; });
+  return static_cast<std::size_t>(own) >= most_per_address_;
+}
+
+bool OpenSockets::CloseLeastNeeded(const std::string* network, Clock::time_point now) {
+  struct Candidate {
+    std::map<int, Open>::iterator open;
+    // Those that had a call after those that never had, and then by the time without one.
+    std::tuple<bool, Clock::time_point> rank;
+  };
+  std::vector<Candidate> candidates;
+  std::map<std::tuple<bool, std::string>, std::size_t> numbers;
+  for (auto open = open_.begin(); open != open_.end(); ++open) {
+    if (network != nullptr && open->second.network != *network) continue;
+    const std::optional<ConnectionCalls::Use> use = calls_->UseOf(open->second.peer);
+    if (use.has_value() && (use->calls > 0 || now - use->since < kJustUsed)) continue;
+    candidates.push_back(
+        {open, {use.has_value(), use.has_value() ? use->since : open->second.since}});
+    ++numbers[{use.has_value(), open->second.network}];
+  }
+  const auto order = [&](const Candidate& candidate) {
+    const auto& [was_used, since] = candidate.rank;
+    const std::size_t together = numbers[{was_used, candidate.open->second.network}];
+    return std::tuple(was_used, std::numeric_limits<std::size_t>::max() - together, since);
+  };
+  const auto least = std::ranges::min_element(candidates, {}, order);
+  if (least == candidates.end()) return false;
+  // gRPC sees the end, and closes it. Others own the descriptor, and may have closed it just now.
+  const auto [socket, open] = *least->open;
+  if (peer_of_(socket) == open.peer) shutdown(socket, SHUT_RDWR);
+  Forget(least->open);
+  return true;
 }
 
 void OpenSockets::ForgetClosed(Clock::time_point now) {
   if (looked_at_.has_value() && now - *looked_at_ < kLookPause) return;
   looked_at_ = now;
-  std::erase_if(peers_, [](const auto& open) { return PeerOf(open.first) != open.second; });
+  for (auto open = open_.begin(); open != open_.end();) {
+    const auto at = open++;
+    if (peer_of_(at->first) != at->second.peer) Forget(at);
+  }
+}
+
+void OpenSockets::Forget(std::map<int, Open>::iterator open) {
+  calls_->Forget(open->second.peer);
+  open_.erase(open);
 }
 
 }  // namespace thunderhead::service

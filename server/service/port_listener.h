@@ -20,7 +20,7 @@ namespace thunderhead::service {
 class PortListener {
  public:
   using Acceptor = std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>;
-  // Told of a connection that was closed as there are too many; on the listener's thread.
+  // Told of a newcomer that was closed as there are too many; on the listener's thread.
   using Refused = std::function<void(const std::string& peer)>;
 
   // Listens on "HOST:PORT", port 0 for a free one; connections wait until Start. 0.0.0.0 and [::]

@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "base/stopwatch.h"
+#include "service/delivery_deadline.h"
 #include "service/handlers.h"
+#include "service/limits.h"
 #include "service/picture_job.h"
 #include "service/status_table.h"
 
@@ -13,9 +15,12 @@ namespace {
 // A picture as the response of a unary call.
 class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
  public:
-  PictureReactor(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request,
-                 v1::RenderImageResponse& response)
+  PictureReactor(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
+                 const v1::RenderImageRequest& request, v1::RenderImageResponse& response)
       : caller_(std::move(caller)),
+        limits_(engine.limits),
+        response_(response),
+        delivery_(context),
         job_(engine, request, response, *this, Awaited::kByACall, caller_->identity().name) {}
 
   void Begin() { job_.Begin(); }
@@ -25,10 +30,14 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
  private:
   void Ended(const absl::Status& status) override {
     caller_->Report("RenderImage", status);
+    delivery_.Begin(DeliveryTime(limits_, response_.image().size()));
     Finish(ToGrpcStatus(status));
   }
 
   const CallerRef caller_;
+  const Limits& limits_;
+  const v1::RenderImageResponse& response_;
+  DeliveryDeadline delivery_;
   PictureJob job_;
 };
 
@@ -37,9 +46,12 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
 class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
                             private PictureListener {
  public:
-  PictureStream(Engine& engine, CallerRef caller, const v1::RenderImageRequest& request)
+  PictureStream(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
+                const v1::RenderImageRequest& request)
       : caller_(std::move(caller)),
+        limits_(engine.limits),
         in_chunks_(request.in_chunks()),
+        delivery_(context),
         job_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall,
              caller_->identity().name) {}
 
@@ -48,6 +60,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   void OnDone() override { delete this; }
 
   void OnWriteDone(bool ok) override {
+    delivery_.Taken();
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
@@ -78,6 +91,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     if (progress.estimated_error.has_value()) {
       message.set_estimated_error(static_cast<float>(*progress.estimated_error));
     }
+    delivery_.Begin(DeliveryTime(limits_, 0));
     StartWrite(&progress_);
   }
 
@@ -93,19 +107,25 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
 
   // Called when no write is pending: again for each chunk.
   void WriteEnd() {
-    if (!end_->ok()) return Finish(*end_);
+    if (!end_->ok()) {
+      delivery_.Begin(DeliveryTime(limits_, 0));
+      return Finish(*end_);
+    }
     std::string& image = *image_.mutable_image()->mutable_image();
     if (in_chunks_ && sent_bytes_ < image.size()) {
       writing_ = true;
       progress_.set_chunk(image.substr(sent_bytes_, kChunkBytes));
       sent_bytes_ += progress_.chunk().size();
+      delivery_.Begin(DeliveryTime(limits_, progress_.chunk().size()));
       return StartWrite(&progress_);
     }
     if (in_chunks_) image.clear();
+    delivery_.Begin(DeliveryTime(limits_, image.size()));
     StartWriteAndFinish(&image_, grpc::WriteOptions(), *end_);
   }
 
   const CallerRef caller_;
+  const Limits& limits_;
   const bool in_chunks_;
   v1::RenderImageEvent image_;
   v1::RenderImageEvent progress_;  // or a chunk; gRPC reads it while `writing_`
@@ -114,24 +134,25 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   bool writing_ = false;
   std::optional<base::Stopwatch> since_progress_;
   std::optional<grpc::Status> end_;
+  DeliveryDeadline delivery_;
   PictureJob job_;
 };
 
 }  // namespace
 
-grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* /*context*/,
+grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
                                       const CallerRef& caller,
                                       const v1::RenderImageRequest* request,
                                       v1::RenderImageResponse* response) {
-  auto* reactor = new PictureReactor(engine, caller, *request, *response);
+  auto* reactor = new PictureReactor(engine, context, caller, *request, *response);
   reactor->Begin();
   return reactor;
 }
 
 grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
-    Engine& engine, grpc::CallbackServerContext* /*context*/, CallerRef caller,
+    Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
     const v1::RenderImageRequest* request) {
-  auto* reactor = new PictureStream(engine, std::move(caller), *request);
+  auto* reactor = new PictureStream(engine, context, std::move(caller), *request);
   reactor->Begin();
   return reactor;
 }

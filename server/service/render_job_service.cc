@@ -17,10 +17,11 @@ absl::Status NoJobs() {
 
 }  // namespace
 
-RenderJobService::RenderJobService(Engine& engine, access::Door& door, jobs::Jobs* jobs)
+RenderJobService::RenderJobService(Engine& engine, access::Door& door, ConnectionCalls& calls,
+                                   jobs::Jobs* jobs)
     : engine_(engine),
       jobs_(jobs),
-      entrance_(door, jobs != nullptr ? absl::OkStatus() : NoJobs()) {}
+      entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()) {}
 
 grpc::ServerUnaryReactor* RenderJobService::CreateRenderJob(
     grpc::CallbackServerContext* context, const v1::CreateRenderJobRequest* request,

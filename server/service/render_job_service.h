@@ -14,7 +14,7 @@ namespace thunderhead::service {
 class RenderJobService final : public v1::RenderJobService::CallbackService {
  public:
   // `jobs` is null where the server keeps none; all must outlive this.
-  RenderJobService(Engine& engine, access::Door& door, jobs::Jobs* jobs);
+  RenderJobService(Engine& engine, access::Door& door, ConnectionCalls& calls, jobs::Jobs* jobs);
 
   grpc::ServerUnaryReactor* CreateRenderJob(grpc::CallbackServerContext* context,
                                             const v1::CreateRenderJobRequest* request,

@@ -16,6 +16,7 @@
 #include "base/status.h"
 #include "base/wake_signal.h"
 #include "service/catalogue_follower.h"
+#include "service/connection_calls.h"
 #include "service/engine.h"
 #include "service/health_service.h"
 #include "service/interact_messages.h"
@@ -114,8 +115,9 @@ class RunningServer final : public Server {
     catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
                                               keeper_.get(), *catalogue_, drain_, limits_});
-    service_ = MakeThunderheadService(*engine_, *door_);
-    job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, jobs_.get());
+    service_ = MakeThunderheadService(*engine_, *door_, *connection_calls_);
+    job_service_ =
+        std::make_unique<RenderJobService>(*engine_, *door_, *connection_calls_, jobs_.get());
     // A global setting, which applies to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] { grpc::reflection::InitProtoReflectionServerBuilderPlugin(); });
@@ -149,7 +151,7 @@ class RunningServer final : public Server {
       THUNDERHEAD_RETURN_IF_ERROR(
           port_->Start(std::move(acceptor),
                        OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
-                                   door_->Proxies()),
+                                   door_->Proxies(), connection_calls_),
                        [this](const std::string& peer) {
                          telemetry::Counted().refusals.Of("TOO_MANY_CONNECTIONS").Add();
                          door_->ReportBeforeCall(peer, "Connect", TooManyConnections());
@@ -239,6 +241,7 @@ class RunningServer final : public Server {
   const std::shared_ptr<access::Door> door_;
   const Limits limits_;
   const JobFiles job_files_;
+  const std::shared_ptr<ConnectionCalls> connection_calls_ = std::make_shared<ConnectionCalls>();
   mutable session::Sessions sessions_;
   Drain drain_;
   session::Upkeep upkeep_{sessions_, *store_, due_};

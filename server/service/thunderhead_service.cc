@@ -27,7 +27,8 @@ using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbac
 
 class ThunderheadService final : public Calls {
  public:
-  ThunderheadService(Engine& engine, access::Door& door) : engine_(engine), door_(door) {}
+  ThunderheadService(Engine& engine, access::Door& door, ConnectionCalls& calls)
+      : engine_(engine), door_(door), entrance_(door, calls) {}
 
   grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
                                           const v1::GetServerInfoRequest* request,
@@ -150,13 +151,14 @@ class ThunderheadService final : public Calls {
  private:
   Engine& engine_;
   access::Door& door_;
-  const Entrance entrance_{door_};
+  const Entrance entrance_;
 };
 
 }  // namespace
 
-std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door) {
-  return std::make_unique<ThunderheadService>(engine, door);
+std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
+                                                      ConnectionCalls& calls) {
+  return std::make_unique<ThunderheadService>(engine, door, calls);
 }
 
 }  // namespace thunderhead::service

@@ -6,11 +6,13 @@
 #include <memory>
 
 #include "access/door.h"
+#include "service/connection_calls.h"
 #include "service/engine.h"
 
 namespace thunderhead::service {
 
-// Both must outlive it.
-std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door);
+// All must outlive it.
+std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
+                                                      ConnectionCalls& calls);
 
 }  // namespace thunderhead::service

@@ -1,0 +1,43 @@
+// Cancels a call whose client does not take in time what it asked for. gRPC itself would wait for
+// ever for one that grants no room for it (HTTP/2's flow control) and goes on answering pings.
+#pragma once
+
+#include <grpcpp/alarm.h>
+#include <grpcpp/server_context.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace thunderhead::service {
+
+class DeliveryDeadline {
+ public:
+  explicit DeliveryDeadline(grpc::CallbackServerContext* context)
+      : call_(std::make_shared<Call>(context)) {}
+  DeliveryDeadline(const DeliveryDeadline&) = delete;
+  DeliveryDeadline& operator=(const DeliveryDeadline&) = delete;
+  // The call has ended: to be destroyed before OnDone returns.
+  ~DeliveryDeadline();
+
+  // The client has so long from now on for what is written next, until Taken().
+  void Begin(std::chrono::milliseconds time);
+  void Taken();
+
+ private:
+  // What the alarm may still look at when the call has ended.
+  struct Call {
+    explicit Call(grpc::CallbackServerContext* of) : context(of) {}
+
+    // Recursive, as cancelling may end the call on the same thread.
+    std::recursive_mutex mutex;
+    grpc::CallbackServerContext* context;  // null: it has ended
+    int writes = 0;                        // that have begun or ended
+  };
+
+  const std::shared_ptr<Call> call_;
+  std::optional<grpc::Alarm> alarm_;
+};
+
+}  // namespace thunderhead::service

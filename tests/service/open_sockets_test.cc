@@ -1,0 +1,108 @@
+// Which connection of gRPC's port makes room for another.
+#include "service/open_sockets.h"
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gtest/gtest.h"
+
+namespace thunderhead::service {
+namespace {
+
+using std::chrono::seconds;
+
+class OpenSocketsTest : public ::testing::Test {
+ protected:
+  OpenSockets Of(std::size_t most, std::size_t most_per_address) {
+    return {most, most_per_address, {}, calls_, [this](int socket) { return PeerOf(socket); }};
+  }
+
+  // A connection of that peer, a second after the one before. True if it is taken.
+  bool Take(OpenSockets& open, const std::string& peer) {
+    const int socket = kNoDescriptor + taken_;
+    now_ += seconds(1);
+    const bool taken = open.Take(socket, peer, now_);
+    if (taken) {
+      peers_[socket] = peer;
+      ++taken_;
+    }
+    return taken;
+  }
+  std::optional<std::string> PeerOf(int socket) {
+    looked_for_ = socket - kNoDescriptor;
+    const auto peer = peers_.find(socket);
+    return peer == peers_.end() ? std::nullopt : std::optional(peer->second);
+  }
+
+  // Nothing has such a number, so nothing is shut down.
+  static constexpr int kNoDescriptor = 1 << 28;
+
+  const std::shared_ptr<ConnectionCalls> calls_ = std::make_shared<ConnectionCalls>();
+  std::map<int, std::string> peers_;
+  int taken_ = 0;
+  int looked_for_ = -1;  // last: the one that is closed, by the order in which they were taken
+  OpenSockets::Clock::time_point now_ = OpenSockets::Clock::now();
+};
+
+TEST_F(OpenSocketsTest, TheOldestOfTheNetworkWithMostMakesRoom) {
+  OpenSockets open = Of(4, 4);
+  EXPECT_TRUE(Take(open, "192.0.2.1:1"));
+  EXPECT_TRUE(Take(open, "192.0.2.2:1"));
+  EXPECT_TRUE(Take(open, "192.0.2.2:2"));
+  EXPECT_TRUE(Take(open, "192.0.2.2:3"));
+  EXPECT_TRUE(Take(open, "192.0.2.3:1"));
+  EXPECT_EQ(looked_for_, 1);
+}
+
+TEST_F(OpenSocketsTest, AddressesOfOneNetworkOfIpv6AreOne) {
+  OpenSockets open = Of(100, 2);
+  EXPECT_TRUE(Take(open, "[2001:db8::1]:1"));
+  EXPECT_TRUE(Take(open, "[2001:db8::2]:1"));
+  EXPECT_TRUE(Take(open, "[2001:db8:0:1::3]:1"));
+  EXPECT_EQ(looked_for_, -1) << "another network";
+  EXPECT_TRUE(Take(open, "[2001:db8::3]:1"));
+  EXPECT_EQ(looked_for_, 0);
+}
+
+TEST_F(OpenSocketsTest, ThoseWithCallsStay) {
+  OpenSockets open = Of(100, 2);
+  EXPECT_TRUE(Take(open, "192.0.2.1:1"));
+  const auto call = calls_->Begin("192.0.2.1:1");
+  EXPECT_TRUE(Take(open, "192.0.2.1:2"));
+  EXPECT_TRUE(Take(open, "192.0.2.1:3"));
+  EXPECT_EQ(looked_for_, 1);
+  const auto other = calls_->Begin("192.0.2.1:3");
+  EXPECT_FALSE(Take(open, "192.0.2.1:4"));
+}
+
+TEST_F(OpenSocketsTest, ThoseThatHadACallGoLast) {
+  OpenSockets open = Of(100, 2);
+  EXPECT_TRUE(Take(open, "192.0.2.1:1"));
+  static_cast<void>(calls_->Begin("192.0.2.1:1"));
+  EXPECT_TRUE(Take(open, "192.0.2.1:2"));
+  now_ += seconds(60);
+  EXPECT_TRUE(Take(open, "192.0.2.1:3"));
+  EXPECT_EQ(looked_for_, 1);
+  const auto call = calls_->Begin("192.0.2.1:3");
+  EXPECT_TRUE(Take(open, "192.0.2.1:4"));
+  EXPECT_EQ(looked_for_, 0);
+}
+
+TEST_F(OpenSocketsTest, ThoseThatAreClosedCountNoMore) {
+  OpenSockets open = Of(100, 2);
+  EXPECT_TRUE(Take(open, "192.0.2.1:1"));
+  EXPECT_TRUE(Take(open, "192.0.2.1:2"));
+  const auto first = calls_->Begin("192.0.2.1:1");
+  const auto second = calls_->Begin("192.0.2.1:2");
+  EXPECT_FALSE(Take(open, "192.0.2.1:3"));
+  peers_.erase(kNoDescriptor);
+  EXPECT_TRUE(Take(open, "192.0.2.1:3"));
+  const auto third = calls_->Begin("192.0.2.1:3");
+  EXPECT_FALSE(Take(open, "192.0.2.1:4"));
+}
+
+}  // namespace
+}  // namespace thunderhead::service
