@@ -183,7 +183,7 @@ TEST_F(SlowClientsTest, AFileMustBeReadAtALeastRate) {
 }
 
 // A request of Count for messages of that size.
-std::string Counting(uint32_t count, uint32_t payload_bytes) {
+std::string Sized(uint32_t count, uint32_t payload_bytes) {
   CountRequest request;
   request.set_count(count);
   request.set_payload_bytes(payload_bytes);
@@ -194,7 +194,7 @@ TEST_F(SlowClientsTest, AnAnswerMustBeTakenAtALeastRate) {
   options_.header_timeout = milliseconds(100);
   options_.min_bytes_per_second = 1e9;
   RawClient client(Site().Port(), 64 << 10);
-  client.Send(CallRequest("Count", Frame(Counting(1, 30'000'000))));
+  client.Send(CallRequest("Count", Frame(Sized(1, 30'000'000))));
   client.ReadHeaders();
   // Some progress, always.
   size_t read = 0;
@@ -212,7 +212,7 @@ TEST_F(SlowClientsTest, AWebSocketMustTakeItsMessagesAtALeastRate) {
   options_.header_timeout = milliseconds(300);
   options_.min_bytes_per_second = 1e9;
   WebSocketClient client(Site().Port(), {"Count", {}, /*receive_buffer_bytes=*/16 << 10});
-  client.Send(std::string(1, '\0') + Counting(20, 3'000'000));
+  client.Send(std::string(1, '\0') + Sized(20, 3'000'000));
   // It takes none of them.
   EXPECT_TRUE(Eventually([&] { return Site().Record().cancelled == 1; }));
 }
@@ -220,17 +220,17 @@ TEST_F(SlowClientsTest, AWebSocketMustTakeItsMessagesAtALeastRate) {
 TEST_F(SlowClientsTest, AnswersThatNobodyTakesHaveALimitInAll) {
   options_.max_unsent_bytes = 50'000'000;
   RawClient hoarder(Site().Port(), 64 << 10);
-  hoarder.Send(CallRequest("Count", Frame(Counting(1, 30'000'000))));
+  hoarder.Send(CallRequest("Count", Frame(Sized(1, 30'000'000))));
   hoarder.ReadHeaders();
   hoarder.ReadBody(10'000);
-  EXPECT_EQ(Call(Site().Port(), "Count", Counting(1, 30'000'000)).Trailer("grpc-status"), "8");
+  EXPECT_EQ(Call(Site().Port(), "Count", Sized(1, 30'000'000)).Trailer("grpc-status"), "8");
   WebSocketClient viewer(Site().Port(), {"Count", {}, 0});
-  viewer.Send(std::string(1, '\0') + Counting(1, 30'000'000));
+  viewer.Send(std::string(1, '\0') + Sized(1, 30'000'000));
   EXPECT_THAT(viewer.Receive().value_or(""), ::testing::HasSubstr("grpc-status:8"));
-  EXPECT_EQ(Call(Site().Port(), "Count", Counting(1, 10'000'000)).Trailer("grpc-status"), "0");
+  EXPECT_EQ(Call(Site().Port(), "Count", Sized(1, 10'000'000)).Trailer("grpc-status"), "0");
   // It has had its time.
   std::this_thread::sleep_for(milliseconds(5500));
-  const CallResult result = Call(Site().Port(), "Count", Counting(1, 30'000'000));
+  const CallResult result = Call(Site().Port(), "Count", Sized(1, 30'000'000));
   EXPECT_EQ(result.Trailer("grpc-status"), "0");
   EXPECT_TRUE(hoarder.IsEnded());
 }
