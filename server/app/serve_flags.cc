@@ -121,6 +121,8 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "Those of one identity");
   AddLimit(serve, "--max-wrong-tokens", flags.quotas.wrong_tokens_per_second, 0, 1e6,
            "Wrong tokens a second of one address; 0 for no limit");
+  AddLimit(serve, "--max-unsent", flags.max_unsent_mib, 128, 1 << 20,
+           "MiB of answers that wait for clients of the HTTP port to take them");
   AddLimit(serve, "--grpc-memory", flags.grpc_memory_mib, 16, 1 << 20,
            "MiB of gRPC's buffers, all connections together");
 }
@@ -244,6 +246,7 @@ absl::Status CompleteFlags(ServeFlags& flags) {
   flags.limits.grpc_memory_bytes = static_cast<std::size_t>(flags.grpc_memory_mib) << 20;
   flags.limits.max_connections = flags.gateway.max_connections;
   flags.limits.max_connections_per_address = flags.gateway.max_connections_per_address;
+  flags.gateway.max_unsent_bytes = static_cast<std::size_t>(flags.max_unsent_mib) << 20;
   flags.gateway.max_message_bytes = flags.limits.max_request_bytes;
   flags.gateway.tls_certificate = flags.tls.certificate;
   flags.gateway.tls_key = flags.tls.key;

@@ -63,6 +63,7 @@ struct ServeFlags {
   double max_megapixels = 33.6;
   int max_message_kib = 1024;
   int grpc_memory_mib = 1024;
+  int max_unsent_mib = 512;
 };
 
 // The budgets of --memory-budget and --gpu-memory-budget.
