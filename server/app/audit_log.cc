@@ -4,15 +4,24 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "absl/strings/str_cat.h"
 #include "app/json_log.h"
+#include "base/line_writer.h"
 #include "spdlog/sinks/basic_file_sink.h"
 #include "spdlog/sinks/stdout_sinks.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
+namespace {
+
+// While the disk hangs.
+constexpr std::size_t kMaxWaitingLines = 10'000;
+
+}  // namespace
 
 absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path,
                                                          const std::string& log_format) {
@@ -36,9 +45,13 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
     log->set_pattern("%v");  // the line has its own time
   }
   log->flush_on(spdlog::level::info);
-  return std::make_shared<access::Audit>([log](const std::string& line) {
-    log->log(spdlog::level::info, spdlog::string_view_t(line));
-  });
+  const auto writer = std::make_shared<base::LineWriter>(
+      kMaxWaitingLines, [log](const std::string& line, std::uint64_t left_out) {
+        const std::string lost = left_out > 0 ? absl::StrCat(" unwritten=", left_out) : "";
+        log->log(spdlog::level::info, spdlog::string_view_t(absl::StrCat(line, lost)));
+      });
+  return std::make_shared<access::Audit>(
+      [writer](const std::string& line) { writer->Write(line); });
 }
 
 }  // namespace thunderhead::app
