@@ -3,9 +3,12 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include "base/status.h"
 #include "sandbox/untrusted_files.h"
+#include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
 
@@ -29,6 +32,15 @@ void AddSandboxFlags(CLI::App& command, SandboxFlags& flags) {
       ->capture_default_str();
 }
 
+namespace {
+
+sandbox::ReaderLimits LimitsOf(const SandboxFlags& flags) {
+  return {.memory_bytes = static_cast<std::uint64_t>(flags.memory_mib) << 20,
+          .time = std::chrono::milliseconds(std::lround(1e3 * flags.seconds))};
+}
+
+}  // namespace
+
 absl::StatusOr<volume::StormFormats> FormatsOf(const SandboxFlags& flags) {
   volume::StormFormats formats = volume::StormFormats::BuiltIn();
   const bool all = flags.sandbox == "all";
@@ -36,11 +48,22 @@ absl::StatusOr<volume::StormFormats> FormatsOf(const SandboxFlags& flags) {
   sandbox::UntrustedOptions options;
   options.folders = flags.untrusted;
   options.all = all;
-  options.limits.memory_bytes = static_cast<std::uint64_t>(flags.memory_mib) << 20;
-  options.limits.time = std::chrono::milliseconds(std::lround(1e3 * flags.seconds));
+  options.limits = LimitsOf(flags);
   const auto untrusted = std::make_shared<sandbox::UntrustedFiles>(std::move(options));
   THUNDERHEAD_RETURN_IF_ERROR(untrusted->Probe());
   return sandbox::WithUntrusted(std::move(formats), untrusted);
+}
+
+std::function<std::shared_ptr<const volume::RecordReader>(const volume::StormFile&)> ReaderApart(
+    const SandboxFlags& flags) {
+  const auto files = std::make_shared<sandbox::UntrustedFiles>(
+      sandbox::UntrustedOptions{.folders = {}, .all = true, .limits = LimitsOf(flags)});
+  if (const absl::Status confined = files->Probe(); !confined.ok()) {
+    spdlog::info("while a storage hangs, no other will be read: {}",
+                 std::string(confined.message()));
+    return {};
+  }
+  return [files](const volume::StormFile& file) { return files->ReaderOf(file); };
 }
 
 }  // namespace thunderhead::app

@@ -1,11 +1,14 @@
 // Which storm files are read by a confined process, as flags.
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
+#include "volume/storm_file.h"
 #include "volume/storm_format.h"
 
 namespace thunderhead::app {
@@ -22,5 +25,10 @@ void AddSandboxFlags(CLI::App& command, SandboxFlags& flags);
 // The formats of this build, with untrusted files left to confined readers. FAILED_PRECONDITION if
 // there are to be some and this machine cannot confine them.
 absl::StatusOr<volume::StormFormats> FormatsOf(const SandboxFlags& flags);
+
+// For StormStoreOptions::reader_apart: confined readers of any file. Empty if this machine cannot
+// confine them.
+std::function<std::shared_ptr<const volume::RecordReader>(const volume::StormFile&)> ReaderApart(
+    const SandboxFlags& flags);
 
 }  // namespace thunderhead::app

@@ -142,6 +142,7 @@ absl::Status Serve(ServeFlags flags) {
   store_options.read_deadline = std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(store_options.formats, FormatsOf(flags.sandbox));
+  store_options.reader_apart = ReaderApart(flags.sandbox);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
                                volume::StormStore::Open(flags.data, store_options));

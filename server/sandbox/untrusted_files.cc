@@ -119,8 +119,13 @@ absl::StatusOr<volume::StormFile> UntrustedFiles::Describe(const std::string& pa
                                     return CheckPlausible(file);
                                   }));
   file.path = path;
-  file.reader = std::make_shared<UntrustedRecordReader>(shared_from_this(), file);
+  file.reader = ReaderOf(file);
   return file;
+}
+
+std::shared_ptr<const volume::RecordReader> UntrustedFiles::ReaderOf(
+    const volume::StormFile& file) {
+  return std::make_shared<UntrustedRecordReader>(shared_from_this(), file);
 }
 
 absl::StatusOr<volume::HydrometeorFields> UntrustedFiles::Read(

@@ -35,6 +35,8 @@ class UntrustedFiles : public std::enable_shared_from_this<UntrustedFiles> {
   bool Includes(const std::string& path) const;
 
   absl::StatusOr<volume::StormFile> Describe(const std::string& path);
+  // Reads the file of that description by confined processes.
+  std::shared_ptr<const volume::RecordReader> ReaderOf(const volume::StormFile& file);
   // `of` is the file's description.
   absl::StatusOr<volume::HydrometeorFields> Read(const volume::StormFile& of, std::size_t record,
                                                  const std::optional<volume::VerticalGrid>& grid,

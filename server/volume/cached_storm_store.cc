@@ -57,7 +57,14 @@ void CachedStormStore::Start() {
   if (options_.memory != nullptr) {
     member_.emplace(options_.memory, static_cast<base::MemoryBudget::Cache*>(this));
   }
-  threads_.emplace_back("reading a storm", [self = shared_from_this()] { self->ReadAsked(); });
+  threads_.emplace_back("reading a storm", [self = shared_from_this()] {
+    self->ReadDue(self->asked_, self->reading_asked_);
+  });
+  if (options_.reader_apart) {
+    threads_.emplace_back(
+        "reading a storm beside a storage that hangs",
+        [self = shared_from_this()] { self->ReadDue(self->beside_, self->reading_beside_); });
+  }
   if (options_.read_ahead == 0) return;
   threads_.emplace_back("reading ahead", [self = shared_from_this()] { self->ReadAhead(); });
 }

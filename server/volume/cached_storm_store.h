@@ -1,7 +1,8 @@
 // The store behind what StormStore::Open gives: a catalogue, a cache, a thread that reads what is
-// asked for and one that reads ahead. A time is read once however many callers ask for it; reads
-// that a caller waits for go before read-ahead, and before files that the catalogue looks at. A
-// storage that hangs holds up a thread, but no caller beyond the deadline.
+// asked for, one that reads ahead, and one that has other folders read in another process while a
+// storage holds up these. A time is read once however many callers ask for it; reads that a caller
+// waits for go before read-ahead, and before files that the catalogue looks at. A storage that
+// hangs holds up a thread, but no caller beyond the deadline.
 #pragma once
 
 #include <chrono>
@@ -61,7 +62,11 @@ class CachedStormStore final : public StormStore,
  private:
   class Handle;
   using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
-  enum class Purpose { kAsked, kAhead };
+  enum class Purpose {
+    kAsked,
+    kBeside,  // the same, by another process
+    kAhead,
+  };
 
   // A caller's listener, which is removed when the caller stops waiting.
   struct Listener {
@@ -123,8 +128,15 @@ class CachedStormStore final : public StormStore,
   Fields ReadFile(Lock& lock, PendingRead& read, Activity& activity);
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
                  const ReadProgress& progress);
+  Activity& ActivityOf(const PendingRead& read);
   std::optional<HungRead> HungIn(const Activity& activity) const;
-  absl::StatusOr<std::optional<VerticalGrid>> VerticalGridOf(Lock& lock, const Place& place);
+  // True if another process may do the read, which waits behind that one.
+  bool MayReadBeside(const PendingRead& read, const HungRead& hung) const;
+  // The read by another process in place of `read`, which others may wait for already.
+  std::shared_ptr<PendingRead> Beside(const PendingRead& read);
+  std::shared_ptr<const RecordReader> ReaderOf(const StormFile& file, Purpose purpose) const;
+  absl::StatusOr<std::optional<VerticalGrid>> VerticalGridOf(Lock& lock, const Place& place,
+                                                             Purpose purpose);
   // Makes it the storm's, if that has none.
   void Choose(const Place& place, const VerticalGrid& grid);
   void WantAfter(const Place& place);
@@ -136,7 +148,8 @@ class CachedStormStore final : public StormStore,
   // When a file that has just been replaced may be described.
   std::chrono::milliseconds ReplacedRetryAfter() const;
   absl::Status Checkpoint(PendingRead& read, Activity& activity, double share);
-  void ReadAsked();
+  // Until the end, what is due.
+  void ReadDue(std::deque<std::shared_ptr<PendingRead>>& due, Activity& activity);
   void ReadAhead();
 
   void Start();
@@ -154,8 +167,10 @@ class CachedStormStore final : public StormStore,
       changed_;  // a read ended, a time was wanted, a caller waits, or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
-  std::deque<std::shared_ptr<PendingRead>> asked_;  // due, in order
+  std::deque<std::shared_ptr<PendingRead>> asked_;   // due, in order
+  std::deque<std::shared_ptr<PendingRead>> beside_;  // likewise
   Activity reading_asked_;
+  Activity reading_beside_;
   Activity reading_ahead_;
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;

@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
+#include <filesystem>
 #include <limits>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -17,6 +20,7 @@
 namespace thunderhead::volume {
 namespace {
 
+namespace fs = std::filesystem;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
@@ -122,28 +126,38 @@ std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Begin(const Pla
     asked_.push_back(read);
     ++asked_reads_;
   }
+  if (purpose == Purpose::kBeside) beside_.push_back(read);
   return read;
 }
 
 CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
                                                    const std::shared_ptr<PendingRead>& read,
                                                    const ReadProgress& progress) {
-  // Keeps it alive after its removal from pending_, where `read` may lie.
-  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
-  const std::shared_ptr<PendingRead> shared = read;
-  ++shared->waiters;
   const auto listener = std::make_shared<Listener>();
   listener->progress = progress;
-  if (progress) shared->listeners.push_back(listener);
-  changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
-  Activity& activity = shared->purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
+  // Keeps it alive after its removal from pending_, where `read` may lie.
+  std::shared_ptr<PendingRead> shared;
+  const auto wait_for = [&](const std::shared_ptr<PendingRead>& now) {
+    shared = now;
+    ++shared->waiters;
+    if (progress) shared->listeners.push_back(listener);
+    changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
+  };
+  wait_for(read);
   while (!shared->result.has_value()) {
+    Activity& activity = ActivityOf(*shared);
     const std::optional<HungRead> hung = HungIn(activity);
+    if (hung.has_value() && !std::exchange(activity.told_of_hang, true)) {
+      spdlog::error("{}: its storage does not answer; what needs it is refused", hung->file);
+    }
+    if (!ending_ && hung.has_value() && MayReadBeside(*shared, *hung)) {
+      --shared->waiters;
+      std::erase(shared->listeners, listener);
+      wait_for(Beside(*shared));
+      continue;
+    }
     if (ending_ || hung.has_value()) {
       --shared->waiters;
-      if (hung.has_value() && !std::exchange(activity.told_of_hang, true)) {
-        spdlog::error("{}: its storage does not answer; what needs it is refused", hung->file);
-      }
       lock.unlock();
       {
         const std::lock_guard calling(listener->mutex);
@@ -159,12 +173,37 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
   return *shared->result;
 }
 
+CachedStormStore::Activity& CachedStormStore::ActivityOf(const PendingRead& read) {
+  if (read.purpose == Purpose::kBeside) return reading_beside_;
+  return read.purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
+}
+
+bool CachedStormStore::MayReadBeside(const PendingRead& read, const HungRead& hung) const {
+  if (!options_.reader_apart || read.purpose == Purpose::kBeside) return false;
+  const CataloguedStorm& storm = *read.place.storm;
+  const auto folder = [](const std::string& path) { return fs::path(path).parent_path(); };
+  return folder(storm.files[storm.sources[read.place.time].file].path) != folder(hung.file);
+}
+
+std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Beside(const PendingRead& read) {
+  const auto at = pending_.find(read.place.key);
+  if (at != pending_.end() && at->second->purpose == Purpose::kBeside) return at->second;
+  return Begin(read.place, Purpose::kBeside);
+}
+
+std::shared_ptr<const RecordReader> CachedStormStore::ReaderOf(const StormFile& file,
+                                                               Purpose purpose) const {
+  if (purpose != Purpose::kBeside) return file.reader;
+  std::shared_ptr<const RecordReader> apart = options_.reader_apart(file);
+  return apart != nullptr ? apart : file.reader;
+}
+
 std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const {
   const auto now = steady_clock::now();
   if (!activity.reads || now - activity.went_on <= options_.read_deadline) return std::nullopt;
   HungRead hung{activity.file, duration<double>(now - activity.went_on).count()};
-  // It may only wait for another.
-  const auto holder = NetcdfHolder::Now();
+  // It may only wait for another; not so another process.
+  const auto holder = &activity != &reading_beside_ ? NetcdfHolder::Now() : std::nullopt;
   if (holder.has_value() && holder->path != hung.file &&
       now - holder->since > options_.read_deadline / 2) {
     hung = {holder->path, duration<double>(now - holder->since).count()};
@@ -174,18 +213,20 @@ std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const
 
 std::optional<HungRead> CachedStormStore::Hung() const {
   const Lock lock(mutex_);
-  auto hung = HungIn(reading_asked_);
-  return hung.has_value() ? hung : HungIn(reading_ahead_);
+  for (const Activity* activity : {&reading_asked_, &reading_ahead_, &reading_beside_}) {
+    if (auto hung = HungIn(*activity); hung.has_value()) return hung;
+  }
+  return std::nullopt;
 }
 
-void CachedStormStore::ReadAsked() {
+void CachedStormStore::ReadDue(std::deque<std::shared_ptr<PendingRead>>& due, Activity& activity) {
   Lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return ending_ || !asked_.empty(); });
+    changed_.wait(lock, [&] { return ending_ || !due.empty(); });
     if (ending_) return;
-    const std::shared_ptr<PendingRead> read = std::move(asked_.front());
-    asked_.pop_front();
-    Read(lock, *read, reading_asked_);
+    const std::shared_ptr<PendingRead> read = std::move(due.front());
+    due.pop_front();
+    Read(lock, *read, activity);
   }
 }
 
@@ -209,7 +250,7 @@ void CachedStormStore::ReadAhead() {
 
 void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   const TimeKey key = read.place.key;
-  const bool is_asked = read.purpose == Purpose::kAsked;
+  const bool is_asked = read.purpose != Purpose::kAhead;
   // The caller may have given up meanwhile.
   Fields fields = absl::CancelledError("nobody waits for it any more");
   if (!is_asked || read.waiters > 0) {
@@ -220,7 +261,7 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
     activity.reads = false;
     if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
   }
-  if (is_asked) --asked_reads_;
+  if (read.purpose == Purpose::kAsked) --asked_reads_;
   // Fields of a time that was removed meanwhile are returned to callers but not cached.
   const bool keep = fields.ok() && PlaceOf(key).has_value();
   if (keep && (is_asked || read.waiters > 0)) {
@@ -228,7 +269,10 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   } else if (keep) {
     cache_.InsertAhead(key, *fields);
   }
-  pending_.erase(key);
+  // Another process may read it in this one's place.
+  if (const auto at = pending_.find(key); at != pending_.end() && at->second.get() == &read) {
+    pending_.erase(at);
+  }
   read.result = std::move(fields);
   changed_.notify_all();
 }
@@ -241,9 +285,11 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   if (place.storm->info.times[place.time].deleted) {
     return absl::NotFoundError(absl::StrCat(file.path, ": the file of this time is gone"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<VerticalGrid> grid, VerticalGridOf(lock, place));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<VerticalGrid> grid,
+                               VerticalGridOf(lock, place, read.purpose));
+  const std::shared_ptr<const RecordReader> reader = ReaderOf(file, read.purpose);
   activity.went_on = steady_clock::now();
-  const auto urgency = read.purpose == Purpose::kAsked ? base::MemoryBudget::Urgency::kPatient
+  const auto urgency = read.purpose != Purpose::kAhead ? base::MemoryBudget::Urgency::kPatient
                                                        : base::MemoryBudget::Urgency::kAhead;
   lock.unlock();
   const auto read_counted = [&]() -> Fields {
@@ -262,7 +308,7 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
     }
     THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file, ReplacedRetryAfter()));
     THUNDERHEAD_ASSIGN_OR_RETURN(counted->fields,
-                                 file.reader->Read(source.record, grid, [&](double share) {
+                                 reader->Read(source.record, grid, [&](double share) {
                                    return Checkpoint(read, activity, share);
                                  }));
     THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file, ReplacedRetryAfter()));
@@ -285,15 +331,17 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
 // picture does not depend on which times were viewed before. It stays when an earlier time arrives
 // later. Nothing if this is the first time itself, or if the first cannot be read.
 absl::StatusOr<std::optional<VerticalGrid>> CachedStormStore::VerticalGridOf(Lock& lock,
-                                                                             const Place& place) {
+                                                                             const Place& place,
+                                                                             Purpose purpose) {
   const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;
   if (known.has_value()) return known->grid;
   if (place.time == 0) return std::nullopt;
   const CataloguedStorm& storm = *place.storm;
   const TimeSource first = storm.sources.front();
   const StormFile& file = storm.files[first.file];
+  const std::shared_ptr<const RecordReader> reader = ReaderOf(file, purpose);
   lock.unlock();
-  const absl::StatusOr<VerticalGrid> chosen = file.reader->ReadVerticalGrid(first.record);
+  const absl::StatusOr<VerticalGrid> chosen = reader->ReadVerticalGrid(first.record);
   const absl::Status replaced = CheckNotReplaced(file, ReplacedRetryAfter());
   lock.lock();
   THUNDERHEAD_RETURN_IF_ERROR(replaced);

@@ -1,7 +1,8 @@
 // The storms a server holds: a catalogue of series found under some paths, which may follow what
 // happens there, and a cache of the times in use within a byte budget, which reads the next times
 // ahead on a thread of its own. Safe to call from any thread; netCDF-C is not thread-safe, so one
-// reader works at a time.
+// reader works at a time in this process. While a storage holds it up, other folders are read in
+// another.
 #pragma once
 
 #include <chrono>
@@ -18,6 +19,7 @@
 #include "absl/time/time.h"
 #include "base/memory_budget.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/storm_file.h"
 #include "volume/storm_format.h"
 
 namespace thunderhead::volume {
@@ -87,6 +89,9 @@ struct StormStoreOptions {
   // A storage on which a read makes no progress for this long counts as hanging.
   std::chrono::milliseconds read_deadline{60'000};
   StormFormats formats = StormFormats::BuiltIn();
+  // Gives a reader of the file that works in another process, for while this one's is held up by
+  // the storage of another folder, or null; empty: such reads are refused.
+  std::function<std::shared_ptr<const RecordReader>(const StormFile& file)> reader_apart;
   // Absent: the storms are those of the start. With it, a folder without storms is no error.
   std::optional<LiveCatalogueOptions> live;
 };
@@ -124,7 +129,8 @@ class StormStore {
 
   // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the
   // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), RESOURCE_EXHAUSTED (no room in memory),
-  // DEADLINE_EXCEEDED (a storage hangs, this time's or one before it; at once where that is known),
+  // DEADLINE_EXCEEDED (a storage hangs, this time's or, where no other process reads, one before
+  // it; at once where that is known),
   // and those of the file's reader.
   // `progress` may be empty.
   virtual absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(

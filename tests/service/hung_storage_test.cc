@@ -59,15 +59,16 @@ class HungStorageTest : public ::testing::Test {
 #endif
   }
 
-  void Start(const std::string& data) {
+  void Start(const std::vector<std::string>& data) {
     setenv("LD_PRELOAD", HANGING_STORAGE, 1);
-    program_ = std::make_unique<RunningProgram>(
-        PROGRAM,
-        std::vector<std::string>{"serve", "--device", "software", "--data", data, "--http",
-                                 "127.0.0.1:0", "--grpc", "127.0.0.1:0", "--metrics", "127.0.0.1:0",
-                                 "--state", "none", "--rescan-seconds", "0", "--read-deadline", "1",
-                                 "--drain-seconds", "2"},
-        out_, err_);
+    std::vector<std::string> arguments{
+        "serve",       "--device",        "software",    "--http",
+        "127.0.0.1:0", "--grpc",          "127.0.0.1:0", "--metrics",
+        "127.0.0.1:0", "--state",         "none",        "--rescan-seconds",
+        "0",           "--read-deadline", "1",           "--drain-seconds",
+        "2",           "--data"};
+    arguments.insert(arguments.end(), data.begin(), data.end());
+    program_ = std::make_unique<RunningProgram>(PROGRAM, arguments, out_, err_);
     unsetenv("LD_PRELOAD");
   }
 
@@ -137,11 +138,15 @@ class HungStorageTest : public ::testing::Test {
 
 TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   fs::create_directory(folder_.File("data"));
+  fs::create_directory(folder_.File("other"));
   const std::string far = folder_.File("data/tower.nc");
   // The first of them is drawn, and so read, as the program starts.
   WriteStorm(folder_.File("data/anvil.nc"));
   WriteStorm(far);
-  Start(folder_.File("data"));
+  // Two of the same time, which are no series.
+  WriteStorm(folder_.File("other/plume.nc"));
+  WriteStorm(folder_.File("other/wall.nc"));
+  Start({folder_.File("data"), folder_.File("other")});
   AwaitReady();
   AwaitOperatorsPort();
   ASSERT_FALSE(HasFatalFailure());
@@ -162,6 +167,9 @@ TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   EXPECT_EQ(CodeOf(operators_port_, "/healthz"), 200);
   EXPECT_EQ(CodeOf(operators_port_, "/readyz"), 200);
   EXPECT_TRUE(Draw("anvil").ok());
+  // Another folder is read by another process.
+  const grpc::Status beside = Draw("plume");
+  EXPECT_TRUE(beside.ok()) << beside.error_message();
   *request.mutable_scene() = SceneOf("anvil");
   ASSERT_TRUE(Call(*stub_, &Stub::CreateSession, request, &created).ok());
   {
@@ -175,7 +183,7 @@ TEST_F(HungStorageTest, AStartThatHangsSaysWhereAndEndsWhenItIsTold) {
   const std::string storm = folder_.File("storm.nc");
   WriteStorm(storm);
   HangAt(storm);
-  Start(storm);
+  Start({storm});
   AwaitOperatorsPort();
   ASSERT_FALSE(HasFatalFailure());
   EXPECT_EQ(CodeOf(operators_port_, "/healthz"), 200);

@@ -157,6 +157,25 @@ TEST_F(UntrustedFilesTest, AreReadAsByTheProgramItself) {
   ExpectSameStorm(*files, THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc");
 }
 
+// As the store has it done while a storage holds up the reader of this process.
+TEST_F(UntrustedFilesTest, ATrustedFileCanBeReadByItsOwnDescription) {
+  UntrustedOptions options;
+  options.all = true;
+  const auto files = std::make_shared<UntrustedFiles>(options);
+  const auto own =
+      volume::StormFormats::BuiltIn().Describe(THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc");
+  ASSERT_TRUE(own.ok()) << own.status();
+  const auto apart = files->ReaderOf(*own);
+  const auto grid = own->reader->ReadVerticalGrid(0);
+  const auto grid_apart = apart->ReadVerticalGrid(0);
+  ASSERT_TRUE(grid.ok() && grid_apart.ok()) << grid_apart.status();
+  EXPECT_EQ(grid_apart->cells, grid->cells);
+  const auto expected = own->reader->Read(0, *grid, {});
+  const auto fields = apart->Read(0, *grid, {});
+  ASSERT_TRUE(expected.ok() && fields.ok()) << fields.status();
+  EXPECT_TRUE(BytesOf(*fields) == BytesOf(*expected));
+}
+
 // The cost beside reading the same in the process; for docs/reliability.md.
 TEST_F(UntrustedFilesTest, Cost) {
   const std::string path = THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc";

@@ -2,7 +2,9 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <filesystem>
 #include <fstream>
+#include <future>
 #include <mutex>
 #include <thread>
 
@@ -217,6 +219,47 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   const auto behind = steady_clock::now();
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("near.cube", 9, {}).status()));
   EXPECT_LT(steady_clock::now() - behind, milliseconds(150));
+}
+
+TEST_F(StormMemory, AStorageThatHangsLeavesOtherFoldersToAnotherProcess) {
+  std::filesystem::create_directories(folder_.Path() / "other");
+  std::atomic<int> apart{0};
+  const auto store = Open({Cube("far", kCells), Cube("near", kCells), Cube("other/b", kCells)},
+                          {.read_ahead = 0,
+                           .read_deadline = milliseconds(200),
+                           .reader_apart = [&](const StormFile& file) {
+                             ++apart;
+                             return file.reader;
+                           }});
+  ASSERT_TRUE(store->Get("b.cube", 0, {}).ok());
+  EXPECT_EQ(apart, 0) << "nothing hangs";
+  storage_->Hang();
+  // Somebody else's read, that waits behind it.
+  auto behind = std::async(std::launch::async, [&] {
+    std::this_thread::sleep_for(milliseconds(50));
+    return store->Get("b.cube", 1, {}).status();
+  });
+  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 0, {}).status()));
+  EXPECT_TRUE(behind.get().ok());
+  const auto begun = steady_clock::now();
+  double progress = 0.0;
+  EXPECT_TRUE(store->Get("b.cube", 2, [&](double share) { progress = share; }).ok());
+  EXPECT_LT(steady_clock::now() - begun, milliseconds(150)) << "at once, as it is known";
+  EXPECT_EQ(progress, 0.5);
+  EXPECT_GE(apart, 2);
+  // Of the storage that hangs nothing is read by yet another process.
+  const int before = apart;
+  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("near.cube", 0, {}).status()));
+  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 1, {}).status()));
+  EXPECT_EQ(apart, before);
+  storage_->Answer();
+  EXPECT_TRUE(store->Get("b.cube", 2, {}).ok());
+  absl::Status again = absl::UnknownError("");
+  for (int i = 0; i < 1000 && !again.ok(); ++i) {
+    std::this_thread::sleep_for(milliseconds(5));
+    again = store->Get("far.cube", 0, {}).status();
+  }
+  EXPECT_TRUE(again.ok()) << again;
 }
 
 TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {
