@@ -3,6 +3,7 @@ import type { ComponentChildren, TargetedEvent } from "preact";
 import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { clampToLimits, type Limits, positionOfValue, valueAtPosition } from "../core/limits";
 import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
+import { Icon } from "./icons";
 
 const SLIDER_STEPS = 400;
 // A slider whose change costs seconds reports it after being still for this long.
@@ -92,7 +93,7 @@ export function Slider(props: SliderProps) {
             title={`Reset to ${formatQuantity(first, limits)}`}
             onClick={() => onChange(first)}
           >
-            ↺
+            <Icon name="undo" />
           </button>
         )}
         {known && first === undefined && giveBack !== undefined && (
@@ -104,7 +105,7 @@ export function Slider(props: SliderProps) {
             data-testid={`${testId}-give-back`}
             onClick={giveBack}
           >
-            ↺
+            <Icon name="undo" />
           </button>
         )}
         <input
