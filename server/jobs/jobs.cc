@@ -213,7 +213,8 @@ void Jobs::Fetched(const PicturePlace& picture) {
     const std::lock_guard lock(mutex_);
     board_.Fetched(picture);
   }
-  changed_.notify_all();
+  // There may be room now. A task, as the thread may be saving and not hear a mere notification.
+  Post([] {});
 }
 
 void Jobs::FetchedByKey(const std::string& result_key, std::size_t place) {

@@ -80,7 +80,11 @@ class FullStore final : public JobStore {
     jobs_[job.id] = job;
     return absl::OkStatus();
   }
-  absl::Status Save(const std::vector<JobChange>&) override { return Outcome(); }
+  absl::Status Save(const std::vector<JobChange>&) override {
+    ++saves;
+    blocked.wait(true);
+    return Outcome();
+  }
   absl::Status Remove(const std::vector<std::string>& ids) override {
     if (full) return Outcome();
     const std::lock_guard lock(mutex_);
@@ -95,6 +99,8 @@ class FullStore final : public JobStore {
   }
 
   std::atomic<bool> full{false};
+  std::atomic<bool> blocked{false};  // saving takes until it is false
+  std::atomic<int> saves{0};         // begun
 
  private:
   absl::Status Outcome() const {
@@ -129,6 +135,48 @@ TEST(JobsTest, AForgottenJobStaysForgottenThoughTheStoreWasFull) {
   auto jobs = Jobs::Open(options);
   ASSERT_TRUE(jobs.ok()) << jobs.status();
   EXPECT_EQ((*jobs)->Load().running, 0U) << "it would be drawn again";
+}
+
+TEST(JobsTest, WhatIsFetchedWhileAnotherFetchIsSavedLetsDrawingGoOn) {
+  const testing::TemporaryFolder folder;
+  const auto store = std::make_shared<FullStore>();
+  std::atomic<int> cannot_take{0};
+  JobsOptions options;
+  options.store = store;
+  options.folder = folder.File("jobs");
+  options.limits.max_result_bytes = 1;
+  options.limits.max_in_hand = 1;
+  auto jobs = Jobs::Open(options);
+  ASSERT_TRUE(jobs.ok()) << jobs.status();
+  (*jobs)->Start([&](const PictureOrder&, const std::function<void()>& done) {
+    auto picture = std::make_unique<Picture>(cannot_take);
+    done();
+    return picture;
+  });
+  std::promise<absl::StatusOr<JobView>> created;
+  (*jobs)->Create({"night", "", std::vector<PictureOrder>(4)},
+                  [&](const absl::StatusOr<JobView>& view) { created.set_value(view); });
+  const std::string id = created.get_future().get()->id;
+  const auto eventually = [](const std::function<bool()>& holds) {
+    for (int i = 0; i < 2000 && !holds(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return holds();
+  };
+  // The second was in hand when the first was kept.
+  ASSERT_TRUE(eventually([&] {
+    const JobsLoad load = (*jobs)->Load();
+    return load.result_bytes == 10 && load.stalled_s == 0.0;
+  }));
+  EXPECT_EQ((*jobs)->Load().paused, 2U);
+  const int saves = store->saves;
+  store->blocked = true;
+  (*jobs)->Fetched({id, 0});
+  ASSERT_TRUE(eventually([&] { return store->saves > saves; }));
+  (*jobs)->Fetched({id, 1});
+  store->blocked = false;
+  store->blocked.notify_all();
+  EXPECT_TRUE(eventually([&] { return (*jobs)->Load().waiting < 2; }));
 }
 
 class UnwrittenPictures : public ::testing::Test {
