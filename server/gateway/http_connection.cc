@@ -519,8 +519,10 @@ net::awaitable<bool> HttpConnection::SendPart(const Request& request,
       if (!done.ok() || read->bytes <= 0) co_return false;
     }
     const auto bytes = static_cast<size_t>(read->bytes);
-    std::vector<net::const_buffer> buffers = {net::buffer(unsent_header),
-                                              net::buffer(read->into.data(), bytes)};
+    // TLS writes the first buffer by itself if all are too many bytes, and nothing if it is empty.
+    std::vector<net::const_buffer> buffers;
+    if (!unsent_header.empty()) buffers.push_back(net::buffer(unsent_header));
+    buffers.push_back(net::buffer(read->into.data(), bytes));
     const bool written = co_await link_.WriteAll(std::move(buffers), end);
     if (!written) co_return false;
     unsent_header.clear();
