@@ -1,4 +1,4 @@
-// Edits of a scene that concern several of its parts, as the page makes them
+// Edits of a scene that concern several of its parts, as the page makes most of them
 // (client-web/src/core/scene.ts). They know no window.
 #pragma once
 

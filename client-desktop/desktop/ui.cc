@@ -61,7 +61,7 @@ void Ui::TogglePlay() {
 }
 
 void Ui::StepTime(int by) {
-  if (time_count() > 0) ShowTime(client::Playback::Step(time_index(), by, time_count()));
+  if (time_count() > 0) ChooseTime(client::Playback::Step(time_index(), by, time_count()));
 }
 
 void Ui::Undo() {

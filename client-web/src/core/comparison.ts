@@ -2,8 +2,8 @@
 
 import type { Camera, Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
-import { isSameDomain } from "./domain";
-import { nearestTime, timeLike } from "./nearest_time";
+import { isSameDomain, laterByS } from "./domain";
+import { nearestTime } from "./nearest_time";
 import { withCamera, withOutput, withRun, withStorm } from "./scene";
 import { formatElapsed } from "./units";
 
@@ -30,9 +30,12 @@ export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWit
   const stormId = choice.stormId ?? a.stormId;
   const base = choice.settings ?? a;
   const timeIndex = timeOfB(a, choice, w).index;
-  // The fields' settings go along to another run of the same model.
+  // Settings go along to another run of the same model.
   const related = base.stormId === stormId || isSameDomain(w.storm, w.other);
-  const storm = related ? withRun(base, stormId, timeIndex) : withStorm(base, stormId, timeIndex);
+  const laterS = base.stormId === stormId ? 0 : laterByS(w.storm, w.other);
+  const storm = related
+    ? withRun(base, stormId, timeIndex, laterS)
+    : withStorm(base, stormId, timeIndex);
   const seen = w.camera === undefined ? storm : withCamera(storm, w.camera);
   return withOutput(seen, { ...w.size, jpegQuality: a.output?.jpegQuality });
 }
@@ -57,8 +60,8 @@ export function timeOfB(
   if (w.other === undefined) return { index, awayS: undefined };
   const { times } = w.other;
   const validTime = w.storm?.times[index]?.validTime ?? "";
-  const nearest = nearestTime(validTime, times);
-  return nearest ?? { index: timeLike(validTime, index, times), awayS: undefined };
+  const last = Math.max(0, times.length - 1);
+  return nearestTime(validTime, times) ?? { index: Math.min(index, last), awayS: undefined };
 }
 
 // A sentence about B's time; undefined where it is A's, or one that was chosen.

@@ -1,5 +1,6 @@
-// The domain of a storm. Runs of one model have the same one, so that a place to look from in one is such a place in another.
+// The domain of a storm: the part of the world that its model covers. Runs over one domain are looked at from the same places.
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
+import { secondsBetween } from "./moment";
 
 type Placed = Pick<StormDescription, "grid" | "latitudeDeg" | "longitudeDeg">;
 
@@ -16,4 +17,13 @@ export function domainOf(storm: Placed | undefined): string {
 
 export function isSameDomain(a: Placed | undefined, b: Placed | undefined): boolean {
   return domainOf(a) !== "" && domainOf(a) === domainOf(b);
+}
+
+// Seconds from the first time of one run to that of another; 0 where their dates cannot be compared.
+export function laterByS(
+  from: Pick<StormDescription, "times"> | undefined,
+  to: Pick<StormDescription, "times"> | undefined,
+): number {
+  const [first = "", other = ""] = [from, to].map((storm) => storm?.times[0]?.validTime);
+  return secondsBetween(first, other) ?? 0;
 }

@@ -124,8 +124,8 @@ export class Marking {
     return { pointer: this.#pointer, pen: this.#pen, arrow: this.#arrow, text: this.#text }[tool];
   }
 
-  // Writes the words from a place on, or around it. Where they would leave the picture they are moved, and where they are wider
-  // than it they are smaller.
+  // Writes the words to the right of a place, or with their middle on it. Where they would leave the picture they are moved, and
+  // where they are wider than it they are smaller.
   write({ left, top }: StrokePoint, from: "start" | "middle" = "start"): void {
     const words = this.words.peek().trim();
     const box = this.#steps.picture()?.box;

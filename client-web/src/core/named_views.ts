@@ -24,7 +24,7 @@ export class NamedViews {
   readonly #domain: () => string;
   readonly all = signal<readonly NamedView[]>([]);
 
-  // `domain` tells which one is shown.
+  // `domain` tells which one is shown; empty while that is not known, when there are no views.
   constructor(storage: TextStore | undefined, domain: () => string) {
     this.#storage = storage;
     this.#domain = domain;
@@ -32,7 +32,8 @@ export class NamedViews {
 
   // Another domain is shown, or another tab has kept or forgotten a view.
   load(): void {
-    const stored = this.#read()[this.#domain()];
+    const domain = this.#domain();
+    const stored = domain === "" ? [] : this.#read()[domain];
     this.all.value = (Array.isArray(stored) ? stored.flatMap(viewOf) : []).reduce(withView, []);
   }
 

@@ -56,6 +56,7 @@ import {
   mostItemsOf,
 } from "./limits";
 import { QUALITY_PRESETS, renderingOfPreset } from "./rendering";
+import { firstDateTime } from "./sun_clock";
 
 export const LIMITS = {
   fieldScale: limitsOf(FieldParametersSchema.field.scale),
@@ -237,9 +238,13 @@ export function withStorm(scene: Scene, stormId: string, timeIndex: number): Sce
   return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 
-// Shows a time of another run of the same model, from the same place and with the same settings.
-export function withRun(scene: Scene, stormId: string, timeIndex: number): Scene {
-  return changed(scene, { stormId, timeIndex });
+// Shows a time of another run of the same model, from the same place and with the same settings. Its first time is `laterS` after that
+// of the run before, and so is the sun's clock there, which counts from it.
+export function withRun(scene: Scene, stormId: string, timeIndex: number, laterS: number): Scene {
+  const next = changed(scene, { stormId, timeIndex });
+  const first = Date.parse(scene.sun?.clock?.dateTime ?? "");
+  if (Number.isNaN(first)) return next;
+  return withSunClock(next, { dateTime: firstDateTime(new Date(first), -laterS) });
 }
 
 // Where the sizes of a field's particles come from: a radius that is given comes first, then the field's own choice,

@@ -6,7 +6,7 @@ import { effect, untracked } from "@preact/signals-core";
 import { AccessToken } from "../core/access_token";
 import { BackOff } from "../core/back_off";
 import type { CameraKind, Pose } from "../core/camera";
-import { isSameDomain } from "../core/domain";
+import { isSameDomain, laterByS } from "../core/domain";
 import { Marking } from "../core/marking";
 import { type NamedView, NamedViews, VIEWS_ITEM } from "../core/named_views";
 import { timeLike } from "../core/nearest_time";
@@ -67,8 +67,8 @@ export class Page {
   readonly #listening = new AbortController();
   readonly #disposals: (() => void)[] = [];
   #running = false;
-  // The last that was asked for.
-  #nextStorm = "";
+  // By a person, on this page.
+  #chosenStorm = "";
 
   constructor(
     transport: Transport,
@@ -257,20 +257,19 @@ export class Page {
   async showStorm(stormId: string): Promise<void> {
     this.playback.pause();
     const { state } = this;
-    const from = state.storm.peek();
-    this.#nextStorm = stormId;
-    const other = await this.#storms.description(stormId);
-    // Yet another was chosen meanwhile.
-    if (this.#nextStorm !== stormId) return;
-    if (other !== undefined && isSameDomain(from, other)) {
-      const index = state.timeIndex.peek();
-      const time = timeLike(from?.times[index]?.validTime ?? "", index, other.times);
-      state.edit((scene) => withRun(scene, stormId, time));
-      return;
-    }
+    const before = state.stormId.peek();
+    this.#chosenStorm = stormId;
     const listed = state.storms.value.find((storm) => storm.id === stormId);
-    const count = other?.times.length ?? listed?.timeCount ?? 1;
-    state.edit((scene) => withStorm(scene, stormId, Math.max(0, count - 1)));
+    const last = Math.max(0, (listed?.timeCount ?? 1) - 1);
+    const other = await this.#storms.description(stormId, last);
+    // Yet another storm was chosen meanwhile, here or by a file or another person.
+    if (this.#chosenStorm !== stormId || state.stormId.peek() !== before) return;
+    const from = state.storm.peek();
+    if (from?.id === before && other !== undefined && isSameDomain(from, other)) {
+      const index = state.timeIndex.peek();
+      const time = timeLike(from.times[index]?.validTime ?? "", index, other.times);
+      state.edit((scene) => withRun(scene, stormId, time, laterByS(from, other)));
+    } else state.edit((scene) => withStorm(scene, stormId, last));
   }
 
   // Asks the server to make the cloud set in the panel, and shows it.
@@ -278,7 +277,7 @@ export class Page {
     const stormId = await this.#storms.makeCloud();
     if (stormId === undefined) return;
     await this.showStorm(stormId);
-    this.home();
+    if (this.state.stormId.peek() === stormId) this.home();
   }
 
   stopCloud(): void {
@@ -403,8 +402,11 @@ export class Page {
     this.keeper.listen(window, options);
     this.#disposals.push(
       effect(() => {
-        const id = this.state.storm.value?.id;
-        if (id !== undefined) untracked(() => this.keeper.resumeMovie(id));
+        const { server, storm, storms } = this.state;
+        const id = storm.value?.id;
+        // What is written into it is known by then.
+        const known = server.value !== undefined && storms.value.length > 0;
+        if (id !== undefined && known) untracked(() => this.keeper.resumeMovie(id));
       }),
     );
     const stillHere = setInterval(() => {
@@ -431,7 +433,8 @@ export class Page {
         escape: () => this.#escape(),
       }),
       effect(() => {
-        if (this.state.domain.value !== "") untracked(() => this.views.load());
+        void this.state.domain.value;
+        untracked(() => this.views.load());
       }),
       followZones(this.state),
       effect(() => this.#storms.describeAfterRest(this.playback.playing.value)),

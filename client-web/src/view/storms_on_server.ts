@@ -60,9 +60,9 @@ export class StormsOnServer {
   }
 
   // Undefined where the server cannot tell now: it says so where the storm is asked for.
-  async description(stormId: string): Promise<StormDescription | undefined> {
+  async description(stormId: string, timeIndex: number): Promise<StormDescription | undefined> {
     try {
-      return await this.#calls.describeStorm(stormId, 0);
+      return await this.#calls.describeStorm(stormId, timeIndex);
     } catch {
       return undefined;
     }

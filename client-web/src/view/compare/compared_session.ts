@@ -37,6 +37,8 @@ export class ComparedSession implements SessionListener {
   #scene: Scene = create(SceneSchema);
   #presenterKey: string | undefined;
   #viewerId = 0n;
+  // Of the last problem.
+  #problemRevision = 0n;
   #sizePx = { widthPx: 1280, heightPx: 720 };
 
   constructor(calls: ServerCalls, openInteract: OpenInteract, steps: ComparedSteps) {
@@ -46,7 +48,7 @@ export class ComparedSession implements SessionListener {
     this.#flow = new PictureFlow({
       acknowledge: (sequence, ownView, lost) => this.#client.acknowledge(sequence, ownView, lost),
       wantsOwnView: () => false,
-      painted: (frame) => steps.painted(frame),
+      painted: (frame) => this.#painted(frame),
       undecodable: () => steps.problem("B sent a picture that this browser cannot read"),
       onNextPaint: (callback) => steps.onNextPaint(callback),
     });
@@ -147,6 +149,7 @@ export class ComparedSession implements SessionListener {
         this.#flow.offer(message.value);
         break;
       case "problem":
+        this.#problemRevision = message.value.sceneRevision;
         this.#steps.problem(message.value.message);
         break;
       case "presence":
@@ -156,14 +159,21 @@ export class ComparedSession implements SessionListener {
     }
   }
 
-  refused({ message }: Refusal): void {
-    this.#steps.problem(message);
+  refused({ subject, message }: Refusal): void {
+    // A late acknowledgement is of no interest.
+    if (subject !== "acknowledge") this.#steps.problem(message);
   }
 
   // Opens another one.
   gone(): boolean {
     this.#presenterKey = undefined;
     return true;
+  }
+
+  // A picture of what could not be shown before.
+  #painted(frame: Frame): void {
+    if (frame.sceneRevision >= this.#problemRevision) this.#steps.problem(undefined);
+    this.#steps.painted(frame);
   }
 
   #window() {

@@ -31,7 +31,7 @@ interface Caption {
 }
 
 export interface KeeperSteps {
-  // Of the storm shown, with their times among its own.
+  // The named views, with the storm's own times.
   views(): readonly NamedView[];
   pausePlayback(): void;
 }
@@ -148,11 +148,11 @@ export class Keeper {
 
   saveMovie(draft: MovieDraft): Promise<void> {
     const caption = this.#caption();
+    const stormId = this.#state.stormId.peek();
     return this.#make("Movie", async (abort, progress) => {
       const scenes = movieScenes(this.sceneShown(), draft, this.#steps.views());
       // Before the server draws pictures that this browser cannot make a movie of.
       await (await movieFile()).assertWritable(draft);
-      const stormId = this.#state.stormId.peek();
       const jobId = await this.#calls.beginJob(scenes, `movie of ${stormId}`, abort);
       if (jobId === undefined) {
         const pictures = this.#calls.pictures(scenes, abort);

@@ -60,6 +60,7 @@ export function NamedViews({ page }: { page: Page }) {
         <button
           type="button"
           data-testid="keep-view"
+          disabled={page.state.domain.value === ""}
           onClick={() => setName(page.views.freeName())}
         >
           Keep this view

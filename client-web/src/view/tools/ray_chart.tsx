@@ -20,6 +20,7 @@ function unitOfFields(fields: readonly FieldAlongRay[]): string {
 export function RayChart({ state, found }: { state: PageState; found: ProbeRayResponse }) {
   const place = useRef<HTMLDivElement>(null);
   const nautical = lengthUnits.value === "aviation";
+  const colors = found.fields.map(({ hydrometeor }) => state.colorOf(hydrometeor)).join(" ");
   useEffect(() => {
     let chart: { destroy(): void } | undefined;
     let wanted = true;
@@ -88,7 +89,7 @@ export function RayChart({ state, found }: { state: PageState; found: ProbeRayRe
       wanted = false;
       chart?.destroy();
     };
-  }, [state, found, nautical]);
+  }, [state, found, nautical, colors]);
   return (
     <div
       ref={place}
