@@ -31,7 +31,8 @@ void AddJobsFlags(CLI::App& serve, JobsFlags& flags) {
       "GiB of results of one identity that nobody has fetched; beyond it none of its pictures is "
       "begun; 0 for half of --jobs-quota");
   add("--jobs-keep", flags.keep_hours, 1e-4, 1e5,
-      "Hours for which a job that has ended is kept, with its results");
+      "Hours for which a job that has ended is kept, with its results; one that is paused, and of "
+      "which nothing is drawn or fetched for as long, ends");
   add("--max-jobs", flags.limits.max_jobs, 1, 1e5,
       "Jobs that are kept; those that have ended and whose results were fetched make room");
   add("--max-jobs-each", flags.limits.max_jobs_per_owner, 1, 1e5, "The same, of one identity");

@@ -53,6 +53,7 @@ JobBoard::Entry& JobBoard::Insert(JobRecord record) {
 }
 
 void JobBoard::AddResult(Entry& entry, const PictureRecord& picture) {
+  entry.last_used = std::max(entry.last_used, picture.drawn_at);
   entry.result_bytes += picture.bytes;
   result_bytes_ += picture.bytes;
   if (picture.fetched) return;
@@ -446,12 +447,13 @@ bool JobBoard::PutBack(const PicturePlace& picture, bool counts, Time not_before
   return true;
 }
 
-void JobBoard::Fetched(const PicturePlace& picture) {
+void JobBoard::Fetched(const PicturePlace& picture, Time now) {
   const auto job = jobs_.find(picture.job_id);
   if (job == jobs_.end() || picture.place >= job->second.record.pictures.size()) return;
   PictureRecord& record = job->second.record.pictures[picture.place];
   if (record.fetched || record.state != PictureState::kDrawn) return;
   record.fetched = true;
+  job->second.last_used = std::max(job->second.last_used, now);
   job->second.unfetched_bytes -= record.bytes;
   --job->second.unfetched;
   unsaved_.insert(picture);
@@ -485,20 +487,68 @@ void JobBoard::Forget(const std::string& id) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) Erase(job);
 }
 
-void JobBoard::Expire(Time now) {
+std::optional<Time> JobBoard::AbandonedAt(const Entry& entry, const Unfetched& unfetched) const {
+  if (entry.record.ended_at.has_value() || entry.unfetched == 0) return std::nullopt;
+  if (entry.counts[IndexOf(PictureState::kWaiting)] == 0) return std::nullopt;
+  // Those in hand come to their end first.
+  if (entry.counts[IndexOf(PictureState::kDrawing)] > 0) return std::nullopt;
+  if (!PausedBecause(entry.record.owner, unfetched).has_value()) return std::nullopt;
+  return entry.last_used + limits_.keep;
+}
+
+void JobBoard::EndAbandoned(Entry& entry, Time now, Expired& expired) {
+  const Problem problem{
+      absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
+      absl::StrCat("nobody fetched results of this job for ", limits_.keep.count(),
+                   " s (--jobs-keep), while they kept it from being drawn on")};
+  for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
+    PictureRecord& picture = entry.record.pictures[i];
+    if (picture.state == PictureState::kWaiting) {
+      picture.problem = problem;
+      SetState(entry, i, PictureState::kFailed);
+      ++expired.failed;
+    } else if (picture.state == PictureState::kDrawn && !picture.fetched) {
+      expired.dropped.push_back(
+          {{entry.record.id, i}, picture.extension, picture.sha256, picture.bytes});
+      picture.problem = problem;
+      SetState(entry, i, PictureState::kDropped);
+    }
+  }
+  EndIfDone(entry, now);
+}
+
+JobBoard::Expired JobBoard::Expire(Time now) {
   for (auto job = jobs_.begin(); job != jobs_.end();) {
     const auto here = job++;
     const std::optional<Time>& ended_at = here->second.record.ended_at;
     if (ended_at.has_value() && *ended_at + limits_.keep <= now) Erase(here);
   }
+  Expired expired;
+  // One by one, the oldest first: without its results others may go on.
+  while (true) {
+    const Unfetched unfetched = UnfetchedBytes();
+    std::optional<Time> first;
+    Entry* abandoned = nullptr;
+    for (auto& [id, entry] : jobs_) {
+      const std::optional<Time> at = AbandonedAt(entry, unfetched);
+      if (!at.has_value() || *at > now || (first.has_value() && *first <= *at)) continue;
+      first = at;
+      abandoned = &entry;
+    }
+    if (abandoned == nullptr) return expired;
+    EndAbandoned(*abandoned, now, expired);
+  }
 }
 
 std::optional<Time> JobBoard::NextExpiry() const {
   std::optional<Time> next;
+  const Unfetched unfetched = UnfetchedBytes();
   for (const auto& [id, entry] : jobs_) {
     const std::optional<Time>& ended_at = entry.record.ended_at;
-    if (!ended_at.has_value()) continue;
-    if (!next.has_value() || *ended_at + limits_.keep < *next) next = *ended_at + limits_.keep;
+    const std::optional<Time> at = ended_at.has_value() ? std::optional(*ended_at + limits_.keep)
+                                                        : AbandonedAt(entry, unfetched);
+    if (!at.has_value()) continue;
+    if (!next.has_value() || *at < *next) next = at;
   }
   return next;
 }

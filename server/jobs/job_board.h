@@ -133,13 +133,20 @@ class JobBoard {
   // How often it was begun, but for tries that did not count; above kMaxAttempts if it is gone.
   int Attempts(const PicturePlace& picture) const;
 
-  void Fetched(const PicturePlace& picture);
+  void Fetched(const PicturePlace& picture, Time now);
   // Cancels what has not ended.
   void Cancel(const std::string& id, Time now);
   void Forget(const std::string& id);
-  // Forgets what was kept long enough.
-  void Expire(Time now);
-  // When the next job does; nothing if none will by itself.
+  // What Expire has ended. The files of the results are to be removed.
+  struct Expired {
+    std::vector<ResultFile> dropped;
+    std::size_t failed = 0;  // pictures that will not be drawn
+  };
+  // Forgets what was kept long enough. Ends jobs that nobody has fetched anything of for as long
+  // while they were paused for that, and drops their results: else they would stop everybody's
+  // drawing for ever.
+  Expired Expire(Time now);
+  // When it next has something to do; nothing if never by itself.
   std::optional<Time> NextExpiry() const;
   // Drops results that were fetched, where there are too many: those of jobs that have ended first,
   // then the oldest. Returns them.
@@ -174,6 +181,8 @@ class JobBoard {
     std::uint64_t unfetched_bytes = 0;  // of them, those that nobody has fetched
     std::size_t unfetched = 0;          // such results
     std::size_t first_waiting = 0;      // none before it waits
+    // When a result was drawn or fetched last; not kept over a restart if it was fetched.
+    Time last_used = {};
     bool saved = false;
   };
   using Jobs = std::map<std::string, Entry>;
@@ -201,6 +210,9 @@ class JobBoard {
   // Forgets the oldest that has ended and whose results were all fetched, of that owner
   // (null: of everybody); false if there is none.
   bool ForgetEnded(const std::string* owner);
+  // When that job ends as nobody fetches; nothing if it goes on, or waits for other jobs alone.
+  std::optional<Time> AbandonedAt(const Entry& entry, const Unfetched& unfetched) const;
+  void EndAbandoned(Entry& entry, Time now, Expired& expired);
   void SetState(Entry& entry, std::size_t place, PictureState state);
   void EndIfDone(Entry& entry, Time now);
   // The first that may be begun; nothing if there is none.

@@ -23,7 +23,8 @@ struct JobLimits {
   // Of results, in all and of one owner's that nobody has fetched. Pictures in hand may exceed it.
   std::uint64_t max_result_bytes = std::uint64_t{10} << 30;
   std::uint64_t max_result_bytes_per_owner = std::uint64_t{5} << 30;
-  // How long a job that has ended is kept, with its results.
+  // How long a job that has ended is kept, with its results; and one that is paused, as nobody
+  // fetches them.
   std::chrono::seconds keep = std::chrono::hours(24);
   // Begun at a time. Two are read, drawn or encoded by the render loop, one may wait for it.
   std::size_t max_in_hand = 3;

@@ -11,6 +11,7 @@
 #include "base/status.h"
 #include "jobs/next_try.h"
 #include "pipeline/sha256.h"
+#include "spdlog/spdlog.h"
 #include "telemetry/metrics.h"
 
 namespace thunderhead::jobs {
@@ -63,7 +64,8 @@ absl::Status Jobs::Restore() {
     THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<JobRecord> records, store_->Load());
     for (JobRecord& record : records) board_.Restore(std::move(record), Now());
   }
-  board_.Expire(Now());
+  Lock lock(mutex_);
+  Expire(lock);
   results_.Clean(board_.Ids());
   return absl::OkStatus();
 }
@@ -211,7 +213,7 @@ absl::StatusOr<ResultPlace> Jobs::ResultOfKey(const std::string& result_key,
 void Jobs::Fetched(const PicturePlace& picture) {
   {
     const std::lock_guard lock(mutex_);
-    board_.Fetched(picture);
+    board_.Fetched(picture, Now());
   }
   // There may be room now. A task, as the thread may be saving and not hear a mere notification.
   Post([] {});
@@ -268,7 +270,7 @@ Time Jobs::WakeTime() const {
 void Jobs::Run() {
   Lock lock(mutex_);
   while (true) {
-    board_.Expire(Now());
+    Expire(lock);
     WriteAgain(lock);
     BeginPictures(lock);
     (void)Save(lock);
@@ -290,6 +292,24 @@ void Jobs::Run() {
   std::vector<std::string> watched;
   for (const auto& [id, watcher] : watchers_) watched.push_back(id);
   Tell(watched, lock);
+}
+
+void Jobs::Expire(Lock& lock) {
+  const JobBoard::Expired expired = board_.Expire(Now());
+  if (expired.dropped.empty() && expired.failed == 0) return;
+  spdlog::warn("{} pictures of render jobs are not drawn, and {} results dropped: nobody fetched",
+               expired.failed, expired.dropped.size());
+  Count("failed", expired.failed);
+  lock.unlock();
+  RemoveDropped(expired.dropped);
+  lock.lock();
+}
+
+void Jobs::RemoveDropped(const std::vector<ResultFile>& dropped) {
+  for (const ResultFile& old : dropped) {
+    results_.Remove(old.picture.job_id, old.picture.place, old.extension);
+  }
+  Count("dropped", dropped.size());
 }
 
 void Jobs::BeginPictures(Lock& lock) {
@@ -405,10 +425,7 @@ void Jobs::Keep(Unwritten picture) {
   } else {
     results_.Remove(job_id, place, drawn.extension);
   }
-  for (const ResultFile& old : dropped) {
-    results_.Remove(old.picture.job_id, old.picture.place, old.extension);
-  }
-  Count("dropped", dropped.size());
+  RemoveDropped(dropped);
 }
 
 void Jobs::Refuse(const PicturePlace& picture, const absl::Status& why) {

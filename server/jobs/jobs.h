@@ -136,6 +136,7 @@ class Jobs {
   Time WakeTime() const;
 
   // On the thread of its own. Those that take the lock hold it when called and when they return.
+  void Expire(Lock& lock);
   void BeginPictures(Lock& lock);
   void BeginOne(const PicturePlace& picture, Lock& lock);
   void EndPicture(const PicturePlace& picture);
@@ -145,6 +146,7 @@ class Jobs {
   absl::Status Save(Lock& lock);
   void SaveNew(const std::string& id, const Done& done);
   void Tell(const std::vector<std::string>& ids, Lock& lock);
+  void RemoveDropped(const std::vector<ResultFile>& dropped);
   void LogOnce(const absl::Status& problem);
 
   ResultPlace PlaceOf(const ResultFile& file) const;

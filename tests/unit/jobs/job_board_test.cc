@@ -162,8 +162,8 @@ TEST(JobBoard, OnlyResultsThatWereFetchedMakeRoomTheOldestFirst) {
   board.Drawn(fourth, {fourth, "png", "", 10}, 1.0, 1.0, kNow + seconds(3));
   EXPECT_THAT(board.MakeRoom(), IsEmpty()) << "nobody has fetched any";
   EXPECT_EQ(board.ResultBytes(), 40U);
-  board.Fetched({"a", 2});
-  board.Fetched({"a", 1});
+  board.Fetched({"a", 2}, kNow);
+  board.Fetched({"a", 1}, kNow);
   const auto dropped = board.MakeRoom();
   ASSERT_EQ(dropped.size(), 1U);
   EXPECT_EQ(dropped[0].picture.place, 1U);
@@ -194,12 +194,47 @@ TEST(JobBoard, WhoFetchesNothingPausesAndTakesNothingFromOthers) {
   EXPECT_EQ(DrawNext(board, 1.0), "");
   EXPECT_THAT(board.All()[2].paused->message, HasSubstr("--jobs-quota)"));
   // What is fetched makes room for everybody.
-  board.Fetched({"b", 0});
+  board.Fetched({"b", 0}, kNow);
   EXPECT_NE(DrawNext(board, 1.0), "");
   EXPECT_EQ(board.MakeRoom().size(), 1U);
   // So does a job that is forgotten.
   board.Forget("a");
   EXPECT_NE(DrawNext(board, 1.0), "");
+}
+
+// Two owners who fetch nothing would else stop everybody for ever.
+TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
+  JobLimits limits;
+  limits.max_result_bytes = 40;
+  limits.max_result_bytes_per_owner = 20;
+  limits.keep = hours(2);
+  JobBoard before(limits);
+  Add(before, "a", "anna", 3);
+  Add(before, "b", "bert", 3);
+  for (int i = 0; i < 4; ++i) DrawNext(before, 1.0, kNow + seconds(i));
+  Add(before, "c", "carl", 1);
+  EXPECT_EQ(DrawNext(before, 1.0), "");
+  JobBoard board(limits);
+  for (const char* id : {"a", "b", "c"}) board.Restore(before.Record(id), kNow);
+  // He does fetch, if slowly.
+  board.Fetched({"b", 0}, kNow + hours(1));
+  EXPECT_EQ(DrawNext(board, 1.0, kNow + hours(1), 30), "b");
+  const Time ends = kNow + seconds(2) + hours(2);
+  EXPECT_EQ(board.NextExpiry(), ends);
+  EXPECT_THAT(board.Expire(ends - seconds(1)).dropped, IsEmpty());
+  const JobBoard::Expired expired = board.Expire(ends);
+  EXPECT_EQ(expired.failed, 1U);
+  ASSERT_EQ(expired.dropped.size(), 2U);
+  EXPECT_EQ(expired.dropped[1].picture, (PicturePlace{"a", 1}));
+  const JobNews ended = *board.NewsOf("a", 0);
+  EXPECT_EQ(ended.job.ended_at, ends);
+  EXPECT_EQ(ended.job.result_bytes, 0U);
+  EXPECT_EQ(ended.pictures[0].problem.reason, "RESULTS_NOT_FETCHED");
+  EXPECT_EQ(ended.pictures[2].state, PictureState::kFailed);
+  // Carl's has nothing to fetch.
+  EXPECT_TRUE(board.Expire(ends + seconds(1)).dropped.empty());
+  board.Fetched({"b", 1}, ends);
+  EXPECT_EQ(DrawNext(board, 1.0, ends), "c");
 }
 
 TEST(JobBoard, ARestoredBoardKnowsWhatWasFetched) {
@@ -209,7 +244,7 @@ TEST(JobBoard, ARestoredBoardKnowsWhatWasFetched) {
   Add(before, "a", "anna", 3);
   DrawNext(before, 1.0);
   DrawNext(before, 1.0);
-  before.Fetched({"a", 0});
+  before.Fetched({"a", 0}, kNow);
   JobBoard after(limits);
   after.Restore(before.Record("a"), kNow);
   EXPECT_EQ(DrawNext(after, 1.0), "a");
@@ -267,7 +302,7 @@ TEST(JobBoard, TheOldestThatHasEndedMakesRoomForANewJob) {
     return board.Add(id, "key", {"carl", "", std::vector<PictureOrder>(1)}, kNow);
   };
   EXPECT_EQ(base::DetailsOf(add("c")).reason, "TOO_MANY_JOBS") << "nobody has fetched a's picture";
-  board.Fetched({"a", 0});
+  board.Fetched({"a", 0}, kNow);
   EXPECT_TRUE(add("c").ok());
   EXPECT_THAT(board.TakeForgotten(), ElementsAre("a"));
   const absl::Status full = board.Add("d", "key", {"dora", "", std::vector<PictureOrder>(1)}, kNow);
