@@ -1,7 +1,9 @@
 #include "base/executor.h"
 
 #include <algorithm>
+#include <exception>
 #include <iterator>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +19,9 @@ namespace {
 
 // A task is a read or a picture's encoding; a few threads end hundreds of them in this time.
 constexpr std::chrono::seconds kQueueRetryAfter{10};
+
+// Until a thread that had no memory to begin a task tries again.
+constexpr std::chrono::milliseconds kMemoryPause{100};
 
 absl::Status Full(const char* of_whom, std::size_t max_waiting) {
   return WithDetails(
@@ -49,7 +54,12 @@ Executor::~Executor() { Stop(); }
 
 void Executor::AddWorker() {
   const auto worker = shared_->workers.emplace_back(std::make_shared<Worker>());
-  threads_.emplace_back("a request", [shared = shared_, worker] { Work(shared, worker); });
+  try {
+    threads_.emplace_back("a request", [shared = shared_, worker] { Work(shared, worker); });
+  } catch (...) {
+    shared_->workers.remove(worker);
+    throw;
+  }
 }
 
 void Executor::Submit(const std::string& owner, Task task) {
@@ -66,7 +76,13 @@ void Executor::Submit(const std::string& owner, Task task) {
                own->second.size() >= limits.max_waiting_each) {
       refusal = Full(" of your", limits.max_waiting_each);
     } else {
-      shared_->waiting[owner].push_back({std::move(task), Clock::now()});
+      const auto queue = shared_->waiting.try_emplace(owner).first;
+      try {
+        queue->second.push_back({std::move(task), Clock::now()});
+      } catch (...) {
+        if (queue->second.empty()) shared_->waiting.erase(queue);
+        throw;
+      }
       ++shared_->waiting_count;
       shared_->changed.notify_all();
       return;
@@ -109,22 +125,24 @@ std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
   const int max_of_one = std::max(1, shared.limits.threads - 1);
   std::vector<std::string> owners;
   for (const auto& [owner, tasks] : shared.waiting) owners.push_back(owner);
-  const std::optional<std::string> owner = shared.shares.Next(owners, [&](const std::string& one) {
+  std::optional<std::string> owner = shared.shares.Next(owners, [&](const std::string& one) {
     const auto running = shared.running.find(one);
     return one.empty() || running == shared.running.end() || running->second < max_of_one;
   });
   if (!owner.has_value()) return std::nullopt;
-  std::deque<Waiting>& tasks = shared.waiting.at(*owner);
-  Task task = std::move(tasks.front().task);
-  tasks.pop_front();
-  if (tasks.empty()) shared.waiting.erase(*owner);
+  int& running = shared.running[*owner];
+  // Nothing from here on allocates: what is taken is run.
+  const auto queue = shared.waiting.find(*owner);
+  Task task = std::move(queue->second.front().task);
+  queue->second.pop_front();
+  if (queue->second.empty()) shared.waiting.erase(queue);
   --shared.waiting_count;
-  ++shared.running[*owner];
-  worker.owner = *owner;
+  ++running;
+  worker.owner = *std::move(owner);
   worker.busy_since = Clock::now();
   // Until it is known how long it takes.
   worker.charged_ms = shared.typical_ms;
-  shared.shares.Used(*owner, worker.charged_ms);
+  shared.shares.Used(worker.owner, worker.charged_ms);
   return task;
 }
 
@@ -142,24 +160,39 @@ void Executor::End(Shared& shared, Worker& worker) {
   Leave(shared, worker.owner);
 }
 
+std::optional<Executor::Task> Executor::WaitFor(Shared& shared, Worker& worker,
+                                                std::unique_lock<std::mutex>& lock) {
+  while (true) {
+    try {
+      std::optional<Task> task = Take(shared, worker);
+      if (task.has_value() || shared.stopping) return task;
+      shared.changed.wait(lock);
+    } catch (const std::bad_alloc&) {
+      // The task waits on.
+      shared.changed.wait_for(lock, kMemoryPause);
+      if (shared.stopping) return std::nullopt;
+    }
+  }
+}
+
 void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr<Worker>& worker) {
   std::unique_lock lock(shared->mutex);
   // Whose place another has taken does no more.
   while (!worker->hangs) {
-    std::optional<Task> task;
-    shared->changed.wait(lock, [&] {
-      task = Take(*shared, *worker);
-      return shared->stopping || task.has_value();
-    });
+    std::optional<Task> task = WaitFor(*shared, *worker, lock);
     if (!task.has_value()) break;
     lock.unlock();
     // The watch looks when this one would hang.
     shared->changed.notify_all();
-    const absl::Status failed = OrOutOfMemory([&] {
-      (*task)(absl::OkStatus());
-      return absl::OkStatus();
-    });
-    if (!failed.ok()) LogError(failed);
+    try {
+      const absl::Status failed = OrOutOfMemory([&] {
+        (*task)(absl::OkStatus());
+        return absl::OkStatus();
+      });
+      if (!failed.ok()) LogError(failed);
+    } catch (const std::bad_alloc&) {
+      // There is none to say so either.
+    }
     task.reset();
     lock.lock();
     End(*shared, *worker);
@@ -181,18 +214,21 @@ void Executor::Replace(Clock::time_point now) {
     if (hanging >= shared_->limits.max_hanging) return;
     if (worker->hangs || !worker->busy_since.has_value()) continue;
     if (now - *worker->busy_since < shared_->limits.hangs_after) continue;
+    // First, as there may be no memory for it.
+    AddWorker();
     worker->hangs = true;
     Leave(*shared_, worker->owner);
     ++hanging;
     spdlog::warn(
         "a request has run for {} s; others go on beside it",
         std::chrono::duration_cast<std::chrono::seconds>(now - *worker->busy_since).count());
-    AddWorker();
   }
 }
 
 std::vector<Executor::Task> Executor::TakeLate(Shared& shared, Clock::time_point now) {
   std::vector<Task> late;
+  // Before any is taken, as it allocates.
+  late.reserve(shared.waiting_count);
   for (auto owner = shared.waiting.begin(); owner != shared.waiting.end();) {
     std::deque<Waiting>& tasks = owner->second;
     while (!tasks.empty() && now - tasks.front().since >= shared.limits.max_wait) {
@@ -209,9 +245,14 @@ void Executor::Watch() {
   std::unique_lock lock(shared_->mutex);
   while (!shared_->stopping) {
     const Clock::time_point now = Clock::now();
-    const std::vector<Task> late = TakeLate(*shared_, now);
-    // Only those who wait need another thread.
-    if (!shared_->waiting.empty()) Replace(now);
+    std::vector<Task> late;
+    try {
+      late = TakeLate(*shared_, now);
+      // Only those who wait need another thread.
+      if (!shared_->waiting.empty()) Replace(now);
+    } catch (const std::exception& no_memory_or_thread) {
+      spdlog::warn("cannot look after requests: {}", no_memory_or_thread.what());
+    }
     if (!late.empty()) {
       lock.unlock();
       const absl::Status refusal = WaitedTooLong(Hanging());

@@ -88,6 +88,9 @@ class Executor {
     bool stopping = false;
   };
 
+  // The next task for that worker, once there is one; nothing when it is to end.
+  static std::optional<Task> WaitFor(Shared& shared, Worker& worker,
+                                     std::unique_lock<std::mutex>& lock);
   static void Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr<Worker>& worker);
   // The following need the mutex.
   // The next task of the owner who has had the least time, for that worker; nothing if none may
