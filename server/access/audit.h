@@ -34,16 +34,26 @@ class Audit {
   // that a flood of connections does not hide who tries tokens. What was allowed is always written.
   static constexpr int kMaxRefusalsPerSecond = 50;
 
-  // `write` takes one line without its end, from any thread, one at a time.
-  explicit Audit(std::function<void(const std::string&)> write) : write_(std::move(write)) {}
+  // Waits until lines are written, for so long at most.
+  using FlushLines = std::function<void(std::chrono::milliseconds)>;
+
+  // `write` takes one line without its end, from any thread, one at a time; it may write later,
+  // which `flush`, if there is one, waits for.
+  explicit Audit(std::function<void(const std::string&)> write, FlushLines flush = nullptr)
+      : write_(std::move(write)), flush_(std::move(flush)) {}
 
   // `status` is the act's outcome: allowed if OK. Its reason is written, not its message, which may
   // repeat what the client sent.
   void Write(const Act& act, const absl::Status& status, Clock::time_point now = Clock::now());
+  // Waits until what was said is written, for so long at most; from any thread.
+  void Flush(std::chrono::milliseconds time) const {
+    if (flush_ != nullptr) flush_(time);
+  }
 
  private:
   std::mutex mutex_;
   const std::function<void(const std::string&)> write_;
+  const FlushLines flush_;
   base::LineLimit calls_{kMaxRefusalsPerSecond};
   base::LineLimit before_calls_{kMaxRefusalsPerSecond};
 };

@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
 #include "absl/strings/str_cat.h"
 #include "app/json_log.h"
@@ -48,10 +50,12 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
   const auto writer = std::make_shared<base::LineWriter>(
       kMaxWaitingLines, [log](const std::string& line, std::uint64_t left_out) {
         const std::string lost = left_out > 0 ? absl::StrCat(" unwritten=", left_out) : "";
-        log->log(spdlog::level::info, spdlog::string_view_t(absl::StrCat(line, lost)));
+        const std::string_view text = line.empty() ? "audit" : std::string_view(line);
+        log->log(spdlog::level::info, spdlog::string_view_t(absl::StrCat(text, lost)));
       });
   return std::make_shared<access::Audit>(
-      [writer](const std::string& line) { writer->Write(line); });
+      [writer](const std::string& line) { writer->Write(line); },
+      [writer](std::chrono::milliseconds time) { (void)writer->Flush(time); });
 }
 
 }  // namespace thunderhead::app

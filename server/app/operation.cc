@@ -217,17 +217,19 @@ std::jthread EndIfToldWhileStarting(const sigset_t& signals) {
   });
 }
 
-void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server) {
+void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server,
+                             const std::function<void()>& last) {
   int signal = 0;
   sigwait(&signals, &signal);
   const auto began = steady_clock::now();
   spdlog::info("draining: new sessions and pictures are refused, {} pictures end first",
                server.Load().pictures);
-  second_signal_ = std::jthread([signals, began](const std::stop_token& stop) {
+  second_signal_ = std::jthread([signals, began, last](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       const int again = Taken(signals);
       if (again == 0 || steady_clock::now() - began < kOneRequest) continue;
       spdlog::warn("a second signal: ending at once");
+      last();
       spdlog::default_logger()->flush();
       _exit(128 + again);
     }

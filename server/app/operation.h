@@ -2,6 +2,7 @@
 #pragma once
 
 #include <csignal>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -54,8 +55,9 @@ class Operation {
 
   // Waits for SIGINT or SIGTERM, which this thread blocks; tells the clients, and returns when the
   // pictures that were begun are delivered, at the latest after the grace. From then on a second
-  // signal ends the process at once.
-  void WaitAndDrain(const sigset_t& signals, service::Server& server);
+  // signal ends the process at once, but for `last`, which must not take long.
+  void WaitAndDrain(
+      const sigset_t& signals, service::Server& server, const std::function<void()>& last = [] {});
 
  private:
   explicit Operation(const OperationFlags& flags) : flags_(flags) {}

@@ -34,6 +34,9 @@
 namespace thunderhead::app {
 namespace {
 
+// For the audit, before a second signal ends the process.
+constexpr std::chrono::seconds kLastLines{1};
+
 // The installed page, or the one in the build tree; empty if there is neither.
 std::string DefaultPageFolder() {
   std::error_code error;
@@ -200,7 +203,7 @@ absl::Status Serve(ServeFlags flags) {
             << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
   std::thread warm_up([channel, door] { WarmUp(channel, *door); });
   operation->SetServer(server.get(), budgets.memory, budgets.gpu);
-  operation->WaitAndDrain(signals, *server);
+  operation->WaitAndDrain(signals, *server, [door] { door->FlushAudit(kLastLines); });
   operation->SetServer(nullptr);
   // First, because its calls to the service must end before the service does.
   gateway.reset();

@@ -1,5 +1,7 @@
 #include "base/line_writer.h"
 
+#include <exception>
+#include <new>
 #include <utility>
 
 namespace thunderhead::base {
@@ -23,22 +25,51 @@ void LineWriter::Write(std::string line) {
       ++shared_->left_out;
       return;
     }
-    shared_->waiting.push_back({std::move(line), std::exchange(shared_->left_out, 0)});
+    try {
+      shared_->waiting.push_back({std::move(line), shared_->left_out});
+      shared_->left_out = 0;
+    } catch (const std::bad_alloc&) {
+      ++shared_->left_out;
+      return;
+    }
   }
   shared_->changed.notify_all();
 }
 
+bool LineWriter::Flush(std::chrono::milliseconds time) {
+  std::unique_lock lock(shared_->mutex);
+  return shared_->changed.wait_for(lock, time,
+                                   [&] { return shared_->waiting.empty() && !shared_->writing; });
+}
+
+bool LineWriter::TryWrite(const Shared& shared, const Line& line) {
+  try {
+    shared.write(line.text, line.left_out);
+    return true;
+  } catch (const std::exception&) {
+    return false;  // as without memory
+  }
+}
+
 void LineWriter::Run(Shared& shared) {
+  std::uint64_t lost = 0;  // before the next that waits
   std::unique_lock lock(shared.mutex);
   while (true) {
     shared.changed.wait(lock, [&] { return shared.ending || !shared.waiting.empty(); });
-    if (shared.waiting.empty()) return;
-    const Line line = std::move(shared.waiting.front());
+    if (shared.waiting.empty()) break;
+    Line line = std::move(shared.waiting.front());
     shared.waiting.pop_front();
+    shared.writing = true;
     lock.unlock();
-    shared.write(line.text, line.left_out);
+    line.left_out += lost;
+    lost = TryWrite(shared, line) ? 0 : line.left_out + 1;
     lock.lock();
+    shared.writing = false;
+    shared.changed.notify_all();
   }
+  const Line last{"", lost + shared.left_out};
+  lock.unlock();
+  if (last.left_out > 0) (void)TryWrite(shared, last);
 }
 
 }  // namespace thunderhead::base

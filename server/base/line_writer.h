@@ -2,6 +2,7 @@
 // to say.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +19,8 @@ namespace thunderhead::base {
 
 class LineWriter {
  public:
-  // Writes a line, before which so many were left out. May hang, so it must own all that it uses.
+  // Writes a line, before which so many were left out; an empty one at the end if it is to say so
+  // of the last. A line for which it throws is left out. May hang, so it must own all that it uses.
   using WriteLine = std::function<void(const std::string& line, std::uint64_t left_out)>;
 
   // Lines beyond `max_waiting` are left out.
@@ -30,6 +32,8 @@ class LineWriter {
 
   // Returns at once; from any thread.
   void Write(std::string line);
+  // Waits until what waits is written, for so long at most; true if it is.
+  bool Flush(std::chrono::milliseconds time);
 
  private:
   struct Line {
@@ -45,10 +49,13 @@ class LineWriter {
     std::condition_variable changed;
     std::deque<Line> waiting;
     std::uint64_t left_out = 0;  // since the last that waits
+    bool writing = false;
     bool ending = false;
   };
 
   static void Run(Shared& shared);
+  // True if it is written.
+  static bool TryWrite(const Shared& shared, const Line& line);
 
   const std::shared_ptr<Shared> shared_;
   const LooseThread thread_;

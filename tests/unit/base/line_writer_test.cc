@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <future>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -39,6 +40,30 @@ TEST(LineWriterTest, ADiskThatHangsHoldsUpNobody) {
     writer.Write("last");
   }
   EXPECT_THAT(written, ElementsAre("0", "1", "2", "3", "last after 96"));
+}
+
+TEST(LineWriterTest, ALineThatCannotBeWrittenIsCountedAndTheNextIsWritten) {
+  std::vector<std::string> written;
+  {
+    LineWriter writer(10, [&](const std::string& line, std::uint64_t left_out) {
+      if (line.starts_with("bad")) throw std::bad_alloc();
+      written.push_back(absl::StrCat(line, " after ", left_out));
+    });
+    for (const char* line : {"bad", "bad", "good", "fine", "bad at last"}) writer.Write(line);
+    EXPECT_TRUE(writer.Flush(std::chrono::seconds(10)));
+    EXPECT_EQ(written.size(), 2U);
+  }
+  EXPECT_THAT(written, ElementsAre("good after 2", "fine after 0", " after 1"));
+}
+
+TEST(LineWriterTest, FlushWaitsNoLongerThanItIsTold) {
+  std::promise<void> answers;
+  LineWriter writer(10, [answered = answers.get_future().share()](
+                            const std::string&, std::uint64_t) { answered.wait(); });
+  writer.Write("hangs");
+  EXPECT_FALSE(writer.Flush(std::chrono::milliseconds(20)));
+  answers.set_value();
+  EXPECT_TRUE(writer.Flush(std::chrono::seconds(10)));
 }
 
 }  // namespace
