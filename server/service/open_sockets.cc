@@ -8,6 +8,7 @@
 #include <array>
 #include <limits>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -54,8 +55,12 @@ bool OpenSockets::Take(int socket, const std::string& peer, Clock::time_point no
     const std::string* const own = HasItsShare(newcomer) ? &newcomer.network : nullptr;
     if (!CloseLeastNeeded(own, now)) return false;
   }
-  // Its peer may have been another's.
-  calls_->Forget(peer);
+  // Its peer may have been that of one that is closed.
+  for (auto open = open_.begin(); open != open_.end();) {
+    const auto at = open++;
+    if (at->second.peer == peer && peer_of_(at->first) != peer) open_.erase(at);
+  }
+  if (!HasOpen(peer)) calls_->Forget(peer);
   open_.emplace(socket, newcomer);
   return true;
 }
@@ -107,8 +112,13 @@ void OpenSockets::ForgetClosed(Clock::time_point now) {
 }
 
 void OpenSockets::Forget(std::map<int, Open>::iterator open) {
-  calls_->Forget(open->second.peer);
+  const std::string peer = std::move(open->second.peer);
   open_.erase(open);
+  if (!HasOpen(peer)) calls_->Forget(peer);
+}
+
+bool OpenSockets::HasOpen(const std::string& peer) const {
+  return std::ranges::any_of(open_, [&](const auto& open) { return open.second.peer == peer; });
 }
 
 }  // namespace thunderhead::service

@@ -53,7 +53,9 @@ class OpenSockets {
   // Shuts one down, of that network or of any if it is null.
   bool CloseLeastNeeded(const std::string* network, Clock::time_point now);
   void ForgetClosed(Clock::time_point now);
+  // Another connection may have the peer by now, and so the use.
   void Forget(std::map<int, Open>::iterator open);
+  bool HasOpen(const std::string& peer) const;
 
   const std::size_t most_;
   const std::size_t most_per_address_;

@@ -104,5 +104,23 @@ TEST_F(OpenSocketsTest, ThoseThatAreClosedCountNoMore) {
   EXPECT_FALSE(Take(open, "192.0.2.1:4"));
 }
 
+// A client's system gives the port of a closed connection to the next, which has another descriptor
+// here; that the first is closed is seen later.
+TEST_F(OpenSocketsTest, OneThatIsClosedTakesNoUseFromAnotherOfTheSamePeer) {
+  OpenSockets open = Of(100, 3);
+  EXPECT_TRUE(Take(open, "192.0.2.1:1"));
+  static_cast<void>(calls_->Begin("192.0.2.1:1"));
+  peers_.erase(kNoDescriptor);
+  EXPECT_TRUE(Take(open, "192.0.2.1:1"));
+  EXPECT_FALSE(calls_->UseOf("192.0.2.1:1").has_value()) << "of the one before";
+  const auto call = calls_->Begin("192.0.2.1:1");
+  // Its number goes to another, and there are as many as there may be.
+  EXPECT_TRUE(open.Take(kNoDescriptor, "192.0.2.1:7", now_));
+  for (const char* peer : {"192.0.2.1:2", "192.0.2.1:3", "192.0.2.1:4"}) {
+    EXPECT_TRUE(Take(open, peer));
+    EXPECT_EQ(calls_->UseOf("192.0.2.1:1")->calls, 1U);
+  }
+}
+
 }  // namespace
 }  // namespace thunderhead::service
