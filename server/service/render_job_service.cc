@@ -21,7 +21,11 @@ RenderJobService::RenderJobService(Engine& engine, access::Door& door, Connectio
                                    jobs::Jobs* jobs)
     : engine_(engine),
       jobs_(jobs),
-      entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()) {}
+      entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
+      // A stream waits for one read at a time, and the door counts streams: none is refused here.
+      reading_({.threads = kReadingThreads,
+                .max_waiting = door.limits().max_streams,
+                .max_waiting_each = door.limits().max_streams_per_identity}) {}
 
 grpc::ServerUnaryReactor* RenderJobService::CreateRenderJob(
     grpc::CallbackServerContext* context, const v1::CreateRenderJobRequest* request,

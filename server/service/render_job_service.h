@@ -37,14 +37,13 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
   void Stop() { reading_.Stop(); }
 
  private:
-  // Two, so that a large file on a slow disk holds up one other only.
-  static constexpr int kReadingThreads = 2;
-  static constexpr std::size_t kMaxWaitingReads = 1024;
+  // Two for one identity, and one for others, so that a large file on a slow disk holds up few.
+  static constexpr int kReadingThreads = 3;
 
   Engine& engine_;
   jobs::Jobs* const jobs_;
   const Entrance entrance_;
-  base::Executor reading_{{.threads = kReadingThreads, .max_waiting = kMaxWaitingReads}};
+  base::Executor reading_;
 };
 
 }  // namespace thunderhead::service
