@@ -115,9 +115,9 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "Pictures outside sessions that may wait to be drawn");
   AddLimit(serve, "--max-stills-each", flags.render_loop.max_waiting_images_each, 0, 1e6,
            "Those of one identity");
-  AddLimit(serve, "--max-waiting", flags.executor.max_waiting, 0, 1e6,
+  AddLimit(serve, "--max-waiting", flags.executor.max_waiting, 1, 1e6,
            "Other requests that may wait for a storm to be read, described, mapped or probed");
-  AddLimit(serve, "--max-waiting-each", flags.executor.max_waiting_each, 0, 1e6,
+  AddLimit(serve, "--max-waiting-each", flags.executor.max_waiting_each, 1, 1e6,
            "Those of one identity");
   AddLimit(serve, "--max-wrong-tokens", flags.quotas.wrong_tokens_per_second, 0, 1e6,
            "Wrong tokens a second of one address; 0 for no limit");
