@@ -137,10 +137,15 @@ class InteractCall : public InteractReactor,
   }
 
   void OnWriteDone(bool ok) override {
+    std::optional<std::uint64_t> doubts;
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
+      doubts = std::exchange(asking_for_, std::nullopt);
       if (!ok) end_ = grpc::Status(grpc::StatusCode::CANCELLED, "the client is gone");
+    }
+    if (ok && doubts.has_value()) {
+      session_->audience().Checked(person_id_, *doubts, Clock::now());
     }
     ReadOn();
     Wake();
@@ -211,6 +216,7 @@ class InteractCall : public InteractReactor,
     if (const std::uint64_t doubts = session_->audience().Doubts(person_id_);
         doubts != told_doubts_) {
       told_doubts_ = doubts;
+      asking_for_ = doubts;
       v1::InteractResponse response;
       response.mutable_check_alive();
       return ResponseOf(response);
@@ -750,6 +756,7 @@ class InteractCall : public InteractReactor,
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
   std::uint64_t told_doubts_ = 0;
+  std::optional<std::uint64_t> asking_for_;  // the doubt that the message being written is about
   std::uint64_t told_scene_ = 0;
   std::uint64_t told_catalogue_ = 0;
   std::uint64_t told_presence_ = 0;

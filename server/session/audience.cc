@@ -57,6 +57,12 @@ void Audience::Heard(std::uint64_t id) {
   roster_.Heard(id);
 }
 
+void Audience::Checked(std::uint64_t id, std::uint64_t doubts, Time now) {
+  std::unique_lock lock(mutex_);
+  roster_.Checked(id, doubts, now);
+  Settle(std::move(lock), now);
+}
+
 absl::Status Audience::Change(const RosterChange& change, Time now) {
   std::unique_lock lock(mutex_);
   absl::Status status = change(roster_);

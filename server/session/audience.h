@@ -81,6 +81,8 @@ class Audience {
   void Leave(std::uint64_t id, Time now);
   // The person has said something.
   void Heard(std::uint64_t id);
+  // The person has been asked whether it is there, because of doubt number `doubts`.
+  void Checked(std::uint64_t id, std::uint64_t doubts, Time now);
 
   // Changes the roster or the board.
   using RosterChange = std::function<absl::Status(Roster&)>;

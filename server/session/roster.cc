@@ -37,6 +37,7 @@ std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string ke
     if (key.empty() || other.key != key || other.role != role) continue;
     ++other.doubts;
     other.doubted_at = now;
+    other.checked_at.reset();
   }
   people_.push_back({.id = ++count_, .name = std::move(name), .role = role, .key = std::move(key)});
   Person& person = people_.back();
@@ -47,7 +48,7 @@ std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string ke
   }
   const bool is_awaited =
       awaited_.has_value() && awaited_->key == person.key && awaited_->role == role;
-  const bool is_kept = away_since_.has_value() && !awaited_.has_value();
+  const bool is_kept = away_since_.has_value();
   if (is_awaited || (is_kept && role == Role::kPresenter)) Give(person);
   return count_;
 }
@@ -70,11 +71,21 @@ void Roster::Leave(std::uint64_t id, Time now) {
   if (left.key.empty()) return GiveBack(now);
   steering_ = 0;
   awaited_ = {left.role, left.key, now};
-  if (left.role == Role::kPresenter) away_since_ = now;
 }
 
 void Roster::Heard(std::uint64_t id) {
   if (Person* const person = FindPerson(id); person != nullptr) person->doubted_at.reset();
+}
+
+void Roster::Checked(std::uint64_t id, std::uint64_t doubts, Time now) {
+  Person* const person = FindPerson(id);
+  if (person != nullptr && person->doubts == doubts) person->checked_at = now;
+}
+
+bool Roster::presenter_away() const {
+  if (away_since_.has_value()) return true;
+  return awaited_.has_value() && awaited_->role == Role::kPresenter &&
+         std::ranges::find(people_, Role::kPresenter, &Person::role) == people_.end();
 }
 
 bool Roster::Has(Role role, const std::string& key) const {
@@ -236,9 +247,7 @@ std::vector<std::uint64_t> Roster::Advance(Time now) {
   }
   std::vector<std::uint64_t> silent;
   for (const Person& person : people_) {
-    if (person.doubted_at.has_value() && now >= *person.doubted_at + timeouts_.sign_of_life) {
-      silent.push_back(person.id);
-    }
+    if (person.doubted_at.has_value() && now >= DoubtEnds(person)) silent.push_back(person.id);
   }
   for (const std::uint64_t id : silent) Leave(id, now);
   if (awaited_.has_value() && now >= awaited_->left_at + timeouts_.come_back) {
@@ -252,8 +261,12 @@ std::vector<std::uint64_t> Roster::Advance(Time now) {
   return silent;
 }
 
-bool Roster::FreesWhenAway() const {
-  return away_since_.has_value() && rules_.free_when_away && !awaited_.has_value();
+bool Roster::FreesWhenAway() const { return away_since_.has_value() && rules_.free_when_away; }
+
+Roster::Time Roster::DoubtEnds(const Person& person) const {
+  const Time at_last = *person.doubted_at + timeouts_.sign_of_life_in_all;
+  if (!person.checked_at.has_value()) return at_last;
+  return std::min(at_last, *person.checked_at + timeouts_.sign_of_life);
 }
 
 std::optional<Roster::Time> Roster::NextDeadline() const {
@@ -263,7 +276,7 @@ std::optional<Roster::Time> Roster::NextDeadline() const {
   if (awaited_.has_value()) wait_for(awaited_->left_at + timeouts_.come_back);
   for (const Person& person : people_) {
     if (person.asks) wait_for(*person.asked_at + timeouts_.answer);
-    if (person.doubted_at.has_value()) wait_for(*person.doubted_at + timeouts_.sign_of_life);
+    if (person.doubted_at.has_value()) wait_for(DoubtEnds(person));
   }
   return next;
 }

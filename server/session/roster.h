@@ -48,6 +48,7 @@ struct Person {
   std::string key = {};                                           // that the person comes back with
   std::uint64_t doubts = 0;                                       // how often asked whether there
   std::optional<std::chrono::steady_clock::time_point> doubted_at;  // last, and not heard since
+  std::optional<std::chrono::steady_clock::time_point> checked_at;  // when it was told of that
 
   bool operator==(const Person&) const = default;
 };
@@ -59,8 +60,10 @@ struct RosterTimeouts {
   std::chrono::milliseconds away = std::chrono::seconds(60);      // until control becomes free
   // Until control goes to others when the one who steered has lost the connection.
   std::chrono::milliseconds come_back = std::chrono::seconds(10);
-  // Of one who is doubted.
+  // Of one who is doubted, once the question is on its way; behind a large picture on a slow link
+  // it is not at once, so there is more time in all.
   std::chrono::milliseconds sign_of_life = std::chrono::seconds(3);
+  std::chrono::milliseconds sign_of_life_in_all = std::chrono::seconds(15);
 };
 
 class Roster {
@@ -84,6 +87,8 @@ class Roster {
   void Leave(std::uint64_t id, Time now);
   // The person has said something.
   void Heard(std::uint64_t id);
+  // The person has been asked for a sign of life, because of doubt number `doubts`.
+  void Checked(std::uint64_t id, std::uint64_t doubts, Time now);
   // True if somebody is there with that key, which is not empty, and role.
   bool Has(Role role, const std::string& key) const;
   void Rename(std::uint64_t id, std::string name);
@@ -129,7 +134,7 @@ class Roster {
   const Person* Find(std::uint64_t id) const;
   // 0: nobody.
   std::uint64_t steering() const { return steering_; }
-  bool presenter_away() const { return away_since_.has_value(); }
+  bool presenter_away() const;
   bool control_is_free() const {
     return steering_ == 0 && !away_since_.has_value() && !awaited_.has_value();
   }
@@ -156,6 +161,8 @@ class Roster {
   void Give(Person& to);
   void ReturnToView(Person& person);
   bool FreesWhenAway() const;
+  // When one who is doubted is given up.
+  Time DoubtEnds(const Person& person) const;
   // Gives control to nobody, or to the viewer who waits for it longest.
   void Free();
   // To a presenter, or kept for one since then.

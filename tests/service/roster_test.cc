@@ -249,6 +249,7 @@ TEST(RosterTest, APresenterWhoReloadsSteersAgainThoughAnotherIsThere) {
   ClassWithKeys group;
   group.roster.Leave(group.presenter, kOpenedAt);
   EXPECT_EQ(group.roster.steering(), 0U);
+  EXPECT_FALSE(group.roster.presenter_away()) << "the tablet's is there";
   const Roster::Time soon = kOpenedAt + kTimeouts.come_back - seconds(1);
   group.roster.Advance(soon);
   const std::uint64_t third = group.roster.Join(Role::kPresenter, "Colleague", soon, "colleague");
@@ -322,6 +323,7 @@ TEST(RosterTest, WhoComesBackReplacesALostConnectionThatGivesNoSignOfLife) {
   const std::uint64_t back = group.AnaAgain(kOpenedAt);
   EXPECT_EQ(group.roster.Find(group.ana)->doubts, 1U);
   EXPECT_EQ(group.roster.Find(group.tablet)->doubts, 0U);
+  group.roster.Checked(group.ana, 1, kOpenedAt);
   EXPECT_EQ(group.roster.NextDeadline(), kOpenedAt + kTimeouts.sign_of_life);
   EXPECT_TRUE(
       group.roster.Advance(kOpenedAt + kTimeouts.sign_of_life - std::chrono::milliseconds(1))
@@ -333,11 +335,28 @@ TEST(RosterTest, WhoComesBackReplacesALostConnectionThatGivesNoSignOfLife) {
   EXPECT_EQ(group.roster.steering(), back);
 }
 
+// As behind a large picture on a slow link.
+TEST(RosterTest, TheTimeForASignOfLifeCountsFromTheQuestion) {
+  ClassWithKeys group;
+  group.AnaAgain(kOpenedAt);
+  EXPECT_EQ(group.roster.NextDeadline(), kOpenedAt + kTimeouts.sign_of_life_in_all);
+  group.roster.Checked(group.ana, 1, kOpenedAt + seconds(8));
+  EXPECT_EQ(group.roster.NextDeadline(), kOpenedAt + seconds(8) + kTimeouts.sign_of_life);
+  group.AnaAgain(kOpenedAt + seconds(9));
+  group.roster.Checked(group.ana, 1, kOpenedAt + seconds(9));
+  EXPECT_EQ(group.roster.NextDeadline(), kOpenedAt + seconds(9) + kTimeouts.sign_of_life_in_all)
+      << "the second question is still on its way";
+  group.roster.Heard(group.ana);
+  group.roster.Advance(kOpenedAt + std::chrono::hours(1));
+  EXPECT_NE(group.roster.Find(group.ana), nullptr);
+}
+
 TEST(RosterTest, WhoComesBackHasTheRequestOfTheLostConnection) {
   ClassWithKeys group;
   ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
   const std::uint64_t back = group.AnaAgain(kOpenedAt + seconds(1));
   EXPECT_FALSE(group.roster.Find(back)->asks);
+  group.roster.Checked(group.ana, 1, kOpenedAt + seconds(1));
   group.roster.Advance(kOpenedAt + seconds(1) + kTimeouts.sign_of_life);
   EXPECT_TRUE(group.roster.Find(back)->asks);
   EXPECT_EQ(group.roster.Find(back)->asked_at, kOpenedAt);
