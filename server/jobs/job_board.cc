@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
@@ -551,6 +552,20 @@ std::optional<Time> JobBoard::NextExpiry() const {
     if (!next.has_value() || *at < *next) next = at;
   }
   return next;
+}
+
+std::vector<std::string> JobBoard::TakePauses() {
+  std::vector<std::string> changed;
+  const Unfetched unfetched = UnfetchedBytes();
+  for (auto& [id, entry] : jobs_) {
+    const bool waits = entry.counts[IndexOf(PictureState::kWaiting)] > 0;
+    const bool is_paused = waits && PausedBecause(entry.record.owner, unfetched).has_value();
+    // One of which nothing waits any more has said so already.
+    if (std::exchange(entry.was_paused, is_paused) == is_paused || !waits) continue;
+    ++entry.version;
+    changed.push_back(id);
+  }
+  return changed;
 }
 
 std::vector<ResultFile> JobBoard::MakeRoom() {

@@ -148,6 +148,8 @@ class JobBoard {
   Expired Expire(Time now);
   // When it next has something to do; nothing if never by itself.
   std::optional<Time> NextExpiry() const;
+  // The jobs whose drawing was paused, or goes on, since the last call: news for who watches them.
+  std::vector<std::string> TakePauses();
   // Drops results that were fetched, where there are too many: those of jobs that have ended first,
   // then the oldest. Returns them.
   std::vector<ResultFile> MakeRoom();
@@ -184,6 +186,7 @@ class JobBoard {
     // When a result was drawn or fetched last; not kept over a restart if it was fetched.
     Time last_used = {};
     bool saved = false;
+    bool was_paused = false;  // as TakePauses saw it last
   };
   using Jobs = std::map<std::string, Entry>;
 

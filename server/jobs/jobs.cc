@@ -274,6 +274,7 @@ void Jobs::Run() {
     WriteAgain(lock);
     BeginPictures(lock);
     (void)Save(lock);
+    Tell(board_.TakePauses(), lock);
     const bool ends = stopping_ && in_hand_.empty() && tasks_.empty();
     if (ends && unwritten_.empty()) break;
     busy_since_.reset();

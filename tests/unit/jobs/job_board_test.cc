@@ -202,6 +202,29 @@ TEST(JobBoard, WhoFetchesNothingPausesAndTakesNothingFromOthers) {
   EXPECT_NE(DrawNext(board, 1.0), "");
 }
 
+TEST(JobBoard, WhetherAJobIsPausedIsNews) {
+  JobLimits limits;
+  limits.max_result_bytes = 20;
+  limits.max_result_bytes_per_owner = 10;
+  JobBoard board(limits);
+  Add(board, "a", "anna", 3);
+  EXPECT_EQ(DrawNext(board, 1.0), "a");
+  Add(board, "b", "bert", 2);
+  EXPECT_THAT(board.TakePauses(), ElementsAre("a"));
+  const std::uint64_t version = board.NewsOf("b", 0)->version;
+  EXPECT_EQ(DrawNext(board, 1.0), "b");
+  EXPECT_THAT(board.TakePauses(), ElementsAre("b"));
+  EXPECT_GT(board.NewsOf("b", 0)->version, version);
+  EXPECT_THAT(board.TakePauses(), IsEmpty());
+  // Hers goes on; his is paused as before.
+  const std::uint64_t before = board.NewsOf("a", 0)->version;
+  board.Fetched({"a", 0}, kNow);
+  EXPECT_THAT(board.TakePauses(), ElementsAre("a"));
+  EXPECT_GT(board.NewsOf("a", 0)->version, before);
+  EXPECT_FALSE(board.NewsOf("a", before)->job.paused.has_value());
+  EXPECT_THAT(board.NewsOf("a", before)->pictures, IsEmpty());
+}
+
 // Two owners who fetch nothing would else stop everybody for ever.
 TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
   JobLimits limits;
