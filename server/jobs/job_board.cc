@@ -99,19 +99,6 @@ absl::Status JobBoard::CheckPictures(const NewJob& job) const {
   return absl::OkStatus();
 }
 
-bool JobBoard::ForgetEnded(const std::string* owner) {
-  auto oldest = jobs_.end();
-  for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
-    const JobRecord& record = job->second.record;
-    if (!record.ended_at.has_value() || (owner != nullptr && record.owner != *owner)) continue;
-    if (job->second.unfetched > 0) continue;
-    if (oldest == jobs_.end() || record.ended_at < oldest->second.record.ended_at) oldest = job;
-  }
-  if (oldest == jobs_.end()) return false;
-  Erase(oldest);
-  return true;
-}
-
 std::pair<std::size_t, std::size_t> JobBoard::Kept(const std::string* owner) const {
   std::size_t jobs = 0;
   std::size_t pictures = 0;
@@ -123,6 +110,17 @@ std::pair<std::size_t, std::size_t> JobBoard::Kept(const std::string* owner) con
   return {jobs, pictures};
 }
 
+std::vector<JobBoard::Jobs::iterator> JobBoard::Forgettable(const std::string& first_of) {
+  std::vector<Jobs::iterator> jobs;
+  for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
+    if (job->second.record.ended_at.has_value() && job->second.unfetched == 0) jobs.push_back(job);
+  }
+  std::ranges::stable_sort(jobs, {}, [&](const Jobs::iterator& job) {
+    return std::pair(job->second.record.owner != first_of, *job->second.record.ended_at);
+  });
+  return jobs;
+}
+
 absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
   struct Share {
     const std::string* owner;  // null: everybody's
@@ -130,16 +128,29 @@ absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
     std::size_t max_jobs;
     std::size_t max_pictures;
   };
+  std::vector<Jobs::iterator> candidates = Forgettable(job.owner);
+  std::vector<Jobs::iterator> to_forget;
   for (const Share& share :
        {Share{&job.owner, "you have", limits_.max_jobs_per_owner,
               limits_.max_kept_pictures_per_owner},
         Share{nullptr, "the server has", limits_.max_jobs, limits_.max_kept_pictures}}) {
-    while (true) {
-      const auto [jobs, pictures] = Kept(share.owner);
-      const bool too_many_jobs = jobs >= share.max_jobs;
-      if (!too_many_jobs && pictures + job.pictures.size() <= share.max_pictures) break;
-      if (ForgetEnded(share.owner)) continue;
-      if (too_many_jobs) {
+    auto [jobs, pictures] = Kept(share.owner);
+    const auto forget = [&jobs = jobs, &pictures = pictures](const Jobs::iterator& one) {
+      --jobs;
+      pictures -= one->second.record.pictures.size();
+    };
+    std::ranges::for_each(to_forget, forget);
+    while (jobs >= share.max_jobs || pictures + job.pictures.size() > share.max_pictures) {
+      const bool helps =
+          !candidates.empty() &&
+          (share.owner == nullptr || candidates.front()->second.record.owner == *share.owner);
+      if (helps) {
+        forget(candidates.front());
+        to_forget.push_back(candidates.front());
+        candidates.erase(candidates.begin());
+        continue;
+      }
+      if (jobs >= share.max_jobs) {
         return TooMany(absl::StrCat(share.who, " ", jobs, " render jobs"), share.max_jobs, "jobs",
                        "TOO_MANY_JOBS");
       }
@@ -148,6 +159,8 @@ absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
                      share.max_pictures, "pictures", "TOO_MANY_JOB_PICTURES");
     }
   }
+  // Not before it is known that it suffices.
+  for (const Jobs::iterator& one : to_forget) Erase(one);
   return absl::OkStatus();
 }
 

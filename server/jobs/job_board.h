@@ -94,8 +94,9 @@ class JobBoard {
   // A job of a store.
   void Restore(JobRecord record, Time now);
 
-  // Adds a job under that id, and forgets jobs that have ended where there are too many; not those
-  // with results that nobody has fetched. RESOURCE_EXHAUSTED if that does not help.
+  // Adds a job under that id, and forgets jobs that have ended where there are too many, the
+  // owner's own first; not those with results that nobody has fetched. RESOURCE_EXHAUSTED, and none
+  // is forgotten, if that does not help.
   absl::Status Add(const std::string& id, const std::string& result_key, NewJob job, Time now);
   // The job as a store is to have it; it must be there.
   const JobRecord& Record(const std::string& id) const { return jobs_.at(id).record; }
@@ -210,9 +211,8 @@ class JobBoard {
   absl::Status MakeRoomForJob(const NewJob& job);
   // Jobs and their pictures, of that owner; null: of everybody.
   std::pair<std::size_t, std::size_t> Kept(const std::string* owner) const;
-  // Forgets the oldest that has ended and whose results were all fetched, of that owner
-  // (null: of everybody); false if there is none.
-  bool ForgetEnded(const std::string* owner);
+  // Those that have ended and whose results were all fetched: of that owner first, then the oldest.
+  std::vector<Jobs::iterator> Forgettable(const std::string& first_of);
   // When that job ends as nobody fetches; nothing if it goes on, or waits for other jobs alone.
   std::optional<Time> AbandonedAt(const Entry& entry, const Unfetched& unfetched) const;
   void EndAbandoned(Entry& entry, Time now, Expired& expired);

@@ -333,5 +333,22 @@ TEST(JobBoard, TheOldestThatHasEndedMakesRoomForANewJob) {
   EXPECT_TRUE(base::DetailsOf(full).retry_after.has_value());
 }
 
+TEST(JobBoard, AJobThatIsRefusedCostsNobodyAJobAndOneThatIsTakenTheAskersOwnFirst) {
+  JobLimits limits;
+  limits.max_kept_pictures = 20;
+  JobBoard board(limits);
+  Add(board, "b", "bert", 5);
+  board.Cancel("b", kNow);
+  Add(board, "a", "anna", 5);
+  board.Cancel("a", kNow + seconds(1));
+  Add(board, "waits", "carl", 5);
+  const absl::Status full =
+      board.Add("c", "key", {"anna", "", std::vector<PictureOrder>(16)}, kNow);
+  EXPECT_EQ(base::DetailsOf(full).reason, "TOO_MANY_JOB_PICTURES");
+  EXPECT_THAT(board.TakeForgotten(), IsEmpty());
+  Add(board, "d", "anna", 10);
+  EXPECT_THAT(board.TakeForgotten(), ElementsAre("a")) << "though b's is older";
+}
+
 }  // namespace
 }  // namespace thunderhead::jobs
