@@ -223,6 +223,8 @@ std::optional<v1::InteractRequest> Session::NextRequest(Call& call, Clock::time_
     join.set_session_key(key_);
     join.set_name(name_);
     join.set_participant_key(participant_key_);
+    join.set_marks_by_changes(true);
+    join.set_answers_checks(true);
     *join.mutable_window() = window_;
     join.add_codecs(v1::CODEC_JPEG);
     for (const v1::Codec codec : options_.codecs) join.add_codecs(codec);

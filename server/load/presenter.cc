@@ -16,6 +16,7 @@ Presenter::Presenter(v1::Camera camera, Errors& errors)
 void Presenter::Join(Transport& transport, const std::string& key) {
   v1::InteractRequest request;
   request.mutable_join()->set_session_key(key);
+  request.mutable_join()->set_marks_by_changes(true);
   request.mutable_join()->mutable_window()->set_hidden(true);
   link_ = transport.Interact(*this, {});
   link_->Send(request.SerializeAsString());

@@ -16,6 +16,7 @@ void Viewer::Join(Transport& transport, const std::string& key, double kbit_per_
   takes_video_ = takes_video;
   v1::InteractRequest request;
   request.mutable_join()->set_session_key(key);
+  request.mutable_join()->set_marks_by_changes(true);
   if (takes_video) {
     request.mutable_join()->add_codecs(v1::CODEC_VP9);
     request.mutable_join()->mutable_window()->set_saves_bytes(true);

@@ -242,7 +242,8 @@ class InteractCall : public InteractReactor,
       return ResponseOf(response);
     }
     if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
-    if (auto news = News(audience.Marks(told_marks_), &told_marks_); news.has_value()) return news;
+    const session::Told marks = audience.Marks(marks_by_changes_ ? told_marks_ : 0);
+    if (auto news = News(marks, &told_marks_); news.has_value()) return news;
     if (auto news = News(audience.TimesHeld(), &told_times_); news.has_value()) return news;
     return News(audience.Pointers(), &told_pointers_);
   }
@@ -346,7 +347,7 @@ class InteractCall : public InteractReactor,
         access::MayPresent(caller_->identity().role) ? found.role : session::Role::kViewer;
     const std::size_t most = engine_.limits.max_viewers_per_session;
     const std::optional<std::uint64_t> person_id = found.session->audience().Join(
-        role, name, shared_from_this(), Clock::now(), most, participant_key);
+        role, name, shared_from_this(), Clock::now(), most, participant_key, join.answers_checks());
     if (!person_id.has_value()) return TooManyViewers(most);
     v1::InteractResponse response;
     v1::Joined& joined = *response.mutable_joined();
@@ -364,6 +365,7 @@ class InteractCall : public InteractReactor,
         takes_video_ = takes_video_ || codec == v1::CODEC_VP9;
         takes_stills_ = takes_stills_ || codec == v1::CODEC_AVIF;
       }
+      marks_by_changes_ = join.marks_by_changes();
       wants_ = WantsOf(join.window());
       session_ = found.session;
       told_catalogue_ = engine_.catalogue.Changes();
@@ -747,6 +749,7 @@ class InteractCall : public InteractReactor,
   bool hidden_ = false;
   bool takes_video_ = false;
   bool takes_stills_ = false;
+  bool marks_by_changes_ = false;
   session::ViewerWants wants_;
   std::shared_ptr<session::OwnView> own_view_;
   int detaching_ = 0;                          // requests on their way to a view of one's own

@@ -22,11 +22,12 @@ Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board
 
 std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
                                             std::shared_ptr<Viewer> member, Time now,
-                                            std::size_t most, const std::string& owner_key) {
+                                            std::size_t most, const std::string& owner_key,
+                                            bool answers_checks) {
   std::unique_lock lock(mutex_);
   const std::size_t lost = roster_.Has(role, owner_key) ? 1 : 0;
   if (role == Role::kViewer && members_.size() >= most + lost) return std::nullopt;
-  const std::uint64_t id = roster_.Join(role, name, now, owner_key);
+  const std::uint64_t id = roster_.Join(role, name, now, owner_key, answers_checks);
   std::vector<std::shared_ptr<Viewer>> doubted;
   for (const Person& person : roster_.people()) {
     if (person.doubted_at == now) doubted.push_back(members_.at(person.id));

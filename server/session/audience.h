@@ -77,7 +77,7 @@ class Audience {
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
                                     std::shared_ptr<Viewer> member, Time now,
                                     std::size_t most = std::numeric_limits<std::size_t>::max(),
-                                    const std::string& owner_key = "");
+                                    const std::string& owner_key = "", bool answers_checks = true);
   void Leave(std::uint64_t id, Time now);
   // The person has said something.
   void Heard(std::uint64_t id);
@@ -123,7 +123,7 @@ class Audience {
   Told Presence() const;
   Told Pointers() const;
   // For one who was told of the marks `count` times: the next change, or all the marks. Those may
-  // be newer than what others were told; a change that comes twice is the same as one.
+  // be newer than what others were told; a change that comes twice is the same as one. Of 0: all.
   Told Marks(std::uint64_t count);
   Told TimesHeld() const;
   // Without bytes: it counts when people were told to take the newest scene.

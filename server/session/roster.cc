@@ -28,18 +28,22 @@ std::string NameOf(const Person& person) {
 
 }  // namespace
 
-std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string key) {
+std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string key, bool answers) {
   ++revision_;
   std::erase_if(asked_and_left_, [&](const auto& asked) {
     return now >= asked.second.asked_at + std::max(timeouts_.ask_again, timeouts_.answer);
   });
   for (Person& other : people_) {
-    if (key.empty() || other.key != key || other.role != role) continue;
+    if (key.empty() || other.key != key || other.role != role || !other.answers) continue;
     ++other.doubts;
     other.doubted_at = now;
     other.checked_at.reset();
   }
-  people_.push_back({.id = ++count_, .name = std::move(name), .role = role, .key = std::move(key)});
+  people_.push_back({.id = ++count_,
+                     .name = std::move(name),
+                     .role = role,
+                     .key = std::move(key),
+                     .answers = answers});
   Person& person = people_.back();
   if (const auto asked = asked_and_left_.find(person.key); asked != asked_and_left_.end()) {
     person.asked_at = asked->second.asked_at;

@@ -46,6 +46,7 @@ struct Person {
   std::optional<std::chrono::steady_clock::time_point> asked_at;  // last
   std::uint64_t returns = 0;                                      // to the session's view, so far
   std::string key = {};                                           // that the person comes back with
+  bool answers = true;                                            // when asked for a sign of life
   std::uint64_t doubts = 0;                                       // how often asked whether there
   std::optional<std::chrono::steady_clock::time_point> doubted_at;  // last, and not heard since
   std::optional<std::chrono::steady_clock::time_point> checked_at;  // when it was told of that
@@ -81,8 +82,9 @@ class Roster {
 
   // Who comes back with the same key and role steers again if control waits for that, asks for
   // control if the one who left did, and asked last when that one did. Doubts those who are there
-  // with them.
-  std::uint64_t Join(Role role, std::string name, Time now, std::string key = "");
+  // with them, if they answer; `answers` says so of the newcomer.
+  std::uint64_t Join(Role role, std::string name, Time now, std::string key = "",
+                     bool answers = true);
   // What the one who leaves had goes to who is there with the same key and role, or waits for them.
   void Leave(std::uint64_t id, Time now);
   // The person has said something.

@@ -785,6 +785,16 @@ TEST(InteractTest, OnlyChangesOfMarksAreToldAndAllOfThemToNewcomers) {
   EXPECT_FALSE(newcomer.MarksAsTold().front().only_changes());
 }
 
+TEST(InteractTest, AClientThatKnowsNoChangesIsToldAllMarksEachTime) {
+  Class group;
+  Interacting old(group.service.stub(), group.created.viewer_key(), {.is_old = true});
+  for (int drawn = 1; drawn <= 3; ++drawn) {
+    group.presenter->Send(Draws());
+    ASSERT_TRUE(old.AwaitMarks([&](const v1::Marks& all) { return all.marks_size() == drawn; }));
+  }
+  for (const v1::Marks& told : old.MarksAsTold()) EXPECT_FALSE(told.only_changes());
+}
+
 TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   Class group(ViewersMayMark());
   EXPECT_THAT(group.ana->participant_key(), ::testing::MatchesRegex("[0-9a-f]{32}"));
@@ -853,6 +863,22 @@ TEST(InteractTest, ALostConnectionIsReplacedByTheOneThatComesBack) {
   const grpc::Status end = lost.End();
   EXPECT_EQ(end.error_code(), grpc::StatusCode::ABORTED);
   EXPECT_EQ(ReasonOf(end), "CONNECTION_REPLACED");
+}
+
+TEST(InteractTest, AClientThatKnowsNoChecksStaysUntilItEnds) {
+  constexpr std::chrono::milliseconds kSignOfLife{50};
+  Class group({}, With({.sign_of_life = kSignOfLife, .sign_of_life_in_all = kSignOfLife}));
+  Interacting old(group.service.stub(), group.created.viewer_key(),
+                  {.name = "Eve", .hidden = true, .answers_checks = false, .is_old = true});
+  group.presenter->Send(Gives(old.viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ana, old.viewer_id()));
+  Interacting back(group.service.stub(), group.created.viewer_key(),
+                   {.name = "Eve", .participant_key = old.participant_key()});
+  ASSERT_GT(back.viewer_id(), 0U);
+  std::this_thread::sleep_for(4 * kSignOfLife);
+  EXPECT_EQ(old.AnswerCode(old.Send(SunTo(120.0F))), grpc::StatusCode::OK);
+  old.Cancel();
+  EXPECT_TRUE(Class::SteersFor(*group.ana, back.viewer_id()));
 }
 
 // Its copy of the key is that of the tab that goes on.

@@ -61,6 +61,8 @@ Interacting::Interacting(v1::ThunderheadService::Stub& stub, const std::string& 
   request.mutable_join()->mutable_window()->set_hidden(options_.hidden);
   request.mutable_join()->mutable_window()->set_saves_bytes(options_.saves_bytes);
   request.mutable_join()->set_participant_key(options_.participant_key);
+  request.mutable_join()->set_marks_by_changes(!options_.is_old);
+  request.mutable_join()->set_answers_checks(!options_.is_old);
   for (const v1::Codec codec : options_.codecs) request.mutable_join()->add_codecs(codec);
   Send(request);
   thread_ = std::thread([this] { Run(); });

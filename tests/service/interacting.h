@@ -24,6 +24,7 @@ struct InteractingOptions {
   bool saves_bytes = false;
   std::string participant_key;
   bool answers_checks = true;  // by Alive
+  bool is_old = false;         // knows neither changes of marks nor checks
 };
 
 // The reason in a refusal's details; empty if it has none.

@@ -277,7 +277,13 @@ export class SessionClient {
         opened: () => {
           opened = true;
           const participantKey = this.#participant.keyFor(sessionKey);
-          const value = { sessionKey, participantKey, ...this.#listener.joining() };
+          const value = {
+            sessionKey,
+            participantKey,
+            marksByChanges: true,
+            answersChecks: true,
+            ...this.#listener.joining(),
+          };
           this.#sendBy(call, { case: "join", value });
         },
         message: ({ message }) => {
