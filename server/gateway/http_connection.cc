@@ -391,12 +391,12 @@ net::awaitable<absl::StatusOr<PageFile>> HttpConnection::FindPageFile(const Requ
   if (site_.files->IsEmpty()) co_return PageFile();
   const auto found = std::make_shared<PageFile>();
   // Named, as GCC 12 destroys some temporaries of a co_await twice.
-  std::function<void()> find = [found, files = site_.files, path,
-                                accepted =
-                                    std::string(View(request[http::field::accept_encoding]))] {
-    found->about = files->Find(path, accepted);
-    if (found->about.has_value()) found->file = OpenFile::Open(found->about->path);
-  };
+  std::function<void()> find =
+      [found, files = site_.files, path, closer = std::weak_ptr(site_.file_closer),
+       accepted = std::string(View(request[http::field::accept_encoding]))] {
+        found->about = files->Find(path, accepted);
+        if (found->about.has_value()) found->file = OpenFile::Open(found->about->path, closer);
+      };
   const std::string owner = OwnerOf(request);
   const absl::Status done = co_await site_.page_threads.Run(executor_, owner, std::move(find));
   if (!done.ok()) co_return done;
@@ -441,7 +441,10 @@ net::awaitable<bool> HttpConnection::SendKept(const Request& request, const Kept
     co_return keep;
   }
   const auto opened = std::make_shared<FileOr>(absl::NotFoundError("not opened"));
-  std::function<void()> open = [opened, path = file.path] { *opened = OpenFile::Open(path); };
+  std::function<void()> open = [opened, path = file.path,
+                                closer = std::weak_ptr(site_.file_closer)] {
+    *opened = OpenFile::Open(path, closer);
+  };
   const std::string owner = OwnerOf(request);
   const absl::Status done = co_await site_.kept_threads.Run(executor_, owner, std::move(open));
   if (!done.ok()) {

@@ -12,7 +12,8 @@
 
 namespace thunderhead::gateway {
 
-absl::StatusOr<std::shared_ptr<const OpenFile>> OpenFile::Open(const std::string& path) {
+absl::StatusOr<std::shared_ptr<const OpenFile>> OpenFile::Open(const std::string& path,
+                                                               std::weak_ptr<FileCloser> closer) {
   base::FileDescriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat information = {};
   if (!descriptor.IsOpen() || ::fstat(descriptor.Get(), &information) != 0) {
@@ -22,8 +23,16 @@ absl::StatusOr<std::shared_ptr<const OpenFile>> OpenFile::Open(const std::string
     return absl::NotFoundError(absl::StrCat("cannot read ", path, ": it is no regular file"));
   }
   ::posix_fadvise(descriptor.Get(), 0, 0, POSIX_FADV_SEQUENTIAL);
-  return std::shared_ptr<const OpenFile>(
-      new OpenFile(std::move(descriptor), static_cast<std::uint64_t>(information.st_size)));
+  return std::shared_ptr<const OpenFile>(new OpenFile(
+      std::move(descriptor), static_cast<std::uint64_t>(information.st_size), std::move(closer)));
+}
+
+OpenFile::~OpenFile() {
+  if (const auto closer = closer_.lock(); closer != nullptr) {
+    closer->Close(std::move(descriptor_));
+  } else {
+    static_cast<void>(descriptor_.Release());
+  }
 }
 
 std::ptrdiff_t OpenFile::Read(std::uint64_t offset, char* into, std::size_t most) const {

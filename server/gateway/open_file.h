@@ -1,5 +1,5 @@
 // A regular file that is open for reading. Its functions may block as long as the storage does, so
-// the gateway calls them by FileThreads.
+// the gateway calls them by FileThreads; whoever lets it go does not wait for its end.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,18 @@
 
 #include "absl/status/statusor.h"
 #include "base/file_descriptor.h"
+#include "gateway/file_closer.h"
 
 namespace thunderhead::gateway {
 
 class OpenFile {
  public:
-  static absl::StatusOr<std::shared_ptr<const OpenFile>> Open(const std::string& path);
+  // `closer` closes it; after the closer's end it is left open.
+  static absl::StatusOr<std::shared_ptr<const OpenFile>> Open(const std::string& path,
+                                                              std::weak_ptr<FileCloser> closer);
+  ~OpenFile();
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
 
   // When it was opened.
   std::uint64_t Bytes() const { return bytes_; }
@@ -24,11 +30,12 @@ class OpenFile {
   std::ptrdiff_t Read(std::uint64_t offset, char* into, std::size_t most) const;
 
  private:
-  OpenFile(base::FileDescriptor descriptor, std::uint64_t bytes)
-      : descriptor_(std::move(descriptor)), bytes_(bytes) {}
+  OpenFile(base::FileDescriptor descriptor, std::uint64_t bytes, std::weak_ptr<FileCloser> closer)
+      : descriptor_(std::move(descriptor)), bytes_(bytes), closer_(std::move(closer)) {}
 
-  const base::FileDescriptor descriptor_;
+  base::FileDescriptor descriptor_;
   const std::uint64_t bytes_;
+  const std::weak_ptr<FileCloser> closer_;
 };
 
 }  // namespace thunderhead::gateway
