@@ -20,6 +20,8 @@ base::Executor::Limits LimitsFor(milliseconds timeout) {
   base::Executor::Limits limits;
   limits.threads = 4;
   limits.max_waiting = 1024;
+  // One address may be a whole class's; the threads are shared fairly all the same.
+  limits.max_waiting_each = limits.max_waiting;
   limits.hangs_after = std::min(kHangsAfter, timeout);
   limits.max_hanging = 16;
   limits.max_wait = timeout;
@@ -28,7 +30,7 @@ base::Executor::Limits LimitsFor(milliseconds timeout) {
 
 }  // namespace
 
-// Of a coroutine for work that may outlive it, and even the executor.
+// A coroutine's wait for work that may outlive it, and even the executor.
 struct FileThreads::Wait {
   std::mutex mutex;
   net::steady_timer* timer = nullptr;  // null: nobody waits any more
