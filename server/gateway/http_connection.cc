@@ -9,9 +9,11 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <limits>
@@ -73,6 +75,7 @@ struct PageFile {
 // The part of a file that is sent.
 struct FilePart {
   FileThreads& threads;
+  std::string path;
   std::shared_ptr<const OpenFile> file;
   std::uint64_t first = 0;
   std::uint64_t bytes = 0;
@@ -111,7 +114,9 @@ class HttpConnection {
   // Sends `header`, which must tell the part's length, and then the part.
   net::awaitable<bool> SendPart(const Request& request, http::response<http::empty_body>& header,
                                 FilePart part);
-  net::awaitable<bool> SendStorageHangs(const Request& request);
+  // Nothing of the file can be sent yet: its storage hangs or fails.
+  net::awaitable<bool> SendStorageFails(const Request& request);
+  void LogFailedRead(const std::string& path, const absl::Status& why);
   net::awaitable<bool> SendText(const Request& request, http::status status,
                                 const std::string& text, std::string_view allowed_methods = {});
   template <typename Body>
@@ -224,7 +229,7 @@ net::awaitable<bool> HttpConnection::AnswerPage(const Request& request, const st
   }
   const absl::StatusOr<PageFile> page = co_await FindPageFile(request, path);
   if (!page.ok()) {
-    keep = co_await SendStorageHangs(request);
+    keep = co_await SendStorageFails(request);
   } else if (page->about.has_value()) {
     keep = co_await SendFile(request, *page);
   } else if (IsMethodPath(path) && path.find('.') < path.rfind('/')) {
@@ -281,7 +286,7 @@ net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::strin
   }
   const absl::StatusOr<PageFile> page = co_await FindPageFile(request, path);
   if (!page.ok()) {
-    keep = co_await SendStorageHangs(request);
+    keep = co_await SendStorageFails(request);
   } else if (path == "/healthz" || page->about.has_value()) {
     keep = co_await SendText(request, http::status::method_not_allowed,
                              "Read this path with GET.\n", kPageMethods);
@@ -426,7 +431,7 @@ net::awaitable<bool> HttpConnection::SendFile(const Request& request, const Page
     header.set(http::field::content_encoding, about.content_encoding);
   }
   header.content_length(file->Bytes());
-  FilePart all{site_.page_threads, file, 0, file->Bytes()};
+  FilePart all{site_.page_threads, about.path.string(), file, 0, file->Bytes()};
   keep = co_await SendPart(request, header, std::move(all));
   co_return keep;
 }
@@ -448,7 +453,7 @@ net::awaitable<bool> HttpConnection::SendKept(const Request& request, const Kept
   const std::string owner = OwnerOf(request);
   const absl::Status done = co_await site_.kept_threads.Run(executor_, owner, std::move(open));
   if (!done.ok()) {
-    keep = co_await SendStorageHangs(request);
+    keep = co_await SendStorageFails(request);
   } else if (!opened->ok()) {
     keep = co_await SendText(request, http::status::not_found, "This file is gone.\n");
   } else {
@@ -485,7 +490,7 @@ net::awaitable<bool> HttpConnection::SendKeptPart(const Request& request, const 
   header.set(http::field::content_type, PictureTypeOf(file.path));
   header.content_length(range.bytes);
   const std::uint64_t file_bytes = opened->Bytes();
-  FilePart part{site_.kept_threads, std::move(opened), range.first, range.bytes};
+  FilePart part{site_.kept_threads, file.path, std::move(opened), range.first, range.bytes};
   keep = co_await SendPart(request, header, std::move(part));
   const bool to_its_end =
       request.method() == http::verb::get && range.first + range.bytes == file_bytes;
@@ -508,6 +513,7 @@ net::awaitable<bool> HttpConnection::SendPart(const Request& request,
   struct Read {
     std::vector<char> into = std::vector<char>(kFilePart);
     std::ptrdiff_t bytes = 0;
+    std::string error;
   };
   const auto read = std::make_shared<Read>();
   const std::string owner = OwnerOf(request);
@@ -516,10 +522,17 @@ net::awaitable<bool> HttpConnection::SendPart(const Request& request,
       const auto most = static_cast<size_t>(std::min<std::uint64_t>(part.bytes, kFilePart));
       std::function<void()> work = [read, file = part.file, first = part.first, most] {
         read->bytes = file->Read(first, read->into.data(), most);
+        if (read->bytes < 0) read->error = strerror(errno);
+        if (read->bytes == 0) read->error = "it has become shorter";
       };
       const absl::Status done = co_await part.threads.Run(executor_, owner, std::move(work));
-      // The storage hangs or fails, or the file was cut off meanwhile.
-      if (!done.ok() || read->bytes <= 0) co_return false;
+      if (!done.ok() || read->bytes <= 0) {
+        LogFailedRead(part.path, done.ok() ? absl::UnavailableError(read->error) : done);
+        if (unsent_header.empty()) co_return false;
+        const bool keep_refused = co_await SendStorageFails(request);
+        sent_whole_ = false;
+        co_return keep_refused;
+      }
     }
     const auto bytes = static_cast<size_t>(read->bytes);
     // TLS writes the first buffer by itself if all are too many bytes, and nothing if it is empty.
@@ -536,11 +549,19 @@ net::awaitable<bool> HttpConnection::SendPart(const Request& request,
   co_return keep;
 }
 
-net::awaitable<bool> HttpConnection::SendStorageHangs(const Request& request) {
+net::awaitable<bool> HttpConnection::SendStorageFails(const Request& request) {
   const bool keep =
       co_await SendText(request, http::status::service_unavailable,
                         "The storage of this file does not answer; try again later.\n");
   co_return keep;
+}
+
+void HttpConnection::LogFailedRead(const std::string& path, const absl::Status& why) {
+  if (absl::IsCancelled(why)) return;
+  const auto left_out = site_.failed_reads.Take(std::chrono::system_clock::now());
+  if (!left_out.has_value()) return;
+  spdlog::warn("cannot read {}: {} ({} more since the last line)", path, std::string(why.message()),
+               *left_out);
 }
 
 net::awaitable<bool> HttpConnection::SendText(const Request& request, http::status status,

@@ -11,10 +11,22 @@
 #include "absl/strings/str_cat.h"
 
 namespace thunderhead::gateway {
+namespace {
+
+// Calls again what a signal has ended.
+template <typename SystemCall>
+auto Uninterrupted(const SystemCall& call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
+
+}  // namespace
 
 absl::StatusOr<std::shared_ptr<const OpenFile>> OpenFile::Open(const std::string& path,
                                                                std::weak_ptr<FileCloser> closer) {
-  base::FileDescriptor descriptor(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  base::FileDescriptor descriptor(
+      Uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
   struct stat information = {};
   if (!descriptor.IsOpen() || ::fstat(descriptor.Get(), &information) != 0) {
     return absl::NotFoundError(absl::StrCat("cannot read ", path, ": ", strerror(errno)));
@@ -36,7 +48,8 @@ OpenFile::~OpenFile() {
 }
 
 std::ptrdiff_t OpenFile::Read(std::uint64_t offset, char* into, std::size_t most) const {
-  return ::pread(descriptor_.Get(), into, most, static_cast<off_t>(offset));
+  return Uninterrupted(
+      [&] { return ::pread(descriptor_.Get(), into, most, static_cast<off_t>(offset)); });
 }
 
 }  // namespace thunderhead::gateway

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "base/line_limit.h"
 #include "gateway/file_closer.h"
 #include "gateway/file_threads.h"
 #include "gateway/gateway.h"
@@ -21,6 +22,7 @@ struct Site {
   // Apart, so that a storage of results that hangs leaves the page alone.
   FileThreads page_threads{options.file_timeout};
   FileThreads kept_threads{options.file_timeout};
+  base::LineLimit failed_reads{1};  // lines of the log about them
   std::shared_ptr<FileCloser> file_closer = std::make_shared<FileCloser>();
   UnsentAnswers unsent_answers{options.max_unsent_bytes};
 };

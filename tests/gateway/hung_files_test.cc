@@ -5,12 +5,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -108,6 +111,30 @@ TEST_F(HungFilesTest, TheGatewayEndsWithoutThem) {
   // It leaves the thread behind after a few seconds.
   EXPECT_LT(steady_clock::now() - start, std::chrono::seconds(20));
   EXPECT_TRUE(hung->IsEnded());
+}
+
+TEST_F(HungFilesTest, WhoCannotBeSentItsBeginningIsToldToTryAgain) {
+  // A file of the kernel's, which says that it is longer than what can be read of it.
+  const std::string short_file = "/sys/kernel/address_bits";
+  std::error_code error;
+  if (std::filesystem::file_size(short_file, error) != 4096) {
+    GTEST_SKIP() << "needs " << short_file;
+  }
+  std::atomic<int> sent{0};
+  options_.find_kept_file = [&](std::string_view) {
+    return KeptFile{short_file, "short", [&sent] { ++sent; }};
+  };
+  RawClient client(Site().Port());
+  const Response answer = client.Ask("GET", "/results/short/0", {{"Range", "bytes=4000-"}});
+  EXPECT_EQ(answer.result(), http::status::service_unavailable);
+  EXPECT_EQ(answer["Retry-After"], "10");
+  EXPECT_FALSE(answer.count("Content-Range"));
+  // The connection goes on. What fails after the beginning ends it.
+  client.Send("GET /results/short/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_EQ(client.ReadHeaders().result(), http::status::ok);
+  EXPECT_TRUE(client.IsEnded());
+  site_->StopGateway();
+  EXPECT_EQ(sent, 0);
 }
 
 TEST_F(HungFilesTest, PartsOfResultsAreSent) {
