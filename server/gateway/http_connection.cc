@@ -69,7 +69,7 @@ void DescribeKept(const std::string& entity_tag, http::fields& header) {
 using FileOr = absl::StatusOr<std::shared_ptr<const OpenFile>>;
 struct PageFile {
   std::optional<StaticFile> about;  // none: there is nothing at that path
-  FileOr file = absl::NotFoundError("there is none");
+  FileOr file = absl::NotFoundError("it was not opened");
 };
 
 // The part of a file that is sent.
@@ -104,7 +104,8 @@ class HttpConnection {
   net::awaitable<bool> AnswerCall(Parser& parser);
   net::awaitable<bool> AnswerBadHeader(error_code error);
   net::awaitable<bool> RefuseLargeCall(const Request& request);
-  // Looks for the page's file at that path, and opens it. An error if its storage hangs.
+  // Looks for the page's file at that path, and opens it if it is to be sent. An error if its
+  // storage hangs.
   net::awaitable<absl::StatusOr<PageFile>> FindPageFile(const Request& request,
                                                         const std::string& path);
   net::awaitable<bool> SendFile(const Request& request, const PageFile& page);
@@ -395,12 +396,16 @@ net::awaitable<absl::StatusOr<PageFile>> HttpConnection::FindPageFile(const Requ
                                                                       const std::string& path) {
   if (site_.files->IsEmpty()) co_return PageFile();
   const auto found = std::make_shared<PageFile>();
+  const bool is_read = request.method() != http::verb::post;
   // Named, as GCC 12 destroys some temporaries of a co_await twice.
   std::function<void()> find =
       [found, files = site_.files, path, closer = std::weak_ptr(site_.file_closer),
-       accepted = std::string(View(request[http::field::accept_encoding]))] {
+       accepted = std::string(View(request[http::field::accept_encoding])),
+       known = std::string(View(request[http::field::if_none_match])), is_read] {
         found->about = files->Find(path, accepted);
-        if (found->about.has_value()) found->file = OpenFile::Open(found->about->path, closer);
+        if (!found->about.has_value() || !is_read) return;
+        if (MatchesEntityTag(known, found->about->entity_tag)) return;
+        found->file = OpenFile::Open(found->about->path, closer);
       };
   const std::string owner = OwnerOf(request);
   const absl::Status done = co_await site_.page_threads.Run(executor_, owner, std::move(find));
@@ -468,11 +473,12 @@ net::awaitable<bool> HttpConnection::SendKeptPart(const Request& request, const 
   http::response<http::empty_body> header(http::status::ok, request.version());
   const std::string entity_tag = absl::StrCat("\"", file.entity_tag, "\"");
   DescribeKept(entity_tag, header);
-  // All is sent if the contents are not those that the client has a part of.
+  // All is sent if the contents are not those that the client has a part of. Only GET has parts.
   const std::string_view only_if = View(request[http::field::if_range]);
+  const bool may_be_part =
+      request.method() == http::verb::get && (only_if.empty() || only_if == entity_tag);
   const ByteRange range =
-      RangeOf(only_if.empty() || only_if == entity_tag ? View(request[http::field::range]) : "",
-              opened->Bytes());
+      RangeOf(may_be_part ? View(request[http::field::range]) : "", opened->Bytes());
   bool keep = false;
   if (range.asked == ByteRange::Asked::kNothingThere) {
     header.result(http::status::range_not_satisfiable);

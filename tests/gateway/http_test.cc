@@ -1,6 +1,8 @@
 // The gateway's port as HTTP: page, health, methods, hosts, origins and the life of connections.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/inotify.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <boost/beast/http/field.hpp>
@@ -80,8 +82,8 @@ TEST_F(HttpTest, AKeptFileThatWasSentToItsEndIsTold) {
     leaves.Close();
   }
   EXPECT_EQ(Ask("GET", "/results/key/1").result(), http::status::not_found);
-  EXPECT_EQ(sent, 3);
   Site().StopGateway();  // its thread tells
+  EXPECT_EQ(sent, 3);
 }
 
 TEST_F(HttpTest, ServesThePage) {
@@ -121,6 +123,20 @@ TEST_F(HttpTest, UnchangedFilesAreNotSentAgain) {
   EXPECT_EQ(again.result(), http::status::not_modified);
   EXPECT_EQ(Header(again, "ETag"), tag);
   EXPECT_EQ(client.Ask("GET", "/", {{"If-None-Match", "\"old\""}}).result(), http::status::ok);
+}
+
+TEST_F(HttpTest, FilesThatAreNotSentAreNotOpened) {
+  RawClient client(Site().Port());
+  const std::string tag = Header(client.Ask("GET", "/"), "ETag");
+  const int opened = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  ASSERT_GE(inotify_add_watch(opened, folder_.File("index.html").c_str(), IN_OPEN), 0);
+  EXPECT_EQ(client.Ask("GET", "/", {{"If-None-Match", tag}}).result(), http::status::not_modified);
+  EXPECT_EQ(Ask("POST", "/").result(), http::status::method_not_allowed);
+  char event[4096];
+  EXPECT_EQ(read(opened, event, sizeof(event)), -1);
+  EXPECT_EQ(client.Ask("GET", "/").result(), http::status::ok);
+  EXPECT_GT(read(opened, event, sizeof(event)), 0);
+  close(opened);
 }
 
 TEST_F(HttpTest, SendsTheGzipFileToWhoAcceptsIt) {

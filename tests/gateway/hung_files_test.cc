@@ -143,6 +143,13 @@ TEST_F(HungFilesTest, PartsOfResultsAreSent) {
   EXPECT_EQ(part.result(), http::status::partial_content);
   EXPECT_EQ(part.body(), "ctu");
   EXPECT_EQ(part["Content-Range"], "bytes 2-4/7");
+  // Only GET has parts.
+  for (const std::string range : {"bytes=2-4", "bytes=7-"}) {
+    const Response head =
+        RawClient(Site().Port()).Ask("HEAD", "/results/fine/0", {{"Range", range}});
+    EXPECT_EQ(head.result(), http::status::ok) << range;
+    EXPECT_EQ(head["Content-Length"], "7");
+  }
 }
 
 }  // namespace
