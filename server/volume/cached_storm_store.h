@@ -1,6 +1,6 @@
 // The store behind what StormStore::Open gives: a catalogue, a cache, a thread that reads what is
-// asked for, one that reads ahead, and one that has other folders read in another process while a
-// storage holds up these. A time is read once however many callers ask for it; reads that a caller
+// asked for, one that reads ahead, and one that has other storages read in another process while
+// one holds up these. A time is read once however many callers ask for it; reads that a caller
 // waits for go before read-ahead, and before files that the catalogue looks at. A storage that
 // hangs holds up a thread, but no caller beyond the deadline.
 #pragma once
@@ -78,6 +78,7 @@ class CachedStormStore final : public StormStore,
   struct Activity {
     bool reads = false;  // and does not pause
     std::string file;
+    std::uint64_t device = 0;                       // of that file
     std::chrono::steady_clock::time_point went_on;  // since when nothing has come
     bool told_of_hang = false;
   };
@@ -123,6 +124,9 @@ class CachedStormStore final : public StormStore,
   absl::StatusOr<Place> PlaceOf(std::string_view id, int time_index) const;
   std::optional<Place> PlaceOf(const TimeKey& key) const;
   std::shared_ptr<PendingRead> Begin(const Place& place, Purpose purpose);
+  // The read of that time that is pending, or another one. An error if it would wait behind a
+  // storage that hangs, and no other process may do it.
+  absl::StatusOr<std::shared_ptr<PendingRead>> ReadOf(const Place& place);
   // On a reading thread, whose activity is given.
   void Read(Lock& lock, PendingRead& read, Activity& activity);
   Fields ReadFile(Lock& lock, PendingRead& read, Activity& activity);
@@ -130,8 +134,18 @@ class CachedStormStore final : public StormStore,
                  const ReadProgress& progress);
   Activity& ActivityOf(const PendingRead& read);
   std::optional<HungRead> HungIn(const Activity& activity) const;
-  // True if another process may do the read, which waits behind that one.
-  bool MayReadBeside(const PendingRead& read, const HungRead& hung) const;
+  // The same; the log tells of each once.
+  std::optional<HungRead> NoteHang(Activity& activity) const;
+  // When the activity hangs unless it goes on.
+  std::chrono::steady_clock::time_point HangsAt(const Activity& activity) const;
+  // The file other than `path` that netCDF-C has worked on for longer than `time`.
+  std::optional<HungRead> HolderFor(std::chrono::milliseconds time, std::string_view path) const;
+  // What a read that begins now in this process would wait behind.
+  std::optional<HungRead> HungBefore() const;
+  std::uint64_t DeviceOf(std::string_view path) const;
+  // True if another process may read that time while that read hangs: it is on another device or,
+  // where the device is unknown, in another folder.
+  bool MayReadBeside(const Place& place, const HungRead& hung) const;
   // The read by another process in place of `read`, which others may wait for already.
   std::shared_ptr<PendingRead> Beside(const PendingRead& read);
   std::shared_ptr<const RecordReader> ReaderOf(const StormFile& file, Purpose purpose) const;

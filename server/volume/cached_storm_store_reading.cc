@@ -24,6 +24,9 @@ namespace fs = std::filesystem;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
+// When to look again whether a storage that held up read-ahead answers.
+constexpr std::chrono::milliseconds kLookAgain{500};
+
 // When to try again what a storage that hangs has not given.
 constexpr std::chrono::seconds kRetryAfter{10};
 
@@ -80,6 +83,11 @@ absl::Status CheckNotReplaced(const StormFile& file, std::chrono::milliseconds r
        .retry_after = retry_after});
 }
 
+// The file of the storm's time.
+const StormFile& FileOf(const CataloguedStorm& storm, std::size_t time) {
+  return storm.files[storm.sources[time].file];
+}
+
 // Fields with their share of the budget, which lasts as long as somebody holds them.
 struct CountedFields {
   HydrometeorFields fields;
@@ -95,9 +103,8 @@ absl::StatusOr<std::shared_ptr<const HydrometeorFields>> CachedStormStore::Get(
   while (true) {
     Fields fields = cache_.Use(place.key);
     if (*fields == nullptr) {
-      const auto at = pending_.find(place.key);
-      fields = WaitFor(lock, at != pending_.end() ? at->second : Begin(place, Purpose::kAsked),
-                       progress);
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<PendingRead> read, ReadOf(place));
+      fields = WaitFor(lock, read, progress);
     }
     // The read may have been a read-ahead that was cancelled just now: try again.
     if (absl::IsCancelled(fields.status()) && !ending_) continue;
@@ -130,6 +137,17 @@ std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Begin(const Pla
   return read;
 }
 
+absl::StatusOr<std::shared_ptr<CachedStormStore::PendingRead>> CachedStormStore::ReadOf(
+    const Place& place) {
+  if (const auto at = pending_.find(place.key); at != pending_.end()) return at->second;
+  NoteHang(reading_asked_);
+  NoteHang(reading_ahead_);
+  const std::optional<HungRead> hung = HungBefore();
+  if (!hung.has_value()) return Begin(place, Purpose::kAsked);
+  if (!MayReadBeside(place, *hung)) return Hangs(*hung);
+  return Begin(place, Purpose::kBeside);
+}
+
 CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
                                                    const std::shared_ptr<PendingRead>& read,
                                                    const ReadProgress& progress) {
@@ -146,11 +164,9 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
   wait_for(read);
   while (!shared->result.has_value()) {
     Activity& activity = ActivityOf(*shared);
-    const std::optional<HungRead> hung = HungIn(activity);
-    if (hung.has_value() && !std::exchange(activity.told_of_hang, true)) {
-      spdlog::error("{}: its storage does not answer; what needs it is refused", hung->file);
-    }
-    if (!ending_ && hung.has_value() && MayReadBeside(*shared, *hung)) {
+    const std::optional<HungRead> hung = NoteHang(activity);
+    if (!ending_ && hung.has_value() && shared->purpose != Purpose::kBeside &&
+        MayReadBeside(shared->place, *hung)) {
       --shared->waiters;
       std::erase(shared->listeners, listener);
       wait_for(Beside(*shared));
@@ -167,8 +183,7 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
       if (hung.has_value()) return Hangs(*hung);
       return absl::CancelledError("the store of storms has ended");
     }
-    const auto since = activity.reads ? activity.went_on : steady_clock::now();
-    changed_.wait_until(lock, since + options_.read_deadline + std::chrono::milliseconds(1));
+    changed_.wait_until(lock, HangsAt(activity) + std::chrono::milliseconds(1));
   }
   return *shared->result;
 }
@@ -178,11 +193,22 @@ CachedStormStore::Activity& CachedStormStore::ActivityOf(const PendingRead& read
   return read.purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
 }
 
-bool CachedStormStore::MayReadBeside(const PendingRead& read, const HungRead& hung) const {
-  if (!options_.reader_apart || read.purpose == Purpose::kBeside) return false;
-  const CataloguedStorm& storm = *read.place.storm;
+bool CachedStormStore::MayReadBeside(const Place& place, const HungRead& hung) const {
+  if (!options_.reader_apart) return false;
+  const StormFile& file = FileOf(*place.storm, place.time);
+  if (file.device != 0 && hung.device != 0) return file.device != hung.device;
   const auto folder = [](const std::string& path) { return fs::path(path).parent_path(); };
-  return folder(storm.files[storm.sources[read.place.time].file].path) != folder(hung.file);
+  return folder(file.path) != folder(hung.file);
+}
+
+std::uint64_t CachedStormStore::DeviceOf(std::string_view path) const {
+  for (const Held& held : storms_) {
+    if (held.storm == nullptr) continue;
+    for (const StormFile& file : held.storm->files) {
+      if (file.path == path) return file.device;
+    }
+  }
+  return 0;
 }
 
 std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Beside(const PendingRead& read) {
@@ -199,16 +225,49 @@ std::shared_ptr<const RecordReader> CachedStormStore::ReaderOf(const StormFile& 
 }
 
 std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const {
-  const auto now = steady_clock::now();
-  if (!activity.reads || now - activity.went_on <= options_.read_deadline) return std::nullopt;
-  HungRead hung{activity.file, duration<double>(now - activity.went_on).count()};
-  // It may only wait for another; not so another process.
-  const auto holder = &activity != &reading_beside_ ? NetcdfHolder::Now() : std::nullopt;
-  if (holder.has_value() && holder->path != hung.file &&
-      now - holder->since > options_.read_deadline / 2) {
-    hung = {holder->path, duration<double>(now - holder->since).count()};
+  if (!activity.reads) return std::nullopt;
+  const auto since = steady_clock::now() - activity.went_on;
+  const bool is_late = since > options_.read_deadline;
+  // It may only wait for another, and need not do so for the deadline if that one is known to hang.
+  // Another process waits for none.
+  if (&activity != &reading_beside_) {
+    const auto deadline = is_late ? options_.read_deadline / 2 : options_.read_deadline;
+    auto holder = HolderFor(deadline, activity.file);
+    if (holder.has_value()) return holder;
+  }
+  if (!is_late) return std::nullopt;
+  return HungRead{activity.file, duration<double>(since).count(), activity.device};
+}
+
+std::optional<HungRead> CachedStormStore::NoteHang(Activity& activity) const {
+  std::optional<HungRead> hung = HungIn(activity);
+  if (hung.has_value() && !std::exchange(activity.told_of_hang, true)) {
+    spdlog::error("{}: its storage does not answer; what needs it is refused", hung->file);
   }
   return hung;
+}
+
+steady_clock::time_point CachedStormStore::HangsAt(const Activity& activity) const {
+  // Once it begins or goes on, whoever waits looks again.
+  if (!activity.reads) return steady_clock::now() + options_.read_deadline;
+  auto since = activity.went_on;
+  const auto holder = &activity != &reading_beside_ ? NetcdfHolder::Now() : std::nullopt;
+  if (holder.has_value() && holder->path != activity.file) since = std::min(since, holder->since);
+  return since + options_.read_deadline;
+}
+
+std::optional<HungRead> CachedStormStore::HolderFor(std::chrono::milliseconds time,
+                                                    std::string_view path) const {
+  const std::optional<NetcdfHolder> holder = NetcdfHolder::Now();
+  if (!holder.has_value() || holder->path == path) return std::nullopt;
+  const auto since = steady_clock::now() - holder->since;
+  if (since <= time) return std::nullopt;
+  return HungRead{holder->path, duration<double>(since).count(), DeviceOf(holder->path)};
+}
+
+std::optional<HungRead> CachedStormStore::HungBefore() const {
+  std::optional<HungRead> hung = HungIn(reading_asked_);
+  return hung.has_value() ? hung : HolderFor(options_.read_deadline, "");
 }
 
 std::optional<HungRead> CachedStormStore::Hung() const {
@@ -238,6 +297,11 @@ void CachedStormStore::ReadAhead() {
       changed_.wait(lock);
       continue;
     }
+    // It would wait behind it, and then who asks for that time does so with it.
+    if (HungBefore().has_value()) {
+      changed_.wait_for(lock, kLookAgain);
+      continue;
+    }
     const std::shared_ptr<PendingRead> read = Begin(*place, Purpose::kAhead);
     Read(lock, *read, reading_ahead_);
     std::erase(wanted_, place->key);
@@ -254,9 +318,9 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   // The caller may have given up meanwhile.
   Fields fields = absl::CancelledError("nobody waits for it any more");
   if (!is_asked || read.waiters > 0) {
-    const StormFile& file =
-        read.place.storm->files[read.place.storm->sources[read.place.time].file];
-    activity = {true, file.path, steady_clock::now(), false};
+    const StormFile& file = FileOf(*read.place.storm, read.place.time);
+    activity = {true, file.path, file.device, steady_clock::now(), false};
+    changed_.notify_all();  // those who wait for it: from now on it may hang
     fields = ReadFile(lock, read, activity);
     activity.reads = false;
     if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
@@ -377,6 +441,7 @@ absl::Status CachedStormStore::Checkpoint(PendingRead& read, Activity& activity,
     changed_.wait(lock,
                   [&] { return ending_ || read.waiters > 0 || asked_reads_ == 0 || unwanted(); });
     activity.reads = true;
+    changed_.notify_all();
     if (ending_ || unwanted()) return absl::CancelledError("read-ahead was cancelled");
   }
   activity.went_on = steady_clock::now();

@@ -11,6 +11,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "base/file_stamp.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
@@ -271,7 +272,11 @@ void LogNotes(const std::vector<CataloguedStorm>& storms) {
 absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormFormats& formats) {
   const base::SlowCall call(path);
   try {
-    return formats.Describe(path);
+    absl::StatusOr<StormFile> file = formats.Describe(path);
+    if (file.ok() && file->device == 0) {
+      if (const auto stamp = base::StampOf(path); stamp.has_value()) file->device = stamp->device;
+    }
+    return file;
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError(
         absl::StrCat(path, ": its metadata does not fit in memory; the file is probably damaged"));

@@ -57,6 +57,8 @@ struct StormFile {
   std::uint64_t version = 0;
   // Which file was described (base::FileStamp::Id), where somebody watches its path; 0 elsewhere.
   std::uint64_t id = 0;
+  // The device that it was on when it was described (base::FileStamp::device); 0: unknown.
+  std::uint64_t device = 0;
 };
 
 }  // namespace thunderhead::volume

@@ -1,8 +1,7 @@
 // The storms a server holds: a catalogue of series found under some paths, which may follow what
 // happens there, and a cache of the times in use within a byte budget, which reads the next times
 // ahead on a thread of its own. Safe to call from any thread; netCDF-C is not thread-safe, so one
-// reader works at a time in this process. While a storage holds it up, other folders are read in
-// another.
+// reader works at a time in this process. While a storage holds it up, others are read in another.
 #pragma once
 
 #include <chrono>
@@ -90,7 +89,7 @@ struct StormStoreOptions {
   std::chrono::milliseconds read_deadline{60'000};
   StormFormats formats = StormFormats::BuiltIn();
   // Gives a reader of the file that works in another process, for while this one's is held up by
-  // the storage of another folder, or null; empty: such reads are refused.
+  // another storage, or null; empty: such reads are refused.
   std::function<std::shared_ptr<const RecordReader>(const StormFile& file)> reader_apart;
   // Absent: the storms are those of the start. With it, a folder without storms is no error.
   std::optional<LiveCatalogueOptions> live;
@@ -99,7 +98,8 @@ struct StormStoreOptions {
 // A read that its storage does not let go on.
 struct HungRead {
   std::string file;
-  double seconds = 0.0;  // so far
+  double seconds = 0.0;      // so far
+  std::uint64_t device = 0;  // StormFile::device of the file
 };
 
 class StormStore {
@@ -130,8 +130,7 @@ class StormStore {
   // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the
   // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), RESOURCE_EXHAUSTED (no room in memory),
   // DEADLINE_EXCEEDED (a storage hangs, this time's or, where no other process reads, one before
-  // it; at once where that is known),
-  // and those of the file's reader.
+  // it; at once where that is known), and those of the file's reader.
   // `progress` may be empty.
   virtual absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) = 0;

@@ -1,7 +1,9 @@
 // A library for LD_PRELOAD that makes a storage hang: opening a file waits for ever while there is
-// another one beside it whose name ends with ".hangs".
+// another one beside it whose name ends with ".hangs". What is in a folder beside which there is a
+// file whose name ends with ".mounted" is on another device.
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdarg>
@@ -13,6 +15,14 @@ namespace {
 void HangIfTold(const char* path) {
   if (path == nullptr || access((std::string(path) + ".hangs").c_str(), F_OK) != 0) return;
   while (true) pause();
+}
+
+bool IsMounted(const char* path) {
+  if (path == nullptr) return false;
+  const std::string file(path);
+  const std::size_t slash = file.rfind('/');
+  if (slash == std::string::npos) return false;
+  return access((file.substr(0, slash) + ".mounted").c_str(), F_OK) == 0;
 }
 
 template <typename Function>
@@ -51,6 +61,14 @@ int open64(const char* path, int flags, ...) {
   const int mode = va_arg(rest, int);
   va_end(rest);
   return Real<int(const char*, int, ...)>("open64")(path, flags, mode);
+}
+
+int statx(int folder, const char* path, int flags, unsigned int mask,
+          struct statx* status) noexcept {
+  const int result = Real<int(int, const char*, int, unsigned int, struct statx*)>("statx")(
+      folder, path, flags, mask, status);
+  if (result == 0 && IsMounted(path)) status->stx_dev_minor += 1000;
+  return result;
 }
 
 }  // extern "C"

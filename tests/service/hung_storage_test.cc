@@ -41,6 +41,9 @@ void WriteStorm(const std::string& path) {
   WriteWrf(storm, path);
 }
 
+// From now on what is in the folder is on a device of its own.
+void Mount(const std::string& folder) { std::ofstream(folder + ".mounted"); }
+
 void HangAt(const std::string& path) { std::ofstream(path + ".hangs"); }
 
 v1::Scene SceneOf(const std::string& storm) {
@@ -138,6 +141,7 @@ class HungStorageTest : public ::testing::Test {
 
 TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   fs::create_directory(folder_.File("data"));
+  Mount(folder_.File("data"));
   fs::create_directory(folder_.File("other"));
   const std::string far = folder_.File("data/tower.nc");
   // The first of them is drawn, and so read, as the program starts.
@@ -167,7 +171,7 @@ TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   EXPECT_EQ(CodeOf(operators_port_, "/healthz"), 200);
   EXPECT_EQ(CodeOf(operators_port_, "/readyz"), 200);
   EXPECT_TRUE(Draw("anvil").ok());
-  // Another folder is read by another process.
+  // Another device is read by another process.
   const grpc::Status beside = Draw("plume");
   EXPECT_TRUE(beside.ok()) << beside.error_message();
   *request.mutable_scene() = SceneOf("anvil");

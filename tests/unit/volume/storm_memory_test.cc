@@ -2,10 +2,12 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
@@ -14,6 +16,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
+#include "volume/netcdf_lock.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::volume {
@@ -58,8 +61,11 @@ class Storage {
   int passed_ = 0;
 };
 
+constexpr std::uint64_t kFarDevice = 4711;
+
 // "cube" is one storm of many times of cells in a cube; a file whose name begins with "far" comes
-// from the storage.
+// from the storage, which is a device of its own. One with "locked" in it is read by netCDF-C, as
+// it were.
 class CubeFormat final : public StormFormat {
  public:
   explicit CubeFormat(std::shared_ptr<Storage> storage) : storage_(std::move(storage)) {}
@@ -79,20 +85,33 @@ class CubeFormat final : public StormFormat {
     for (int i = 0; i < kManyTimes; ++i) described.times.push_back(absl::FromUnixSeconds(60 * i));
     described.fields = {physics::Hydrometeor::kRain};
     const bool far = file.path.find("/far") != std::string::npos;
-    described.reader = std::make_shared<Reader>(far ? storage_ : nullptr, described.cells);
+    if (far) described.device = kFarDevice;
+    const bool locked = file.path.ends_with("locked.cube");
+    described.reader = std::make_shared<Reader>(far ? storage_ : nullptr, described.cells,
+                                                locked ? file.path : "");
     return described;
+  }
+
+  // A reader in another process, as it were, which waits for no lock of this one.
+  static std::shared_ptr<const RecordReader> ReaderApart(const StormFile& file) {
+    return std::make_shared<Reader>(nullptr, file.cells, "");
   }
 
  private:
   class Reader final : public RecordReader {
    public:
-    Reader(std::shared_ptr<Storage> storage, const glm::ivec3& cells)
-        : storage_(std::move(storage)), cells_(cells) {}
+    // `locked` is the path if it is read by netCDF-C, else empty.
+    Reader(std::shared_ptr<Storage> storage, const glm::ivec3& cells, std::string locked)
+        : storage_(std::move(storage)), cells_(cells), locked_(std::move(locked)) {}
 
     absl::StatusOr<HydrometeorFields> Read(std::size_t /*record*/,
                                            const std::optional<VerticalGrid>& /*grid*/,
                                            const ReadCheckpoint& checkpoint) const override {
-      if (storage_ != nullptr) storage_->Pass();
+      {
+        std::optional<NetcdfLock> lock;
+        if (!locked_.empty()) lock.emplace(locked_);
+        if (storage_ != nullptr) storage_->Pass();
+      }
       if (absl::Status ended = checkpoint(0.5); !ended.ok()) return ended;
       HydrometeorFields fields;
       fields.grid = {cells_, glm::dvec3(100.0), glm::dvec3(0.0)};
@@ -109,6 +128,7 @@ class CubeFormat final : public StormFormat {
    private:
     const std::shared_ptr<Storage> storage_;
     const glm::ivec3 cells_;
+    const std::string locked_;
   };
 
   const std::shared_ptr<Storage> storage_;
@@ -221,10 +241,10 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   EXPECT_LT(steady_clock::now() - behind, milliseconds(150));
 }
 
-TEST_F(StormMemory, AStorageThatHangsLeavesOtherFoldersToAnotherProcess) {
+TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherProcess) {
   std::filesystem::create_directories(folder_.Path() / "other");
   std::atomic<int> apart{0};
-  const auto store = Open({Cube("far", kCells), Cube("near", kCells), Cube("other/b", kCells)},
+  const auto store = Open({Cube("far", kCells), Cube("other/farther", kCells), Cube("b", kCells)},
                           {.read_ahead = 0,
                            .read_deadline = milliseconds(200),
                            .reader_apart = [&](const StormFile& file) {
@@ -247,9 +267,9 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOtherFoldersToAnotherProcess) {
   EXPECT_LT(steady_clock::now() - begun, milliseconds(150)) << "at once, as it is known";
   EXPECT_EQ(progress, 0.5);
   EXPECT_GE(apart, 2);
-  // Of the storage that hangs nothing is read by yet another process.
+  // Of the storage that hangs nothing is read by yet another process, of no folder.
   const int before = apart;
-  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("near.cube", 0, {}).status()));
+  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("farther.cube", 0, {}).status()));
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 1, {}).status()));
   EXPECT_EQ(apart, before);
   storage_->Answer();
@@ -260,6 +280,43 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOtherFoldersToAnotherProcess) {
     again = store->Get("far.cube", 0, {}).status();
   }
   EXPECT_TRUE(again.ok()) << again;
+}
+
+TEST_F(StormMemory, PlaybackGoesOnBesideAStorageThatHangs) {
+  const auto store = Open({Cube("far-locked", kCells), Cube("locked", kCells)},
+                          {.read_ahead = 1,
+                           .read_deadline = milliseconds(1000),
+                           .reader_apart = CubeFormat::ReaderApart});
+  ASSERT_TRUE(store->Get("locked.cube", 0, {}).ok());
+  while (store->Peek("locked.cube", 1) == nullptr) {
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  storage_->Hang();
+  auto hung =
+      std::async(std::launch::async, [&] { return store->Get("far-locked.cube", 0, {}).status(); });
+  // Reading ahead begins, and waits behind it, before it is known to hang.
+  std::this_thread::sleep_for(milliseconds(600));
+  ASSERT_TRUE(store->Get("locked.cube", 1, {}).ok());
+  EXPECT_TRUE(absl::IsDeadlineExceeded(hung.get()));
+  for (int time = 2; time < 8; ++time) {
+    const auto begun = steady_clock::now();
+    EXPECT_TRUE(store->Get("locked.cube", time, {}).ok()) << time;
+    EXPECT_LT(steady_clock::now() - begun, milliseconds(300)) << time;
+  }
+  storage_->Answer();
+}
+
+TEST_F(StormMemory, AFileThatNetcdfHangsWithOutsideTheStoreIsNamed) {
+  const auto store =
+      Open({Cube("locked", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(200)});
+  std::optional<NetcdfLock> other(folder_.File("written.nc"));
+  std::this_thread::sleep_for(milliseconds(250));
+  const auto begun = steady_clock::now();
+  const absl::Status late = store->Get("locked.cube", 0, {}).status();
+  EXPECT_LT(steady_clock::now() - begun, milliseconds(150)) << "at once, as it is known";
+  EXPECT_THAT(std::string(late.message()), HasSubstr("written.nc"));
+  other.reset();
+  EXPECT_TRUE(store->Get("locked.cube", 0, {}).ok());
 }
 
 TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {
