@@ -171,15 +171,13 @@ TEST_F(SlowClientsTest, AFileMustBeReadAtALeastRate) {
   RawClient client(Site().Port(), 64 << 10);
   client.Send("GET /big.js HTTP/1.1\r\nHost: localhost\r\n\r\n");
   client.ReadHeaders();
-  // Some progress, always.
-  size_t read = 0;
+  // Some progress, always; the connection ends long before it has a third of it.
   EXPECT_ANY_THROW({
     for (int i = 1; i < 400; ++i) {
       std::this_thread::sleep_for(milliseconds(10));
-      read = client.ReadBody(static_cast<size_t>(i) * 20'000).size();
+      client.ReadBody(static_cast<size_t>(i) * 20'000);
     }
   });
-  EXPECT_LT(read, 30'000'000U);
 }
 
 // A request of Count for messages of that size.
@@ -196,15 +194,13 @@ TEST_F(SlowClientsTest, AnAnswerMustBeTakenAtALeastRate) {
   RawClient client(Site().Port(), 64 << 10);
   client.Send(CallRequest("Count", Frame(Sized(1, 30'000'000))));
   client.ReadHeaders();
-  // Some progress, always.
-  size_t read = 0;
+  // Some progress, always; the connection ends long before it has a third of it.
   EXPECT_ANY_THROW({
     for (int i = 1; i < 400; ++i) {
       std::this_thread::sleep_for(milliseconds(10));
-      read = client.ReadBody(static_cast<size_t>(i) * 20'000).size();
+      client.ReadBody(static_cast<size_t>(i) * 20'000);
     }
   });
-  EXPECT_LT(read, 30'000'000U);
   EXPECT_TRUE(Eventually([&] { return Site().Record().done == 1; }));
 }
 
