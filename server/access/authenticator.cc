@@ -5,6 +5,7 @@
 
 #include "access/secret_file.h"
 #include "access/token_list.h"
+#include "base/client_network.h"
 #include "base/error_details.h"
 #include "base/status.h"
 
@@ -21,7 +22,7 @@ absl::Status NoToken() {
 class Everybody final : public Authenticator {
  public:
   absl::StatusOr<Identity> Identify(const Credentials& credentials) override {
-    return Identity{NetworkOf(credentials.peer), Role::kOperator};
+    return Identity{base::NetworkOf(credentials.peer), Role::kOperator};
   }
 };
 

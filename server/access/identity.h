@@ -34,8 +34,4 @@ struct Credentials {
   std::string peer;   // the client's address with its port; empty: this machine's local socket
 };
 
-// The part of a client's address that stays the same between its connections: an IPv4 address, or
-// the first half of an IPv6 address, of which one client may have them all.
-std::string NetworkOf(const std::string& peer);
-
 }  // namespace thunderhead::access

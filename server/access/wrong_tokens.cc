@@ -2,6 +2,7 @@
 
 #include <openssl/sha.h>
 
+#include "base/client_network.h"
 #include "base/error_details.h"
 
 namespace thunderhead::access {
@@ -22,7 +23,7 @@ std::string DigestOf(const std::string& token) {
 absl::Status WrongTokens::MayShow(const Credentials& shown, Time now) {
   if (per_second_ <= 0.0 || shown.token.empty()) return absl::OkStatus();
   const std::lock_guard lock(mutex_);
-  const auto left = left_.find(NetworkOf(shown.peer));
+  const auto left = left_.find(base::NetworkOf(shown.peer));
   if (left == left_.end() || left->second.LeftAt(per_second_, now) >= 1.0) return absl::OkStatus();
   if (right_.contains(DigestOf(shown.token))) return absl::OkStatus();
   return base::WithDetails(
@@ -48,7 +49,7 @@ void WrongTokens::WasWrong(const Credentials& shown, Time now) {
     std::erase_if(left_, [&](const auto& entry) { return entry.second.IsFull(per_second_, now); });
   }
   const auto [left, is_new] =
-      left_.try_emplace(NetworkOf(shown.peer), RequestBudget(per_second_, now));
+      left_.try_emplace(base::NetworkOf(shown.peer), RequestBudget(per_second_, now));
   (void)left->second.Take(per_second_, now);
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/client_network.h"
 
 namespace thunderhead::gateway {
 namespace {
@@ -50,9 +51,10 @@ ClientLink::ClientLink(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::co
   // A client that is gone already has none.
   error_code error;
   const net::ip::tcp::endpoint endpoint = stream_.socket().remote_endpoint(error);
-  address_ = endpoint.address();
-  peer_ = absl::StrCat(address_.is_v6() ? "[" : "", address_.to_string(),
-                       address_.is_v6() ? "]" : "", ":", endpoint.port());
+  const net::ip::address address = endpoint.address();
+  peer_ = absl::StrCat(address.is_v6() ? "[" : "", address.to_string(), address.is_v6() ? "]" : "",
+                       ":", endpoint.port());
+  network_ = base::NetworkOf(peer_);
 }
 
 net::awaitable<bool> ClientLink::WriteAll(std::vector<net::const_buffer> buffers,

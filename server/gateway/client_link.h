@@ -37,9 +37,10 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   ClientLink(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
              std::chrono::milliseconds write_stall_timeout);
 
-  // The client's address with its port, and without.
+  // The client's address with its port.
   const std::string& Peer() const { return peer_; }
-  const boost::asio::ip::address& Address() const { return address_; }
+  // What of it one client has: base::NetworkOf.
+  const std::string& Network() const { return network_; }
 
   void Begin(LinkUse use) {
     use_ = use;
@@ -95,7 +96,7 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   void OnWatched(boost::system::error_code error, size_t bytes);
 
   std::string peer_;
-  boost::asio::ip::address address_;
+  std::string network_;
   LinkUse use_ = LinkUse::kWaiting;
   Clock::time_point used_since_ = Clock::now();
   ClientStream stream_;

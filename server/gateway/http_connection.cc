@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/client_network.h"
 #include "gateway/byte_range.h"
 #include "gateway/call_header.h"
 #include "gateway/file_threads.h"
@@ -127,9 +128,13 @@ class HttpConnection {
   bool Complete(const Request& request, http::response<Body>& response);
   ClientLink::Clock::time_point EndOfSending(std::uint64_t bytes) const;
   net::awaitable<error_code> ReadBody(Parser& parser);
-  // The client's address.
+  // The client's address, with its port where that is known.
   std::string OwnerOf(const Request& request) const {
     return ClientOf(request, link_.Peer(), site_.options.trusted_proxies);
+  }
+  // Whose work on files it is: all of a client's connections have one share of their threads.
+  std::string FilesOwnerOf(const Request& request) const {
+    return base::NetworkOf(OwnerOf(request));
   }
   void Tell(const Request& request, const char* act, const absl::Status& refusal) {
     TellOfRefusal(site_.options, OwnerOf(request), act, refusal);
@@ -407,7 +412,7 @@ net::awaitable<absl::StatusOr<PageFile>> HttpConnection::FindPageFile(const Requ
         if (MatchesEntityTag(known, found->about->entity_tag)) return;
         found->file = OpenFile::Open(found->about->path, closer);
       };
-  const std::string owner = OwnerOf(request);
+  const std::string owner = FilesOwnerOf(request);
   const absl::Status done = co_await site_.page_threads.Run(executor_, owner, std::move(find));
   if (!done.ok()) co_return done;
   co_return *found;
@@ -455,7 +460,7 @@ net::awaitable<bool> HttpConnection::SendKept(const Request& request, const Kept
                                 closer = std::weak_ptr(site_.file_closer)] {
     *opened = OpenFile::Open(path, closer);
   };
-  const std::string owner = OwnerOf(request);
+  const std::string owner = FilesOwnerOf(request);
   const absl::Status done = co_await site_.kept_threads.Run(executor_, owner, std::move(open));
   if (!done.ok()) {
     keep = co_await SendStorageFails(request);
@@ -522,7 +527,7 @@ net::awaitable<bool> HttpConnection::SendPart(const Request& request,
     std::string error;
   };
   const auto read = std::make_shared<Read>();
-  const std::string owner = OwnerOf(request);
+  const std::string owner = FilesOwnerOf(request);
   do {
     if (part.bytes > 0) {
       const auto most = static_cast<size_t>(std::min<std::uint64_t>(part.bytes, kFilePart));

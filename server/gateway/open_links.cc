@@ -14,15 +14,6 @@ constexpr std::chrono::seconds kFairReading{5};
 // Between two lines of the log about refusals: a flood must not fill the disk.
 constexpr std::chrono::seconds kTellingPause{10};
 
-// Of IPv6, a network (/64) is one client's.
-bool IsSameClient(const boost::asio::ip::address& a, const boost::asio::ip::address& b) {
-  if (!a.is_v6() || !b.is_v6() || a.to_v6().is_v4_mapped()) return a == b;
-  constexpr std::ptrdiff_t kNetworkBytes = 8;
-  const auto first = a.to_v6().to_bytes();
-  const auto second = b.to_v6().to_bytes();
-  return std::equal(first.begin(), first.begin() + kNetworkBytes, second.begin());
-}
-
 bool CanBeSpared(const ClientLink& link, ClientLink::Clock::time_point now) {
   switch (link.Use()) {
     case LinkUse::kWaiting:
@@ -45,9 +36,9 @@ auto Rank(const ClientLink& link) {
 
 bool OpenLinks::MakeRoom(const ClientLink& newcomer) {
   const auto own = std::ranges::count_if(
-      links_, [&](const auto& link) { return IsSameClient(link->Address(), newcomer.Address()); });
+      links_, [&](const auto& link) { return link->Network() == newcomer.Network(); });
   if (static_cast<size_t>(own) >= most_per_address_ && !proxies_.Holds(newcomer.Peer())) {
-    if (CloseLeastNeeded(&newcomer.Address())) return true;
+    if (CloseLeastNeeded(&newcomer.Network())) return true;
   } else if (links_.size() < most_ || CloseLeastNeeded(nullptr)) {
     return true;
   }
@@ -55,11 +46,11 @@ bool OpenLinks::MakeRoom(const ClientLink& newcomer) {
   return false;
 }
 
-bool OpenLinks::CloseLeastNeeded(const boost::asio::ip::address* address) {
+bool OpenLinks::CloseLeastNeeded(const std::string* network) {
   const auto now = ClientLink::Clock::now();
   std::shared_ptr<ClientLink> least;
   for (const std::shared_ptr<ClientLink>& link : links_) {
-    if (address != nullptr && !IsSameClient(link->Address(), *address)) continue;
+    if (network != nullptr && link->Network() != *network) continue;
     if (CanBeSpared(*link, now) && (least == nullptr || Rank(*link) < Rank(*least))) least = link;
   }
   if (least == nullptr) return false;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <unordered_set>
 #include <utility>
 
@@ -27,8 +28,8 @@ class OpenLinks {
   void StopAll();
 
  private:
-  // Closes one, of that address or of any if it is null.
-  bool CloseLeastNeeded(const boost::asio::ip::address* address);
+  // Closes one, of that network or of any if it is null.
+  bool CloseLeastNeeded(const std::string* network);
   void TellOfRefusal(const ClientLink& newcomer);
 
   const size_t most_;

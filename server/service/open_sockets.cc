@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "access/identity.h"
+#include "base/client_network.h"
 
 namespace thunderhead::service {
 namespace {
@@ -48,7 +48,7 @@ std::optional<std::string> OpenSockets::PeerOf(int socket) {
 bool OpenSockets::Take(int socket, const std::string& peer, Clock::time_point now) {
   // Its number was another's that is closed.
   if (const auto closed = open_.find(socket); closed != open_.end()) Forget(closed);
-  const Open newcomer{peer, access::NetworkOf(peer), now};
+  const Open newcomer{peer, base::NetworkOf(peer), now};
   const auto is_full = [&] { return open_.size() >= most_ || HasItsShare(newcomer); };
   if (is_full()) ForgetClosed(now);
   if (is_full()) {

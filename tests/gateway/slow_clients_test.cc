@@ -116,6 +116,23 @@ TEST_F(SlowClientsTest, AnAddressThatHasItsShareMakesRoomItself) {
   EXPECT_EQ(second.Ask("GET", "/").result(), http::status::ok);
 }
 
+TEST_F(SlowClientsTest, Ipv4AndIpv6AreNotOneAddress) {
+  options_.address = "::";
+  options_.max_connections_per_address = 1;
+  const int v6 = socket(AF_INET6, SOCK_STREAM, 0);
+  sockaddr_in6 address{};
+  address.sin6_family = AF_INET6;
+  address.sin6_port = htons(Site().Port());
+  address.sin6_addr = in6addr_loopback;
+  ASSERT_EQ(connect(v6, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  // By IPv6 it is "::ffff:127.0.0.1".
+  RawClient v4(Site().Port());
+  EXPECT_EQ(v4.Ask("GET", "/").result(), http::status::ok);
+  char byte = 0;
+  EXPECT_EQ(recv(v6, &byte, 1, MSG_DONTWAIT), -1) << "it was closed";
+  close(v6);
+}
+
 TEST_F(SlowClientsTest, CallsDoNotMakeRoom) {
   options_.max_connections = 2;
   WebSocketClient first(Site().Port());

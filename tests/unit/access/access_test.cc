@@ -219,13 +219,6 @@ TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
   EXPECT_THAT(std::string(JwtKey::Parse("short").status().message()), HasSubstr("32"));
 }
 
-TEST(IdentityTest, ANetworkIsWhatOneClientHas) {
-  EXPECT_EQ(NetworkOf("192.0.2.7:51234"), "192.0.2.7");
-  EXPECT_EQ(NetworkOf("[2001:db8:1:2:3:4:5:6]:80"), "2001:db8:1:2::/64");
-  EXPECT_EQ(NetworkOf("[::ffff:192.0.2.7]:80"), "192.0.2.7");
-  EXPECT_EQ(NetworkOf(""), "");
-}
-
 TEST(QuotasTest, RequestsComeBackWithTime) {
   Quotas quotas({.requests_per_second = 10.0});
   const auto start = Quotas::Time();
