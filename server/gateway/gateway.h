@@ -88,7 +88,8 @@ struct GatewayOptions {
   // What is small enough is cut by the least rate before: of the default, all below 720 KiB.
   std::chrono::milliseconds write_stall_timeout = std::chrono::seconds(120);
   // Pings the client of a WebSocket that sent nothing for this time, and drops it, cancelling its
-  // call, if nothing comes for this time again.
+  // call, if nothing comes for this time again. While it is held back, its machine need only
+  // acknowledge the ping, which it may do 200 ms later.
   std::chrono::milliseconds websocket_ping_interval = std::chrono::seconds(15);
 
   // Timeout of a body, of a text and of the first bytes of a file, in timeouts of a header.
