@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <string_view>
 
 #include "absl/strings/str_cat.h"
 #include "app/json_log.h"
@@ -50,7 +49,7 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
   const auto writer = std::make_shared<base::LineWriter>(
       kMaxWaitingLines, [log](const std::string& line, std::uint64_t left_out) {
         const std::string lost = left_out > 0 ? absl::StrCat(" unwritten=", left_out) : "";
-        const std::string_view text = line.empty() ? "audit" : std::string_view(line);
+        const char* const text = line.empty() ? "audit" : line.c_str();
         log->log(spdlog::level::info, spdlog::string_view_t(absl::StrCat(text, lost)));
       });
   return std::make_shared<access::Audit>(
