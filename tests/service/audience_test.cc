@@ -310,6 +310,10 @@ TEST_F(AudienceTest, ALostConnectionIsAskedForASignOfLifeAndForgotten) {
   EXPECT_EQ(audience_.Doubts(*back), 0U);
   EXPECT_THAT(lost_viewer->wakes, Gt(wakes)) << "to ask";
   wakes = lost_viewer->wakes;
+  now_ += seconds(4);
+  Tick();
+  EXPECT_TRUE(audience_.IsThere(lost)) << "the question has not been sent yet";
+  audience_.Checked(lost, 1U, now_);
   now_ += seconds(3);
   Tick();
   EXPECT_FALSE(audience_.IsThere(lost));

@@ -65,7 +65,8 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_FALSE(scene.fields(0).has_radius_m());
   EXPECT_EQ(scene.particle_sizes(), v1::PARTICLE_SIZES_MODEL);
   EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_WATER_DROPLETS);
-  EXPECT_EQ(scene.fields(1).false_color().blue(), 1.0F);
+  // #56B4E9.
+  EXPECT_NEAR(scene.fields(1).false_color().blue(), 0.815F, 0.001F);
   EXPECT_TRUE(scene.fields(1).visible());
   EXPECT_EQ(scene.fields(1).sizes(), v1::PARTICLE_SIZES_UNSPECIFIED) << "the scene's";
 }
