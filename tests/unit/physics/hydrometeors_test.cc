@@ -1,6 +1,8 @@
 #include "physics/hydrometeors.h"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <set>
 #include <string_view>
 
@@ -61,8 +63,28 @@ TEST(Hydrometeors, PapersConstantsAreTheirTables) {
   EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kIce), 1e-3F);
   EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kSnow), 2e-3F);
   EXPECT_FLOAT_EQ(PapersRadius_m(Hydrometeor::kGraupel), 2.5e-3F);
-  EXPECT_EQ(DefaultOptics(Hydrometeor::kIce).false_color, glm::vec3(1, 0, 1));
-  EXPECT_EQ(DefaultOptics(Hydrometeor::kSnow).false_color, glm::vec3(1, 1, 0));
+}
+
+TEST(Hydrometeors, FalseColoursAreOkabeAndItos) {
+  const auto encoded = [](float linear) {
+    const double value =
+        linear <= 0.0031308F ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    return static_cast<int>(std::lround(255 * value));
+  };
+  const std::array<std::array<int, 3>, kHydrometeorCount> colors = {{{0xE6, 0x9F, 0x00},
+                                                                     {0x56, 0xB4, 0xE9},
+                                                                     {0xCC, 0x79, 0xA7},
+                                                                     {0xF0, 0xE4, 0x42},
+                                                                     {0x00, 0x9E, 0x73},
+                                                                     {0xD5, 0x5E, 0x00}}};
+  for (const Hydrometeor hydrometeor : kHydrometeors) {
+    const glm::vec3 color = DefaultOptics(hydrometeor).false_color;
+    for (int channel = 0; channel < 3; ++channel) {
+      EXPECT_EQ(encoded(color[channel]),
+                colors[IndexOf(hydrometeor)][static_cast<std::size_t>(channel)])
+          << NameOf(hydrometeor);
+    }
+  }
 }
 
 // Exponential distributions as observed, at 1 g/m3: 3/2 over the fourth root of pi rho N0 / 1e-3.
