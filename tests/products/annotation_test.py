@@ -57,8 +57,8 @@ class AnnotationTest(ProductTest):
         with_legend = pixels(output)[150:, 380:]
         self.render(SAMPLE, output, *SIZE, "--annotate", "--scene", without)
         without_legend = pixels(output)[150:, 380:]
-        # Table III: red for cloud, blue for rain, magenta for ice ...
-        for colour in ((255, 0, 0), (0, 0, 255), (255, 0, 255)):
+        # Of cloud, rain and ice.
+        for colour in ((0xE6, 0x9F, 0x00), (0x56, 0xB4, 0xE9), (0xCC, 0x79, 0xA7)):
             self.assertGreater((numpy.abs(with_legend - colour) < 10).all(axis=2).sum(), 15, colour)
             self.assertEqual((numpy.abs(without_legend - colour) < 10).all(axis=2).sum(), 0, colour)
 
