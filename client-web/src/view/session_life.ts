@@ -59,8 +59,8 @@ export class SessionLife implements SessionListener {
   #presenterKey: string | undefined;
   // True until the first presence of a session that this page opened.
   #opened = false;
-  // This page's former connection, by which it steered as a presenter: the server may still see that steer.
-  #lostSteerer: bigint | undefined;
+  // It steered as a presenter when the connection was lost.
+  #steeredBefore: { readonly viewerId: bigint; readonly known: ReadonlySet<bigint> } | undefined;
   #newestProblem: Problem | undefined;
 
   constructor(parts: SessionLifeParts) {
@@ -168,8 +168,11 @@ export class SessionLife implements SessionListener {
   joined(joined: Joined): void {
     const { session } = this.#parts.state;
     const presenting = joined.role === Role.PRESENTER;
-    this.#lostSteerer =
-      presenting && session.steering.peek() ? session.me.peek()?.viewerId : undefined;
+    const before = session.me.peek();
+    this.#steeredBefore =
+      presenting && before !== undefined && session.steering.peek()
+        ? { viewerId: before.viewerId, known: new Set(session.people.peek().map(idOf)) }
+        : undefined;
     session.joined(joined);
     if (presenting && this.#presenterKey !== undefined)
       this.#parts.keys.keep(joined.viewerKey, this.#presenterKey);
@@ -267,7 +270,7 @@ export class SessionLife implements SessionListener {
       this.#sync.hold();
       this.#parts.pausePlayback();
       if (this.#opened && presence.steeringViewerId === 0n) this.#parts.takeControl();
-      else if (presence.steeringViewerId === this.#lostSteerer) this.#parts.takeControl();
+      else if (this.#resumesSteering(presence)) this.#parts.takeControl();
       else
         this.#sync.discard(() => {
           const why = session.editBlock.peek() ?? "";
@@ -275,7 +278,17 @@ export class SessionLife implements SessionListener {
         });
     }
     this.#opened = false;
-    this.#lostSteerer = undefined;
+    this.#steeredBefore = undefined;
+  }
+
+  // Of who steered when the connection was lost: where the server still sees that connection steer, where nobody does, and where a
+  // presenter got control for having come back first to a server that started again. A colleague who was there and took it keeps it.
+  #resumesSteering({ steeringViewerId, people }: Presence): boolean {
+    const before = this.#steeredBefore;
+    if (before === undefined) return false;
+    if (steeringViewerId === 0n || steeringViewerId === before.viewerId) return true;
+    const steerer = people.find(({ viewerId }) => viewerId === steeringViewerId);
+    return steerer?.role === Role.PRESENTER && !before.known.has(steeringViewerId);
   }
 
   #problem(problem: Problem): void {
@@ -304,3 +317,5 @@ export class SessionLife implements SessionListener {
     }
   }
 }
+
+const idOf = ({ viewerId }: { readonly viewerId: bigint }) => viewerId;

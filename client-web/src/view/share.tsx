@@ -11,7 +11,11 @@ type RuleName = Exclude<keyof SessionRules, "$typeName" | "$unknown">;
 
 const RULES: readonly (readonly [RuleName, string, string])[] = [
   ["viewersMaySteer", "Viewers may steer", "Who asks while nobody steers gets control at once."],
-  ["controlLocked", "Control locked", "Nobody can ask for control, and viewers give it to presenters alone."],
+  [
+    "controlLocked",
+    "Control locked",
+    "Nobody can ask for control, and viewers give it to presenters alone.",
+  ],
   ["followingLocked", "Following locked", "Everybody sees your view; nobody looks around."],
   ["viewersMayMark", "Viewers may point and draw", "Everybody sees their pointers and lines."],
   ["freeWhenAway", "Free when away", "Control becomes free once you have been away for a minute."],
