@@ -194,7 +194,7 @@ TEST(Keyboard, HasThePagesKeys) {
   EXPECT_EQ(keys.undone, 1);
 }
 
-// What the page saves, compares and probes by has no other meaning here.
+// Keys by which the page saves, compares and probes have no other meaning here.
 TEST(Keyboard, KeysOfThePageAloneDoNothing) {
   Keys keys;
   for (const SDL_Keycode key : {SDLK_s, SDLK_c, SDLK_p, SDLK_RETURN}) EXPECT_FALSE(keys.Press(key));

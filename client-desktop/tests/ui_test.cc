@@ -1,4 +1,4 @@
-// What the panels act upon, with a session of a service in this process.
+// The state behind the panels, with a session of a service in this process.
 #include "desktop/ui.h"
 
 #include <thread>

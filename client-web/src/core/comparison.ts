@@ -3,7 +3,7 @@
 import type { Camera, Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
 import { isSameDomain, laterByS } from "./domain";
-import { nearestTime } from "./nearest_time";
+import { nearestTime, sameNumber } from "./nearest_time";
 import { withCamera, withOutput, withRun, withStorm } from "./scene";
 import { formatElapsed } from "./units";
 
@@ -60,8 +60,7 @@ export function timeOfB(
   if (w.other === undefined) return { index, awayS: undefined };
   const { times } = w.other;
   const validTime = w.storm?.times[index]?.validTime ?? "";
-  const last = Math.max(0, times.length - 1);
-  return nearestTime(validTime, times) ?? { index: Math.min(index, last), awayS: undefined };
+  return nearestTime(validTime, times) ?? { index: sameNumber(index, times), awayS: undefined };
 }
 
 // A sentence about B's time; undefined where it is A's, or one that was chosen.

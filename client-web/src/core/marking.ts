@@ -130,9 +130,9 @@ export class Marking {
     const words = this.words.peek().trim();
     const box = this.#steps.picture()?.box;
     if (words === "" || box === undefined) return;
-    const most = wordsWidthPx(words, LETTER_PX);
-    const heightPx = LETTER_PX * Math.min(1, (box.width - 2 * EDGE_PX) / Math.max(1, most));
-    const widthPx = wordsWidthPx(words, heightPx);
+    const fullWidthPx = wordsWidthPx(words, LETTER_PX);
+    const scale = Math.min(1, (box.width - 2 * EDGE_PX) / Math.max(1, fullWidthPx));
+    const [widthPx, heightPx] = [scale * fullWidthPx, scale * LETTER_PX];
     const within = (at: number, low: number, room: number) =>
       Math.max(low + EDGE_PX, Math.min(at, low + room - EDGE_PX));
     const place = {

@@ -25,8 +25,12 @@ export function nearestTime(validTime: string, times: readonly Dated[]): Nearest
   return nearest;
 }
 
-// Of the nearest date, else of the same number, as far as there are times.
+// The same number, as far as there are times.
+export function sameNumber(index: number, times: readonly Dated[]): number {
+  return Math.min(index, Math.max(0, times.length - 1));
+}
+
+// Of the nearest date, else of the same number.
 export function timeLike(validTime: string, index: number, times: readonly Dated[]): number {
-  const last = Math.max(0, times.length - 1);
-  return nearestTime(validTime, times)?.index ?? Math.min(index, last);
+  return nearestTime(validTime, times)?.index ?? sameNumber(index, times);
 }

@@ -113,7 +113,7 @@ function Drawn({ shape }: { shape: Shape }) {
 
 type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
 
-// What the pictures of a storm and its settings have in common.
+// Words that all pictures of a storm and its settings share.
 export interface Labels {
   readonly title: string;
   readonly times: readonly StormTime[];

@@ -37,7 +37,7 @@ export class Comparing {
   // Picture B; undefined while nothing is compared.
   readonly choice = signal<ComparisonChoice | undefined>(undefined);
   readonly frame = signal<Frame | undefined>(undefined);
-  // What B cannot show.
+  // A part of its scene that B cannot show, in words.
   readonly problem = signal<string | undefined>(undefined);
   // Why no picture of B comes.
   readonly interrupted = signal<string | undefined>(undefined);
@@ -246,7 +246,7 @@ export class Comparing {
       this.other.value = described;
       this.undescribed.value = undefined;
     } catch (error) {
-      // What was known before stays.
+      // An older description stays.
       if (this.choice.peek()?.stormId !== stormId || this.other.peek() !== undefined) return;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
       this.undescribed.value = `The times of B are not known: ${why}`;

@@ -236,11 +236,16 @@ function Lines({ lines, extent }: { lines: MapLines | undefined; extent: Extent 
 
 function Domain(props: { state: PageState; extent: Extent; map: GetStormMapResponse | undefined }) {
   const domain = domainOf(props.map, props.state);
-  const corner = placeOnMap(props.extent, [domain.westM, domain.northM]);
-  const other = placeOnMap(props.extent, [domain.eastM, domain.southM]);
+  return <Ground name="map-domain" part={domain} extent={props.extent} />;
+}
+
+// A part of the ground, as a rectangle of class `name`.
+function Ground({ name, part, extent }: { name: string; part: Extent; extent: Extent }) {
+  const corner = placeOnMap(extent, [part.westM, part.northM]);
+  const other = placeOnMap(extent, [part.eastM, part.southM]);
   return (
     <rect
-      class="map-domain"
+      class={name}
       x={SIZE * corner.right}
       y={SIZE * corner.down}
       width={SIZE * (other.right - corner.right)}
@@ -290,19 +295,17 @@ interface FromAbove {
 // The part of the ground that a picture from above shows.
 function SeenFromAbove({ pose: { centerM, widthM }, state, extent }: FromAbove) {
   const { widthPx = 1, heightPx = 1 } = state.frame.value ?? {};
-  const half = [widthM / 2, (widthM / 2) * (heightPx / widthPx)] as const;
-  const corner = placeOnMap(extent, [centerM[0] - half[0], centerM[1] + half[1]]);
-  const other = placeOnMap(extent, [centerM[0] + half[0], centerM[1] - half[1]]);
+  const [halfWidthM, halfHeightM] = [widthM / 2, (widthM / 2) * (heightPx / widthPx)];
+  const shown = {
+    westM: centerM[0] - halfWidthM,
+    eastM: centerM[0] + halfWidthM,
+    southM: centerM[1] - halfHeightM,
+    northM: centerM[1] + halfHeightM,
+  };
   const middle = placeOnMap(extent, centerM);
   return (
     <>
-      <rect
-        class="map-wedge"
-        x={SIZE * corner.right}
-        y={SIZE * corner.down}
-        width={SIZE * (other.right - corner.right)}
-        height={SIZE * (other.down - corner.down)}
-      />
+      <Ground name="map-wedge" part={shown} extent={extent} />
       <circle
         class="map-camera"
         cx={SIZE * middle.right}
