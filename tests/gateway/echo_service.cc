@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -85,7 +86,8 @@ class Counter final : public grpc::ServerWriteReactor<CountResponse> {
   uint32_t next_ = 0;
 };
 
-// Reads a request when the responses to the one before are written.
+// Reads a request when the responses to the one before are written. gRPC ends the process where an
+// operation begins after Finish, so both are begun under the lock.
 class Conversation final : public grpc::ServerBidiReactor<ConverseRequest, ConverseResponse> {
  public:
   explicit Conversation(EchoRecord& record) : record_(record) {
@@ -95,25 +97,22 @@ class Conversation final : public grpc::ServerBidiReactor<ConverseRequest, Conve
 
  private:
   void OnReadDone(bool ok) override {
-    if (!ok) {
-      End(grpc::Status::OK);
-      return;
-    }
+    const std::lock_guard lock(mutex_);
+    if (!ok) return End(grpc::Status::OK);
     ++record_.read;
     response_.set_payload(request_.payload());
-    responses_left_ = request_.has_end() ? request_.repeats() : request_.repeats() + 1;
+    responses_left_ = std::uint64_t{request_.repeats()} + (request_.has_end() ? 0 : 1);
     Next();
   }
   void OnWriteDone(bool ok) override {
-    if (!ok) {
-      End(grpc::Status::CANCELLED);
-      return;
-    }
+    const std::lock_guard lock(mutex_);
+    if (!ok) return End(grpc::Status::CANCELLED);
     ++record_.written;
     Next();
   }
   void OnCancel() override {
     ++record_.cancelled;
+    const std::lock_guard lock(mutex_);
     End(grpc::Status::CANCELLED);
   }
   void OnDone() override {
@@ -122,6 +121,7 @@ class Conversation final : public grpc::ServerBidiReactor<ConverseRequest, Conve
   }
 
   void Next() {
+    if (ended_) return;
     if (responses_left_ > 0) {
       --responses_left_;
       StartWrite(&response_);
@@ -132,14 +132,17 @@ class Conversation final : public grpc::ServerBidiReactor<ConverseRequest, Conve
     }
   }
   void End(const grpc::Status& status) {
-    if (!ended_.exchange(true)) Finish(status);
+    if (ended_) return;
+    ended_ = true;
+    Finish(status);
   }
 
   EchoRecord& record_;
   ConverseRequest request_;
   ConverseResponse response_;
-  uint32_t responses_left_ = 0;
-  std::atomic<bool> ended_ = false;
+  std::mutex mutex_;  // between a cancellation and what is begun next
+  std::uint64_t responses_left_ = 0;
+  bool ended_ = false;
 };
 
 class Waiter final : public grpc::ServerUnaryReactor {
