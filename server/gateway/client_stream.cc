@@ -1,6 +1,7 @@
 #include "gateway/client_stream.h"
 
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/post.hpp>
 #include <exception>
 #include <utility>
 
@@ -10,7 +11,7 @@ namespace net = boost::asio;
 using boost::system::error_code;
 
 ClientStream::ClientStream(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::context> tls)
-    : context_(std::move(tls)), plain_(std::move(socket)) {
+    : context_(std::move(tls)), plain_(std::move(socket)), write_ended_(plain_.get_executor()) {
   if (context_ != nullptr) tls_.emplace(plain_, *context_);
 }
 
@@ -51,6 +52,41 @@ void ClientStream::Read(FewBuffers<net::mutable_buffer> into, BytesHandler handl
 }
 
 void ClientStream::Write(FewBuffers<net::const_buffer> from, BytesHandler handler) {
+  const std::size_t bytes = net::buffer_size(from);
+  const auto executor = handler.get_executor();
+  if (last_begun_ && between_writes_) {
+    net::post(executor,
+              [handler = std::move(handler), bytes]() mutable { handler(error_code(), bytes); });
+    return;
+  }
+  between_writes_ = false;
+  Send(from,
+       BytesHandler(
+           [this, bytes, handler = std::move(handler)](error_code error, std::size_t sent) mutable {
+             between_writes_ = error || sent == bytes;
+             write_ended_.Notify();
+             handler(error, sent);
+           },
+           executor));
+}
+
+net::awaitable<bool> ClientStream::WriteLast(std::string bytes) {
+  last_begun_ = true;
+  co_await write_ended_.AwaitTrue(between_writes_);
+  net::const_buffer rest = net::buffer(bytes);
+  error_code error;
+  while (!error && rest.size() > 0) {
+    if (tls_.has_value()) {
+      rest += co_await tls_->async_write_some(rest, net::redirect_error(net::use_awaitable, error));
+    } else {
+      rest +=
+          co_await plain_.async_write_some(rest, net::redirect_error(net::use_awaitable, error));
+    }
+  }
+  co_return !error;
+}
+
+void ClientStream::Send(FewBuffers<net::const_buffer> from, BytesHandler handler) {
   if (tls_.has_value()) {
     tls_->async_write_some(from, std::move(handler));
   } else {

@@ -22,10 +22,12 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
 #include "gateway/awaitable.h"
+#include "gateway/change_signal.h"
 
 namespace thunderhead::gateway {
 
@@ -132,6 +134,10 @@ class ClientStream {
   void expires_never() { plain_.expires_never(); }
   void cancel() { plain_.cancel(); }
 
+  // Sends `bytes` after what is being sent, as the last of all: whatever is written later is taken
+  // and not sent. False if the connection has ended.
+  boost::asio::awaitable<bool> WriteLast(std::string bytes);
+
   // Says to the client that nothing more comes, and drops what it still sends until it ends too,
   // the timeout is over or the socket is closed; then closes it. A socket that is closed before its
   // bytes are read resets the connection, and the client may lose what was last sent to it.
@@ -164,10 +170,14 @@ class ClientStream {
 
   void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
   void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
+  void Send(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
 
   const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives what is made of it
   Plain plain_;
   std::optional<Tls> tls_;
+  bool between_writes_ = true;  // the last one has ended, and was whole
+  bool last_begun_ = false;
+  ChangeSignal write_ended_;
 };
 
 // Beast's hooks for the end of a WebSocket: that of its TCP connection. Its own for sockets close

@@ -156,12 +156,19 @@ net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffe
 
 net::awaitable<void> WebSocketExchange::Close() {
   BeginClosing();
-  if (close_reason_.has_value() && socket_.is_open()) {
+  if (!close_reason_.has_value() || !socket_.is_open()) {
+    // Beast's reader answers a client that closes, and closes one that breaks the protocol.
+    co_await changed_.AwaitTrue(reader_ended_);
+  } else if (reader_ended_) {
     error_code ignored;
     co_await socket_.async_close(*close_reason_, net::redirect_error(net::use_awaitable, ignored));
   } else {
-    // Beast's reader answers a client that closes, and closes one that breaks the protocol.
+    // Beside a reader, Beast's closing could wait for it, and it for the closing, for ever: where
+    // it finds a broken frame while the close frame is on its way. So the reader ends alone: by the
+    // client's close frame, its broken one, or a message that the call does not take any more.
+    co_await link_->Stream().WriteLast(CloseFrame(*close_reason_));
     co_await changed_.AwaitTrue(reader_ended_);
+    if (socket_.is_open()) co_await link_->Stream().LingeringClose();
   }
 }
 

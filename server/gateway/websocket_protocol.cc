@@ -61,4 +61,14 @@ std::optional<close_reason> FindViolation(const MessageStart& start) {
   return std::nullopt;
 }
 
+std::string CloseFrame(const close_reason& reason) {
+  constexpr char kCloseHead = '\x88';
+  const std::string_view text(reason.reason.data(), reason.reason.size());
+  std::string frame = {kCloseHead, static_cast<char>(2 + text.size()),
+                       static_cast<char>(reason.code >> 8U),
+                       static_cast<char>(reason.code & 0xffU)};
+  frame += text;
+  return frame;
+}
+
 }  // namespace thunderhead::gateway

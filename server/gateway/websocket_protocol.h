@@ -41,4 +41,7 @@ struct MessageStart {
 // Why the connection must be closed, if the client breaks a rule.
 std::optional<boost::beast::websocket::close_reason> FindViolation(const MessageStart& start);
 
+// The frame with which the server closes for `reason` (RFC 6455, 5.5.1).
+std::string CloseFrame(const boost::beast::websocket::close_reason& reason);
+
 }  // namespace thunderhead::gateway
