@@ -1,7 +1,8 @@
 // Runs a fuzz target without libFuzzer: every kept input, then mutations of them for some seconds
 // and at least a number of times. Deterministic but for how far it comes in that time.
 //   fuzz_NAME FOLDER|FILE... [--seconds N] [--runs N] [--seed N]
-// An input that ends the process is left in the file finding-NAME.
+// An input that ends the process is left in the file finding-NAME. The target's end, in which it
+// frees what it kept, has twenty seconds as each input has.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -31,15 +32,21 @@ using std::chrono::steady_clock;
 // The input that runs, and the file to keep it in: for the handlers of fatal signals.
 std::string running;
 std::string finding;
+bool all_ran = false;
+
+void Say(std::string_view text) {
+  static_cast<void>(!write(STDERR_FILENO, text.data(), text.size()));
+}
 
 void KeepFinding() {
+  if (all_ran) return Say("all inputs ran, and the target does not end\n");
   const int file = open(finding.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644);
   if (file < 0) return;
   static_cast<void>(!write(file, running.data(), running.size()));
   close(file);
-  static_cast<void>(!write(STDERR_FILENO, "the input is in ", 16));
-  static_cast<void>(!write(STDERR_FILENO, finding.data(), finding.size()));
-  static_cast<void>(!write(STDERR_FILENO, "\n", 1));
+  Say("the input is in ");
+  Say(finding);
+  Say("\n");
 }
 
 void OnSignal(int signal) {
@@ -180,7 +187,10 @@ int main(int argc, char** argv) {
     Run(mutator.Next());
     ++mutations;
   }
+  all_ran = true;
+  alarm(kSlowest_s);
   std::printf("%zu inputs, %llu mutations in %.1f s\n", inputs.size(),
               static_cast<unsigned long long>(mutations), passed());
+  std::fflush(stdout);
   return 0;
 }
