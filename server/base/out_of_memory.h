@@ -4,6 +4,7 @@
 #include <chrono>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -40,6 +41,10 @@ auto OrOutOfMemory(const Work& work) -> decltype(work()) {
   } catch (const std::bad_alloc&) {
     return OutOfMemory();
   } catch (const std::length_error&) {  // of containers: more than any memory
+    return OutOfMemory();
+  } catch (const std::system_error& failed) {
+    // A thread that the system has no room for.
+    if (failed.code() != std::errc::resource_unavailable_try_again) throw;
     return OutOfMemory();
   }
 }

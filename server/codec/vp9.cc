@@ -84,6 +84,13 @@ struct Vp9Encoder::State {
   State& operator=(const State&) = delete;
 };
 
+std::size_t Vp9Encoder::BytesFor(int width_px, int height_px) {
+  constexpr std::size_t kFixed = std::size_t{10} << 20;
+  constexpr std::size_t kPerPixel = 78;
+  return kFixed +
+         kPerPixel * static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+}
+
 double Vp9Encoder::BitsPerPicture(int width_px, int height_px) {
   constexpr double kBits = 1.9e6 / kPicturesPerSecond;
   constexpr double kPixels = 1280.0 * 720.0;

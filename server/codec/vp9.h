@@ -2,6 +2,7 @@
 // sRGB as full-range BT.601 4:2:0. An encoder or decoder is used by one thread at a time.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -27,6 +28,10 @@ class Vp9Encoder {
  public:
   // Bits that a picture may take, on average over a second of 30: at most 2 Mbit/s at 1280 x 720.
   static double BitsPerPicture(int width_px, int height_px);
+
+  // Memory that an encoder of that size takes, about: 27, 78 and 112 MiB were measured at 640 x
+  // 360, 1280 x 720 and 1600 x 900.
+  static std::size_t BytesFor(int width_px, int height_px);
 
   // Both sides are 1 to 16384 pixels.
   static absl::StatusOr<std::unique_ptr<Vp9Encoder>> Create(int width_px, int height_px);

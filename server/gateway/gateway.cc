@@ -8,12 +8,15 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "base/line_limit.h"
+#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "gateway/awaitable.h"
 #include "gateway/client_link.h"
@@ -108,16 +111,25 @@ class Gateway::Listener {
           co_await acceptor_.async_accept(net::redirect_error(net::use_awaitable, error));
       if (stopping_) break;
       if (!error) {
-        Admit(std::move(socket));
+        // Without memory for one more connection, the next may have some.
+        const absl::Status admitted = base::OrOutOfMemory([&] {
+          Admit(std::move(socket));
+          return absl::OkStatus();
+        });
+        if (!admitted.ok()) LogRefusal(std::string(admitted.message()));
         continue;
       }
       // Probably out of file descriptors; trying again at once would waste processor time.
-      if (const auto left_out = accept_errors_.Take(std::chrono::system_clock::now()); left_out) {
-        spdlog::warn("cannot accept a browser's connection: {} ({} more since the last line)",
-                     error.message(), *left_out);
-      }
+      LogRefusal(error.message());
       net::steady_timer pause(io_, kAcceptPause);
       co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
+    }
+  }
+
+  void LogRefusal(std::string_view why) {
+    if (const auto left_out = accept_errors_.Take(std::chrono::system_clock::now()); left_out) {
+      spdlog::warn("cannot accept a browser's connection: {} ({} more since the last line)", why,
+                   *left_out);
     }
   }
 

@@ -177,6 +177,7 @@ absl::Status Jobs::Watch(const std::string& id, const Asker& asker,
                          std::weak_ptr<JobWatcher> watcher) {
   const std::lock_guard lock(mutex_);
   THUNDERHEAD_RETURN_IF_ERROR(board_.Check(id, asker));
+  DropGoneWatchers(id);
   watchers_.emplace(id, std::move(watcher));
   return absl::OkStatus();
 }
@@ -231,9 +232,13 @@ void Jobs::FetchedByKey(const std::string& result_key, std::size_t place) {
 JobsLoad Jobs::Load() const {
   const std::lock_guard lock(mutex_);
   const PictureCounts counts = board_.Counts();
-  return {board_.Running(),     counts[static_cast<std::size_t>(PictureState::kWaiting)],
-          board_.Paused(),      counts[static_cast<std::size_t>(PictureState::kDrawing)],
-          board_.ResultBytes(), busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0};
+  return {.running = board_.Running(),
+          .waiting = counts[static_cast<std::size_t>(PictureState::kWaiting)],
+          .paused = board_.Paused(),
+          .drawing = counts[static_cast<std::size_t>(PictureState::kDrawing)],
+          .result_bytes = board_.ResultBytes(),
+          .stalled_s = busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0,
+          .watchers = watchers_.size()};
 }
 
 void Jobs::Drain() {
@@ -475,20 +480,23 @@ absl::Status Jobs::Save(Lock& lock) {
 void Jobs::Tell(const std::vector<std::string>& ids, Lock& lock) {
   std::vector<std::shared_ptr<JobWatcher>> told;
   for (const std::string& id : ids) {
+    DropGoneWatchers(id);
     const auto [begin, end] = watchers_.equal_range(id);
-    for (auto watcher = begin; watcher != end;) {
-      if (auto here = watcher->second.lock(); here != nullptr) {
-        told.push_back(std::move(here));
-        ++watcher;
-      } else {
-        watcher = watchers_.erase(watcher);
-      }
+    for (auto watcher = begin; watcher != end; ++watcher) {
+      if (auto here = watcher->second.lock(); here != nullptr) told.push_back(std::move(here));
     }
   }
   lock.unlock();
   for (const auto& watcher : told) watcher->OnJobChanged();
   told.clear();
   lock.lock();
+}
+
+void Jobs::DropGoneWatchers(const std::string& id) {
+  const auto [begin, end] = watchers_.equal_range(id);
+  for (auto watcher = begin; watcher != end;) {
+    watcher = watcher->second.expired() ? watchers_.erase(watcher) : std::next(watcher);
+  }
 }
 
 void Jobs::LogOnce(const absl::Status& problem) {

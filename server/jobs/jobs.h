@@ -61,6 +61,7 @@ struct JobsLoad {
   std::size_t drawing = 0;
   std::uint64_t result_bytes = 0;
   double stalled_s = 0.0;  // for how long its thread has been at one thing; 0 at rest
+  std::size_t watchers = 0;
 };
 
 class Jobs {
@@ -146,6 +147,8 @@ class Jobs {
   absl::Status Save(Lock& lock);
   void SaveNew(const std::string& id, const Done& done);
   void Tell(const std::vector<std::string>& ids, Lock& lock);
+  // Needs mutex_.
+  void DropGoneWatchers(const std::string& id);
   void RemoveDropped(const std::vector<ResultFile>& dropped);
   void LogOnce(const absl::Status& problem);
 

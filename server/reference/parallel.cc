@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -31,7 +32,11 @@ void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   };
   {
     std::vector<std::jthread> others;
-    for (int i = 1; i < used; ++i) others.emplace_back(take);
+    try {
+      for (int i = 1; i < used; ++i) others.emplace_back(take);
+    } catch (const std::system_error&) {
+      // The system has no room for another thread: those that there are do it all.
+    }
     take();
   }
   if (thrown) std::rethrow_exception(thrown);

@@ -10,6 +10,7 @@
 #include "base/out_of_memory.h"
 #include "base/status.h"
 #include "base/whole_file.h"
+#include "service/delivery_deadline.h"
 #include "service/finished.h"
 #include "service/job_messages.h"
 #include "service/messages/limits_check.h"
@@ -27,34 +28,44 @@ constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
 // calls OnDone, which comes after it has called Finish: never while a chunk is read.
 class ResultStream final : public ResultReactor {
  public:
-  ResultStream(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
-               jobs::PicturePlace picture, jobs::ResultPlace place, std::uint64_t offset)
+  ResultStream(jobs::Jobs& jobs, base::Executor& reading, const Limits& limits,
+               grpc::CallbackServerContext* context, CallerRef caller, jobs::PicturePlace picture,
+               jobs::ResultPlace place, std::uint64_t offset)
       : jobs_(jobs),
         reading_(reading),
+        limits_(limits),
         caller_(std::move(caller)),
         picture_(std::move(picture)),
         place_(std::move(place)),
-        offset_(offset) {}
+        offset_(offset),
+        delivery_(context) {}
 
   void Next() {
     reading_.Submit(caller_->identity().name, [this](const absl::Status& status) {
       const absl::Status read =
           status.ok() ? base::OrOutOfMemory([this] { return Read(); }) : status;
-      if (!read.ok()) return Finish(ToGrpcStatus(read));
+      if (!read.ok()) return End(ToGrpcStatus(read));
+      delivery_.Begin(DeliveryTime(limits_, response_.chunk().size()));
       StartWrite(&response_);
     });
   }
 
   void OnWriteDone(bool ok) override {
-    if (!ok) return Finish(grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected"));
+    delivery_.Taken();
+    if (!ok) return End(grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected"));
     if (offset_ < place_.bytes) return Next();
     jobs_.Fetched(picture_);
-    Finish(grpc::Status::OK);
+    End(grpc::Status::OK);
   }
 
   void OnDone() override { delete this; }
 
  private:
+  void End(const grpc::Status& status) {
+    delivery_.Begin(DeliveryTime(limits_, 0));
+    Finish(status);
+  }
+
   absl::Status Read() {
     response_.Clear();
     if (!file_.is_open()) {
@@ -80,12 +91,14 @@ class ResultStream final : public ResultReactor {
 
   jobs::Jobs& jobs_;
   base::Executor& reading_;
+  const Limits& limits_;
   const CallerRef caller_;  // has its place while the stream lives
   const jobs::PicturePlace picture_;
   const jobs::ResultPlace place_;
   std::uint64_t offset_;
   std::ifstream file_;
   v1::FetchRenderResultResponse response_;  // gRPC reads it while it is written
+  DeliveryDeadline delivery_;
 };
 
 absl::StatusOr<jobs::ResultPlace> FindResult(const jobs::Jobs& jobs, const access::Caller& caller,
@@ -101,13 +114,14 @@ absl::StatusOr<jobs::ResultPlace> FindResult(const jobs::Jobs& jobs, const acces
 
 }  // namespace
 
-ResultReactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
+ResultReactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, const Limits& limits,
+                                 grpc::CallbackServerContext* context, CallerRef caller,
                                  const v1::FetchRenderResultRequest* request) {
   absl::StatusOr<jobs::ResultPlace> place = FindResult(jobs, *caller, *request);
   if (!place.ok()) return new RefusedStream<ResultReactor>(*caller, place.status());
   auto* stream =
-      new ResultStream(jobs, reading, std::move(caller), {request->job_id(), request->index()},
-                       *std::move(place), request->offset());
+      new ResultStream(jobs, reading, limits, context, std::move(caller),
+                       {request->job_id(), request->index()}, *std::move(place), request->offset());
   stream->Next();
   return stream;
 }

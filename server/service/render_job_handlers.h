@@ -6,6 +6,7 @@
 #include "base/executor.h"
 #include "jobs/jobs.h"
 #include "service/handlers.h"
+#include "service/limits.h"
 #include "thunderhead/v1/job.pb.h"
 
 namespace thunderhead::service {
@@ -24,14 +25,16 @@ grpc::ServerUnaryReactor* ListRenderJobs(jobs::Jobs& jobs, grpc::CallbackServerC
                                          const v1::ListRenderJobsRequest* request,
                                          v1::ListRenderJobsResponse* response);
 grpc::ServerWriteReactor<v1::WatchRenderJobResponse>* WatchRenderJob(
-    jobs::Jobs& jobs, CallerRef caller, const v1::WatchRenderJobRequest* request);
+    jobs::Jobs& jobs, const Limits& limits, grpc::CallbackServerContext* context, CallerRef caller,
+    const v1::WatchRenderJobRequest* request);
 grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
                                           const CallerRef& caller,
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response);
 // Reads files on `reading`.
 grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* FetchRenderResult(
-    jobs::Jobs& jobs, base::Executor& reading, CallerRef caller,
+    jobs::Jobs& jobs, base::Executor& reading, const Limits& limits,
+    grpc::CallbackServerContext* context, CallerRef caller,
     const v1::FetchRenderResultRequest* request);
 
 }  // namespace thunderhead::service

@@ -55,7 +55,7 @@ grpc::ServerWriteReactor<v1::WatchRenderJobResponse>* RenderJobService::WatchRen
     grpc::CallbackServerContext* context, const v1::WatchRenderJobRequest* request) {
   return entrance_.Stream<grpc::ServerWriteReactor<v1::WatchRenderJobResponse>>(
       "WatchRenderJob", context, [&](CallerRef caller) {
-        return service::WatchRenderJob(*jobs_, std::move(caller), request);
+        return service::WatchRenderJob(*jobs_, engine_.limits, context, std::move(caller), request);
       });
 }
 
@@ -71,7 +71,8 @@ grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* RenderJobService::Fetch
     grpc::CallbackServerContext* context, const v1::FetchRenderResultRequest* request) {
   return entrance_.Stream<grpc::ServerWriteReactor<v1::FetchRenderResultResponse>>(
       "FetchRenderResult", context, [&](CallerRef caller) {
-        return service::FetchRenderResult(*jobs_, reading_, std::move(caller), request);
+        return service::FetchRenderResult(*jobs_, reading_, engine_.limits, context,
+                                          std::move(caller), request);
       });
 }
 

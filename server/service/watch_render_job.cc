@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
+#include "service/delivery_deadline.h"
 #include "service/finished.h"
 #include "service/job_messages.h"
 #include "service/messages/limits_check.h"
@@ -30,11 +31,18 @@ class JobStream final : public JobReactor,
                         public jobs::JobWatcher,
                         public std::enable_shared_from_this<JobStream> {
  public:
-  JobStream(jobs::Jobs& jobs, CallerRef caller, std::string id)
-      : jobs_(jobs), caller_(std::move(caller)), id_(std::move(id)) {}
+  JobStream(jobs::Jobs& jobs, const Limits& limits, grpc::CallbackServerContext* context,
+            CallerRef caller, std::string id)
+      : jobs_(jobs),
+        limits_(limits),
+        caller_(std::move(caller)),
+        id_(std::move(id)),
+        delivery_(context) {}
 
-  static JobReactor* Start(jobs::Jobs& jobs, CallerRef caller, const std::string& id) {
-    auto stream = std::make_shared<JobStream>(jobs, std::move(caller), id);
+  static JobReactor* Start(jobs::Jobs& jobs, const Limits& limits,
+                           grpc::CallbackServerContext* context, CallerRef caller,
+                           const std::string& id) {
+    auto stream = std::make_shared<JobStream>(jobs, limits, context, std::move(caller), id);
     const absl::Status known = jobs.Watch(id, AskerOf(*stream->caller_), stream);
     if (!known.ok()) return new RefusedStream<JobReactor>(*stream->caller_, known);
     stream->held_by_grpc_ = stream;
@@ -52,11 +60,13 @@ class JobStream final : public JobReactor,
       finished_ = end.has_value();
       if (!writing_ && !finished_) return;
     }
+    delivery_->Begin(DeliveryTime(limits_, end.has_value() ? 0 : response_.ByteSizeLong()));
     if (end.has_value()) return Finish(*end);
     StartWrite(&response_);
   }
 
   void OnWriteDone(bool ok) override {
+    delivery_->Taken();
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
@@ -73,7 +83,10 @@ class JobStream final : public JobReactor,
     OnJobChanged();
   }
 
-  void OnDone() override { held_by_grpc_.reset(); }
+  void OnDone() override {
+    delivery_.reset();  // the jobs may keep the stream for longer
+    held_by_grpc_.reset();
+  }
 
  private:
   // The status to end with, if the stream ends now; else sets the response, if there is news. Needs
@@ -96,6 +109,7 @@ class JobStream final : public JobReactor,
   }
 
   jobs::Jobs& jobs_;
+  const Limits& limits_;
   const CallerRef caller_;  // has its place while the stream lives
   const std::string id_;
   std::shared_ptr<JobStream> held_by_grpc_;
@@ -107,16 +121,18 @@ class JobStream final : public JobReactor,
   bool writing_ = false;
   bool disconnected_ = false;
   bool finished_ = false;
+  std::optional<DeliveryDeadline> delivery_;
 };
 
 }  // namespace
 
-JobReactor* WatchRenderJob(jobs::Jobs& jobs, CallerRef caller,
+JobReactor* WatchRenderJob(jobs::Jobs& jobs, const Limits& limits,
+                           grpc::CallbackServerContext* context, CallerRef caller,
                            const v1::WatchRenderJobRequest* request) {
   if (const absl::Status wrong = CheckLimits(*request); !wrong.ok()) {
     return new RefusedStream<JobReactor>(*caller, wrong);
   }
-  return JobStream::Start(jobs, std::move(caller), request->job_id());
+  return JobStream::Start(jobs, limits, context, std::move(caller), request->job_id());
 }
 
 }  // namespace thunderhead::service

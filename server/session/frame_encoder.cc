@@ -84,10 +84,11 @@ absl::StatusOr<EncodedFrame> WithJpeg(const EncodedFrame& described, int tier,
 
 absl::StatusOr<EncodedVideo> WithVideo(const EncodedFrame& described, VideoOrder order,
                                        const frame::RgbImage& picture, VideoEncoders& encoders,
+                                       base::MemoryBudget& memory,
                                        const SerializeFrame& serialize) {
   const base::Stopwatch stopwatch;
   EncodedFrame frame = At(described, order.tier, picture);
-  THUNDERHEAD_ASSIGN_OR_RETURN(codec::Vp9Picture encoded, encoders.Encode(picture, &order));
+  THUNDERHEAD_ASSIGN_OR_RETURN(codec::Vp9Picture encoded, encoders.Encode(picture, &order, memory));
   frame.vp9 = std::move(encoded.bytes);
   frame.key_frame = encoded.key;
   frame.stages.push_back({scene::FrameStage::kEncode, stopwatch.ElapsedMs()});
@@ -99,15 +100,16 @@ absl::StatusOr<EncodedVideo> WithVideo(const EncodedFrame& described, VideoOrder
 // The pictures of video that viewers wait for. One that fails is left out: they get JPEG.
 std::vector<EncodedVideo> VideoOf(const EncodedFrame& described, Session& session,
                                   bool still_follows, Pictures& pictures,
-                                  const SerializeFrame& serialize) {
+                                  base::MemoryBudget& memory, const SerializeFrame& serialize) {
   std::vector<EncodedVideo> video;
   for (const VideoOrder& order : session.hub().OrderVideo(described, still_follows)) {
     auto encoded = base::OrOutOfMemory([&] {
-      return WithVideo(described, order, pictures.At(order.tier), session.video(), serialize);
+      return WithVideo(described, order, pictures.At(order.tier), session.video(), memory,
+                       serialize);
     });
     if (encoded.ok()) {
       video.push_back(*std::move(encoded));
-    } else {
+    } else if (!absl::IsResourceExhausted(encoded.status())) {  // those are counted
       base::LogError(base::Annotate(encoded.status(), "encoding video"));
     }
   }
@@ -131,14 +133,15 @@ EncodeFrame JpegEncoder(const std::shared_ptr<Session>& session,
   };
 }
 
-void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, StillMaker& stills) {
+void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, base::MemoryBudget& memory,
+                      StillMaker& stills) {
   const std::shared_ptr<Session>& session = drawn.session;
   const EncodedFrame described = Described(drawn);
   Count(described, drawn.scene);
   const auto pictures = std::make_shared<Pictures>(frame::RgbImage{
       drawn.picture.width_px, drawn.picture.height_px, std::move(drawn.picture.rgb)});
   const bool still_follows = drawn.fine.has_value();
-  auto video = VideoOf(described, *session, still_follows, *pictures, serialize);
+  auto video = VideoOf(described, *session, still_follows, *pictures, memory, serialize);
   const std::uint64_t sequence = session->hub().Publish(
       described, JpegEncoder(session, pictures, drawn.scene.output.jpeg_quality, serialize),
       std::move(video), still_follows);
@@ -156,8 +159,13 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, StillMa
 
 }  // namespace
 
-FrameEncoder::FrameEncoder(int threads, SerializeFrame serialize, std::function<void()> on_encoded)
-    : serialize_(std::move(serialize)), on_encoded_(std::move(on_encoded)), stills_(serialize_) {
+FrameEncoder::FrameEncoder(int threads, SerializeFrame serialize,
+                           std::shared_ptr<base::MemoryBudget> memory,
+                           std::function<void()> on_encoded)
+    : serialize_(std::move(serialize)),
+      memory_(std::move(memory)),
+      on_encoded_(std::move(on_encoded)),
+      stills_(serialize_) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Run(); });
 }
 
@@ -206,7 +214,7 @@ void FrameEncoder::Run() {
     lock.unlock();
     const std::uint64_t revision = drawn.scene_revision;
     const absl::Status encoded = base::OrOutOfMemory([&] {
-      EncodeAndPublish(std::move(drawn), serialize_, stills_);
+      EncodeAndPublish(std::move(drawn), serialize_, *memory_, stills_);
       return absl::OkStatus();
     });
     if (!encoded.ok()) session->hub().Publish(ProblemOf(revision, encoded));

@@ -37,8 +37,10 @@ class FrameEncoder {
  public:
   static constexpr int kMaxPending = 2;
 
-  // `on_encoded` is called on an encoding thread when a frame has been published.
-  FrameEncoder(int threads, SerializeFrame serialize, std::function<void()> on_encoded);
+  // `on_encoded` is called on an encoding thread when a frame has been published. Encoders of video
+  // take their room in `memory`.
+  FrameEncoder(int threads, SerializeFrame serialize, std::shared_ptr<base::MemoryBudget> memory,
+               std::function<void()> on_encoded);
   // Waits for the frames being encoded and drops the queued ones.
   ~FrameEncoder();
   FrameEncoder(const FrameEncoder&) = delete;
@@ -53,6 +55,7 @@ class FrameEncoder {
   std::deque<DrawnFrame>::iterator NextFrame();  // needs mutex_
 
   const SerializeFrame serialize_;
+  const std::shared_ptr<base::MemoryBudget> memory_;
   const std::function<void()> on_encoded_;
   StillMaker stills_;
   std::mutex mutex_;

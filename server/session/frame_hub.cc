@@ -410,6 +410,13 @@ void FrameHub::Publish(Problem problem) {
   WakeAll();
 }
 
+bool FrameHub::DropUnwatched() {
+  std::shared_ptr<PublishedFrame> dropped;
+  const std::lock_guard lock(mutex_);
+  if (watches_.empty()) dropped = std::exchange(frame_, nullptr);
+  return dropped != nullptr;
+}
+
 void FrameHub::Close(const absl::Status& why) {
   {
     const std::lock_guard lock(mutex_);

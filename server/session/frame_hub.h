@@ -117,6 +117,9 @@ class FrameHub {
   // Replaces the newest problem; a frame of the same or a newer revision ends it.
   void Publish(Problem problem);
 
+  // Gives up the newest frame unless somebody watches; true if there was one.
+  bool DropUnwatched();
+
   // Ends every viewer's stream with `why`; the first reason counts.
   void Close(const absl::Status& why);
   // OK while open.

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "accuracy/moving_picture.h"
 #include "base/status.h"
 #include "gl/device_faults.h"
 
@@ -30,7 +31,8 @@ class GuardedSource final : public FrameSource {
   absl::StatusOr<DisplayFrame> Draw(const scene::Scene& scene,
                                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                     const FrameQuality& quality) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(auto memory, MemoryOf(scene));
+    THUNDERHEAD_ASSIGN_OR_RETURN(auto memory,
+                                 MemoryOf(accuracy::WithOutputScale(scene, quality.output_scale)));
     auto frame = Noticed(source_->Draw(scene, fields, quality));
     if (frame.ok()) frame->memory = std::move(memory);
     return frame;

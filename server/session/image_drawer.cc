@@ -209,6 +209,7 @@ void ImageDrawer::TakeStep(Begun& image, const TracedStep& step) {
 bool ImageDrawer::EndsTracing(Begun& image) {
   absl::Status failed;
   if (*image.job.cancelled) failed = absl::CancelledError("the call was cancelled");
+  if (image.since_begun.ElapsedMs() > image.job.max_work_ms) failed = image.job.too_long;
   if (const auto news = tracer_.TakeNews(image.name); failed.ok() && news.has_value()) {
     failed = news->status();
     if (failed.ok()) TakeStep(image, **news);

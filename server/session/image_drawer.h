@@ -14,6 +14,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/stopwatch.h"
 #include "session/image_queue.h"
 #include "session/lane.h"
 #include "session/light_tracer.h"
@@ -59,6 +60,7 @@ class ImageDrawer {
     std::int64_t wanted_paths = 0;
     std::optional<accuracy::MeasuredError> error;
     int attempts = 0;  // to draw it
+    base::Stopwatch since_begun;
     // By the lane.
     absl::Status status;
     std::optional<DisplayFrame> frame;

@@ -51,7 +51,8 @@ struct ImageJob {
   bool linear = false;         // also wanted as linear radiance
   double error_seconds = 0.0;  // of tracing, for its error to be measured
   // Maximum time for reading, drawing and encoding it, not counting the time spent waiting for
-  // others; beyond it the job ends with `too_long`.
+  // others, and the same since it was begun while it awaits light or its error; beyond it the job
+  // ends with `too_long`.
   double max_work_ms = 1e15;
   absl::Status too_long = absl::OkStatus();
   // Who asked for it; all owners get equal shares of the drawing time. Empty: counts for nobody.

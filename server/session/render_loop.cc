@@ -66,6 +66,11 @@ class Lanes {
 constexpr double kUnused_s = 3.0;
 constexpr std::chrono::milliseconds kBetweenAnswers{500};
 
+RenderLoopOptions WithBudget(RenderLoopOptions options) {
+  if (options.memory == nullptr) options.memory = base::MemoryBudget::Unlimited();
+  return options;
+}
+
 // Asks for what is unused to be given back when a budget has no room. Sees the budgets' refusals as
 // long as it lives.
 class MemoryPressure {
@@ -128,7 +133,7 @@ absl::StatusOr<std::unique_ptr<RenderLoop>> RenderLoop::Start(
 
 RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& store,
                        Sessions& sessions, base::WakeSignal& wake)
-    : options_(options),
+    : options_(WithBudget(options)),
       store_(store),
       sessions_(sessions),
       wake_(wake),
@@ -136,9 +141,9 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       images_(options.max_waiting_images, options.max_waiting_images_each),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
       encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, options.serialize_frame,
-                                              [&wake] { wake.Notify(); })),
+                                              options_.memory, [&wake] { wake.Notify(); })),
       tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
-                                            options.memory, [&wake] { wake.Notify(); })) {}
+                                            options_.memory, [&wake] { wake.Notify(); })) {}
 
 RenderLoop::~RenderLoop() { Stop(); }
 
@@ -179,15 +184,15 @@ void RenderLoop::RenderImage(ImageJob job) {
 }
 
 void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl::Status> started) {
-  const FrameSourceFactory make_source = GuardedSources(
-      make_unguarded,
-      {.memory = options_.memory != nullptr ? options_.memory : base::MemoryBudget::Unlimited(),
-       .generation = device_generation_,
-       .on_device_lost = [this](std::uint64_t generation) {
-         if (generation != device_generation_) return;  // that is known
-         device_lost_ = true;
-         wake_.Notify();
-       }});
+  const FrameSourceFactory make_source =
+      GuardedSources(make_unguarded, {.memory = options_.memory,
+                                      .generation = device_generation_,
+                                      .on_device_lost = [this](std::uint64_t generation) {
+                                        if (generation != device_generation_)
+                                          return;  // that is known
+                                        device_lost_ = true;
+                                        wake_.Notify();
+                                      }});
   auto source = make_source(nullptr);
   if (source.ok()) {
     device_ = (*source)->Device();
@@ -231,7 +236,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
         lanes->sessions.FreeUnused(0.0);
         return base::GiveBackFreedMemory();
       }
-      drawer.YieldMemory();
+      drawer.YieldMemory(sessions_.AllDrawn());
       measured.FreeUnused(kUnused_s);
       for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
       base::GiveBackFreedMemory();

@@ -205,7 +205,11 @@ void SessionDrawer::ReleaseUnwatched(const std::vector<std::shared_ptr<Session>>
   }
 }
 
-void SessionDrawer::YieldMemory() {
+void SessionDrawer::YieldMemory(const std::vector<std::shared_ptr<Session>>& sessions) {
+  for (const auto& session : sessions) {
+    // Whoever comes back has it drawn again.
+    if (session->hub().DropUnwatched()) kept_.erase(session->id());
+  }
   const Clock::time_point now = Clock::now();
   const bool lack_pictures =
       std::ranges::any_of(kept_, [](const auto& entry) { return entry.second.refused; });

@@ -38,10 +38,11 @@ class SessionDrawer {
   // Sends the frame that was drawn in the lane, if one is ready. `sessions` are in order of id.
   void TakeDrawn(const std::vector<std::shared_ptr<Session>>& sessions);
 
-  // Memory is short: sessions whose final pictures are shown leave their fields to others, and have
+  // Memory is short: frames of `sessions` that nobody watches are given up; sessions whose final
+  // pictures are shown leave their fields to others, and have
   // no light traced, for a while; those whose pictures become finer do so too where a session has
   // been refused the fields for its own.
-  void YieldMemory();
+  void YieldMemory(const std::vector<std::shared_ptr<Session>>& sessions);
 
   // The device is another: what the sources kept is gone.
   void DeviceReplaced() { lane_.Forget(); }

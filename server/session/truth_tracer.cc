@@ -86,7 +86,7 @@ TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
                          std::function<void()> on_picture)
     : make_source_(std::move(make_source)),
       max_owners_(max_owners),
-      memory_(memory != nullptr ? std::move(memory) : base::MemoryBudget::Unlimited()),
+      memory_(std::move(memory)),
       on_picture_(std::move(on_picture)),
       thread_([this] { Run(); }) {}
 

@@ -34,8 +34,8 @@ struct TruthPicture {
 
 class TruthTracer {
  public:
-  // Each owner has a source of its own, which keeps its buffers; they count in `memory`, which may
-  // be null, and there are at most `max_owners`.
+  // Each owner has a source of its own, which keeps its buffers; they count in `memory`, and there
+  // are at most `max_owners`.
   // `on_picture` is called on the tracing thread when a picture can be taken.
   TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
               std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture);

@@ -8,25 +8,32 @@
 namespace thunderhead::session {
 
 absl::StatusOr<codec::Vp9Picture> VideoEncoders::Encode(const frame::RgbImage& picture,
-                                                        VideoOrder* order) {
+                                                        VideoOrder* order,
+                                                        base::MemoryBudget& memory) {
   const std::lock_guard lock(mutex_);
-  auto& encoder = encoders_[static_cast<std::size_t>(order->tier)];
-  const bool fits = encoder != nullptr && encoder->width_px() == picture.width_px &&
-                    encoder->height_px() == picture.height_px;
+  Encoder& encoder = encoders_[static_cast<std::size_t>(order->tier)];
+  const bool fits = encoder.vp9 != nullptr && encoder.vp9->width_px() == picture.width_px &&
+                    encoder.vp9->height_px() == picture.height_px;
   if (!fits) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(encoder,
+    encoder = {};
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        encoder.memory,
+        memory.Reserve(base::MemoryUse::kPictures,
+                       codec::Vp9Encoder::BytesFor(picture.width_px, picture.height_px),
+                       "a stream of video"));
+    THUNDERHEAD_ASSIGN_OR_RETURN(encoder.vp9,
                                  codec::Vp9Encoder::Create(picture.width_px, picture.height_px));
   }
-  auto encoded = encoder->Encode(picture, order->kind);
+  auto encoded = encoder.vp9->Encode(picture, order->kind);
   // The encoder's references may not be those that viewers have.
-  if (!encoded.ok()) encoder = nullptr;
+  if (!encoded.ok()) encoder = {};
   if (encoded.ok() && encoded->key) order->kind = codec::Vp9Kind::kKey;
   return encoded;
 }
 
 void VideoEncoders::Release() {
   const std::lock_guard lock(mutex_);
-  for (auto& encoder : encoders_) encoder = nullptr;
+  for (Encoder& encoder : encoders_) encoder = {};
 }
 
 }  // namespace thunderhead::session

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/memory_budget.h"
 #include "codec/vp9.h"
 #include "session/link_estimate.h"
 #include "session/video_order.h"
@@ -17,15 +18,21 @@ namespace thunderhead::session {
 class VideoEncoders {
  public:
   // Encodes the picture, whose size is that of the order's tier. It becomes a key picture, and the
-  // order says so, where another was asked for but its size is new.
-  absl::StatusOr<codec::Vp9Picture> Encode(const frame::RgbImage& picture, VideoOrder* order);
+  // order says so, where another was asked for but its size is new. RESOURCE_EXHAUSTED if `memory`
+  // has no room for an encoder.
+  absl::StatusOr<codec::Vp9Picture> Encode(const frame::RgbImage& picture, VideoOrder* order,
+                                           base::MemoryBudget& memory);
 
   // Frees the encoders; the next pictures are key pictures.
   void Release();
 
  private:
   std::mutex mutex_;
-  std::array<std::unique_ptr<codec::Vp9Encoder>, kTiers> encoders_;
+  struct Encoder {
+    base::MemoryReservation memory;
+    std::unique_ptr<codec::Vp9Encoder> vp9;
+  };
+  std::array<Encoder, kTiers> encoders_;
 };
 
 }  // namespace thunderhead::session

@@ -82,6 +82,8 @@ class FrameEncoderTest : public ::testing::Test {
 
   Sessions sessions_{SessionsOptions{}, {[] {}, [] {}}};
   const std::shared_ptr<Session> session_ = *sessions_.Create();
+  const std::shared_ptr<base::MemoryBudget> memory_ =
+      base::MemoryBudget::Make({.bytes = std::size_t{16} << 20});
 
  private:
   std::mutex mutex_;
@@ -100,7 +102,7 @@ class FrameEncoderTest : public ::testing::Test {
                           ++serialized_[form];
                           return form;
                         },
-                        [this] { encoded_.release(); }};
+                        memory_, [this] { encoded_.release(); }};
 };
 
 TEST_F(FrameEncoderTest, APictureIsSerializedOnceATierWhateverTheViewers) {
@@ -153,6 +155,21 @@ TEST_F(FrameEncoderTest, VideoWithoutMemoryIsJpeg) {
   Encode(1);
   EXPECT_EQ(TakeAll(savers).size(), 1U);
   EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair(StartsWith("jpeg of tier"), 1)));
+}
+
+TEST_F(FrameEncoderTest, VideoWithoutRoomInTheBudgetIsJpeg) {
+  const auto savers = Join(6, {.adapts = true, .takes_video = true, .saves_bytes = true});
+  auto taken = *memory_->Reserve(base::MemoryUse::kFields, std::size_t{8} << 20, "fields");
+  Encode(1);
+  EXPECT_EQ(TakeAll(savers).size(), 1U);
+  EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair("jpeg of tier 0", 1)));
+  taken = {};
+  Encode(2);
+  EXPECT_EQ(TakeAll(savers).size(), 1U);
+  EXPECT_THAT(Serialized(), ::testing::Contains(Pair("vp9 of tier 0", 1)));
+  EXPECT_GT(memory_->Used(base::MemoryUse::kPictures), std::size_t{8} << 20);
+  session_->video().Release();
+  EXPECT_EQ(memory_->Used(), 0U);
 }
 
 TEST_F(FrameEncoderTest, APictureOfVideoIsSerializedOnceForAllWhoFollowIt) {

@@ -53,6 +53,19 @@ TEST_F(FrameHubTest, AtMostTwoFramesAreInFlight) {
   EXPECT_EQ(TakeSequence(hub_, viewer), 3U);
 }
 
+TEST_F(FrameHubTest, AFrameIsGivenUpOnlyIfNobodyWatches) {
+  const std::uint64_t viewer = Join();
+  EXPECT_FALSE(hub_.DropUnwatched()) << "there is none";
+  hub_.Publish(FrameOf(1));
+  EXPECT_FALSE(hub_.DropUnwatched());
+  hub_.Leave(viewer);
+  EXPECT_TRUE(hub_.DropUnwatched());
+  const std::uint64_t another = Join();
+  EXPECT_EQ(TakeSequence(hub_, another), 0U);
+  hub_.Publish(FrameOf(1));
+  EXPECT_EQ(TakeSequence(hub_, another), 2U);
+}
+
 TEST_F(FrameHubTest, SlowViewerSkipsAndTheFastOneDoesNotWait) {
   const std::uint64_t slow = Join();
   const std::uint64_t fast = Join();

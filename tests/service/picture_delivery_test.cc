@@ -10,7 +10,11 @@
 
 #include "base/file_descriptor.h"
 #include "gtest/gtest.h"
+#include "store/sqlite_job_store.h"
+#include "store/state_file.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/temporary_folder.h"
+#include "thunderhead/v1/job.grpc.pb.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -33,11 +37,12 @@ class UntakingClient {
     Send("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + Frame(4, 0, 0, std::string("\0\4\0\0\0\0", 6)));
   }
 
+  // `method` with its service.
   void Call(const std::string& method, const std::string& message) {
     std::string headers;
     for (const auto& [name, value] : {std::pair<std::string, std::string>{":method", "POST"},
                                       {":scheme", "http"},
-                                      {":path", "/thunderhead.v1.ThunderheadService/" + method},
+                                      {":path", "/thunderhead.v1." + method},
                                       {":authority", "localhost"},
                                       {"te", "trailers"},
                                       {"content-type", "application/grpc"}}) {
@@ -145,7 +150,43 @@ TEST_P(PictureDelivery, ItHasItsTime) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Calls, PictureDelivery,
-                         ::testing::Values("RenderImage", "RenderImageWithProgress"));
+                         ::testing::Values("ThunderheadService/RenderImage",
+                                           "ThunderheadService/RenderImageWithProgress"));
+
+TEST(JobDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
+  const TemporaryFolder folder;
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  options.limits.delivery_time = milliseconds(500);
+  auto file = store::StateFile::Open(folder.File("state.db"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  options.jobs.store = *store::SqliteJobStore::In(*file);
+  options.jobs.folder = folder.File("jobs");
+  FakeService fake(options);
+  const auto stub = v1::RenderJobService::NewStub(fake.server().LocalChannel());
+  v1::CreateRenderJobRequest create;
+  *create.add_pictures()->mutable_scene() = SmallScene();
+  v1::CreateRenderJobResponse created;
+  grpc::ClientContext creating;
+  ASSERT_TRUE(stub->CreateRenderJob(&creating, create, &created).ok());
+  v1::WatchRenderJobRequest watch;
+  watch.set_job_id(created.job().id());
+  grpc::ClientContext watching;
+  const auto reader = stub->WatchRenderJob(&watching, watch);
+  v1::WatchRenderJobResponse news;
+  while (reader->Read(&news)) {
+  }
+  ASSERT_TRUE(reader->Finish().ok());
+
+  UntakingClient watcher(fake.server().Port());
+  watcher.Call("RenderJobService/WatchRenderJob", watch.SerializeAsString());
+  EXPECT_TRUE(watcher.IsReset(milliseconds(10'000)));
+  v1::FetchRenderResultRequest fetch;
+  fetch.set_job_id(created.job().id());
+  UntakingClient fetcher(fake.server().Port());
+  fetcher.Call("RenderJobService/FetchRenderResult", fetch.SerializeAsString());
+  EXPECT_TRUE(fetcher.IsReset(milliseconds(10'000)));
+}
 
 }  // namespace
 }  // namespace thunderhead::testing

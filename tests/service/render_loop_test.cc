@@ -436,6 +436,32 @@ TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
   EXPECT_TRUE(waits.get().ok());
 }
 
+TEST_F(RenderLoopTest, APictureDoesNotAwaitItsLightForEver) {
+  Start();
+  machine_->tracing.Close();
+  scene::Scene scene = Small(0.0);
+  scene.rendering.technique = scene::LightVolume{.traced_light = scene::TracedLight::kAwaited};
+  std::promise<absl::Status> ended;
+  loop_->RenderImage({.scene = scene,
+                      .read = [&]() -> absl::StatusOr<ImageInput> {
+                        return ImageInput{*store_.Get("anvil", 0, {}), scene.camera};
+                      },
+                      .encode = [](DisplayFrame&) { return absl::OkStatus(); },
+                      .cancelled = std::make_shared<std::atomic<bool>>(false),
+                      .done = [&](const auto& picture) { ended.set_value(picture.status()); },
+                      .max_work_ms = 300.0,
+                      .too_long = absl::ResourceExhaustedError("too long")});
+  auto future = ended.get_future();
+  ASSERT_TRUE(machine_->tracing.AwaitWaiting(1));
+  for (int i = 0;
+       i < 100 && future.wait_for(std::chrono::milliseconds(100)) != std::future_status::ready;
+       ++i) {
+    wake_.Notify();
+  }
+  ASSERT_EQ(future.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  EXPECT_EQ(future.get().message(), "too long");
+}
+
 // Forty of one, then two of another, who does not wait for all of them.
 TEST_F(RenderLoopTest, PicturesTakeTurnsByWhoAskedForThem) {
   machine_->ms_per_mega_sample = 1000.0;  // 37 ms a picture
@@ -533,6 +559,23 @@ TEST_F(RenderLoopTest, ASessionThatNobodyWatchesLetsGoOfItsFields) {
   EXPECT_EQ(machine_->Log().back().scene.sun.azimuth_deg, 0.0);
   const auto again = Watch(session);
   EXPECT_TRUE(again->Await(revision, true));
+}
+
+TEST_F(RenderLoopTest, TheFrameOfASessionThatNobodyWatchesMakesRoomForAPicture) {
+  RenderLoopOptions options;
+  options.memory = base::MemoryBudget::Make({.bytes = std::size_t{1} << 20});
+  options.device_memory = {options.memory};
+  Start(options);
+  scene::Scene large = Small(0.0);
+  large.output = {400, 300, 88};  // 720 kB
+  const auto session = *sessions_.Create();
+  const std::uint64_t revision = Show(*session, large);
+  const auto viewer = Watch(session);
+  ASSERT_TRUE(viewer->Await(revision, true));
+  viewer->Leave();
+  EXPECT_TRUE(Picture(large).get().ok());
+  const auto again = Watch(session);
+  EXPECT_TRUE(again->Await(revision, true)) << "it is drawn once more";
 }
 
 TEST_F(RenderLoopTest, ManyHandsManyViewersComingAndGoing) {

@@ -1,6 +1,7 @@
 #include "base/out_of_memory.h"
 
 #include <limits>
+#include <system_error>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -12,6 +13,17 @@ namespace {
 TEST(OrOutOfMemoryTest, GivesWhatTheWorkGives) {
   EXPECT_EQ(*OrOutOfMemory([]() -> absl::StatusOr<int> { return 3; }), 3);
   EXPECT_TRUE(absl::IsNotFound(OrOutOfMemory([] { return absl::NotFoundError("it"); })));
+}
+
+TEST(OrOutOfMemoryTest, SoDoesAThreadThatCannotBeBegun) {
+  const absl::Status failed = OrOutOfMemory([]() -> absl::Status {
+    throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+  });
+  EXPECT_TRUE(absl::IsResourceExhausted(failed)) << failed;
+  EXPECT_THROW(OrOutOfMemory([]() -> absl::Status {
+                 throw std::system_error(std::make_error_code(std::errc::permission_denied));
+               }),
+               std::system_error);
 }
 
 TEST(OrOutOfMemoryTest, AnAllocationThatFailsFailsTheWorkAlone) {

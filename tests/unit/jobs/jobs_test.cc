@@ -72,6 +72,31 @@ TEST(JobsTest, APictureWithoutMemoryIsTriedAgainAndTakesNothingWithIt) {
   EXPECT_EQ(begun, 3);
 }
 
+class Watcher final : public JobWatcher {
+ public:
+  void OnJobChanged() override {}
+};
+
+TEST(JobsTest, WatchersThatAreGoneAreForgotten) {
+  const testing::TemporaryFolder folder;
+  JobsOptions options;
+  options.folder = folder.File("jobs");
+  auto jobs = Jobs::Open(options);
+  ASSERT_TRUE(jobs.ok()) << jobs.status();
+  NewJob job;
+  job.pictures.resize(1);
+  std::promise<absl::StatusOr<JobView>> created;
+  (*jobs)->Create(job, [&](absl::StatusOr<JobView> view) { created.set_value(std::move(view)); });
+  const absl::StatusOr<JobView> view = created.get_future().get();
+  ASSERT_TRUE(view.ok()) << view.status();
+  const auto stays = std::make_shared<Watcher>();
+  ASSERT_TRUE((*jobs)->Watch(view->id, {}, stays).ok());
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE((*jobs)->Watch(view->id, {}, std::make_shared<Watcher>()).ok());
+  }
+  EXPECT_LE((*jobs)->Load().watchers, 2U);
+}
+
 // A store in memory that can be full.
 class FullStore final : public JobStore {
  public:
