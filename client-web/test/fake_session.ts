@@ -72,6 +72,8 @@ export class FakeSession {
   marks: Mark[] = [];
   // So many marks are refused, as the one before is still being placed.
   placing = 0;
+  // False while nothing tells the server that a connection is lost.
+  noticesLosses = true;
   held: { stormId: string; timeIndices: number[] } = { stormId: "", timeIndices: [] };
   #steering: bigint | undefined;
   #presenterSteered = true;
@@ -135,6 +137,7 @@ export class FakeSession {
   }
 
   leave(person: FakePerson): void {
+    if (!this.noticesLosses) return;
     const at = this.people.indexOf(person);
     if (at < 0) return;
     this.people.splice(at, 1);
@@ -142,6 +145,21 @@ export class FakeSession {
       this.#steering = undefined;
       this.#presenterSteered = person.role === Role.PRESENTER;
     }
+    this.#tellPresence();
+  }
+
+  // It is noticed in the end that a person's connection is lost, and what it had is that of who came back.
+  replace(lost: FakePerson, back: FakePerson): void {
+    this.people.splice(this.people.indexOf(lost), 1);
+    if (this.#steering === lost.viewerId) this.giveControl(back.viewerId);
+    else this.#tellPresence();
+  }
+
+  // To a person, or to nobody (0).
+  giveControl(viewerId: bigint): void {
+    this.#presenterSteered = false;
+    this.#steering = viewerId === 0n ? undefined : viewerId;
+    for (const person of this.people) if (person.viewerId === viewerId) person.asks = false;
     this.#tellPresence();
   }
 
@@ -223,14 +241,15 @@ export class FakeSession {
       case "askControl":
         if (this.rules.controlLocked) refuse(Code.PermissionDenied, "control is locked");
         else if (this.#steering === undefined && this.rules.viewersMaySteer)
-          this.#give(person.viewerId);
+          this.giveControl(person.viewerId);
         else {
           person.asks = true;
           this.#tellPresence();
         }
         break;
       case "giveControl":
-        if (steers || presents) this.#give(message.value.viewerId || this.#whoGetsItBack(presents));
+        if (steers || presents)
+          this.giveControl(message.value.viewerId || this.#whoGetsItBack(presents));
         else refuse(Code.PermissionDenied, "not steering");
         break;
       case "refuseControl":
@@ -239,7 +258,7 @@ export class FakeSession {
         this.#tellPresence();
         break;
       case "takeControl":
-        if (presents) this.#give(person.viewerId);
+        if (presents) this.giveControl(person.viewerId);
         else refuse(Code.PermissionDenied, "only the presenter takes control");
         break;
       case "setName":
@@ -296,12 +315,6 @@ export class FakeSession {
   #whoGetsItBack(fromPresenter: boolean): bigint {
     const presenter = this.people.find(({ role }) => role === Role.PRESENTER);
     return fromPresenter ? 0n : (presenter?.viewerId ?? 0n);
-  }
-
-  #give(viewerId: bigint): void {
-    this.#steering = viewerId === 0n ? undefined : viewerId;
-    for (const person of this.people) if (person.viewerId === viewerId) person.asks = false;
-    this.#tellPresence();
   }
 
   #met(person: FakePerson, ray: Ray | undefined): Position | undefined {

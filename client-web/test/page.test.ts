@@ -5,6 +5,7 @@ import { poseOfCamera } from "../src/core/camera";
 import { withSky, withTime } from "../src/core/scene";
 import {
   type InteractRequest,
+  InteractRequestSchema,
   Role,
   TimesInMemorySchema,
 } from "../src/gen/thunderhead/v1/interact_pb";
@@ -78,6 +79,7 @@ describe("the page in a session", () => {
     session()
       .people.at(at)
       ?.heard.map(({ message }) => message) ?? [];
+  const notices = ({ page }: Place) => page.state.notices.value.map(({ text }) => text).join();
   const saidOf = (subject: string, at = -1) =>
     said(at).filter((message) => message.case === subject);
 
@@ -515,8 +517,86 @@ describe("the page in a session", () => {
     viewer.page.showTime(3);
     await pass(5000);
     expect(viewer.page.state.session.steering.value).toBe(false);
+    expect(viewer.page.state.timeIndex.value).toBe(3);
+    teacher.page.actions.takeControl();
+    await pass(50);
     expect(viewer.page.state.timeIndex.value).toBe(0);
     expect(session().scene.timeIndex ?? 0).toBe(0);
-    expect(viewer.page.state.notices.value.map(({ text }) => text).join()).toMatch(/not taken/);
+    expect(notices(viewer)).toMatch(/not taken/);
+  });
+
+  it("keeps a viewer's edit while the server still sees the lost connection steer", async () => {
+    const { teacher, viewer } = await classroom();
+    teacher.page.actions.giveControl(2n);
+    await pass(50);
+    session().noticesLosses = false;
+    const lost = session().people.filter(({ role }) => role === Role.VIEWER);
+    network.break();
+    viewer.page.showTime(3);
+    await pass(5000);
+    const back = session()
+      .people.filter(({ role }) => role === Role.VIEWER)
+      .slice(1);
+    expect([lost.length, back.length]).toEqual([1, 1]);
+    expect(viewer.page.state.session.steering.value).toBe(false);
+    expect(session().scene.timeIndex ?? 0).toBe(0);
+    for (const person of lost) for (const other of back) session().replace(person, other);
+    await pass(100);
+    expect(viewer.page.state.session.steering.value).toBe(true);
+    expect(session().scene.timeIndex).toBe(3);
+    expect(notices(viewer)).not.toMatch(/not taken/);
+  });
+
+  // Somebody with the presenter's key beside the pages.
+  const colleague = () => {
+    const sessionKey = session().presenterKey;
+    const message = { case: "join", value: { sessionKey } } as const;
+    const person = session().join(
+      create(InteractRequestSchema, { message }),
+      () => undefined,
+      () => undefined,
+    );
+    if (person === undefined) throw new Error("the colleague cannot join");
+    return person;
+  };
+
+  // A teacher who steers loses the connection with an edit, and comes back after `meanwhile`.
+  const comesBack = async (teacher: Place, meanwhile: () => void) => {
+    network.down = true;
+    network.break();
+    teacher.page.showTime(3);
+    meanwhile();
+    await pass(100);
+    network.down = false;
+    await pass(10_000);
+  };
+
+  it.each([
+    ["the server still sees the lost connection steer", () => undefined],
+    ["nobody steers", () => session().giveControl(0n)],
+  ])("takes control again where %s", async (_, meanwhile) => {
+    const teacher = await visit();
+    session().noticesLosses = false;
+    await comesBack(teacher, meanwhile);
+    expect(saidOf("takeControl")).toHaveLength(1);
+    expect(session().scene.timeIndex).toBe(3);
+  });
+
+  it("takes control again from a presenter who came first to a server that started again", async () => {
+    const teacher = await visit();
+    await comesBack(teacher, colleague);
+    expect(saidOf("takeControl")).toHaveLength(1);
+    expect(session().scene.timeIndex).toBe(3);
+  });
+
+  it("leaves control to a colleague who was there and took it", async () => {
+    const teacher = await visit();
+    const { viewerId } = colleague();
+    await pass(50);
+    await comesBack(teacher, () => session().giveControl(viewerId));
+    expect(saidOf("takeControl")).toHaveLength(0);
+    expect(teacher.page.state.session.steerer.value?.viewerId).toBe(viewerId);
+    expect(teacher.page.state.timeIndex.value).toBe(0);
+    expect(session().scene.timeIndex ?? 0).toBe(0);
   });
 });

@@ -3,6 +3,7 @@
 import { create } from "@bufbuild/protobuf";
 import { Code } from "@connectrpc/connect";
 import { poseOfCamera } from "../core/camera";
+import { ControlResumption } from "../core/control_resumption";
 import type { Marking } from "../core/marking";
 import type { Later } from "../core/newest";
 import type { OwnKeys } from "../core/own_keys";
@@ -59,8 +60,7 @@ export class SessionLife implements SessionListener {
   #presenterKey: string | undefined;
   // True until the first presence of a session that this page opened.
   #opened = false;
-  // It steered as a presenter when the connection was lost.
-  #steeredBefore: { readonly viewerId: bigint; readonly known: ReadonlySet<bigint> } | undefined;
+  readonly #resumption = new ControlResumption();
   #newestProblem: Problem | undefined;
 
   constructor(parts: SessionLifeParts) {
@@ -154,6 +154,7 @@ export class SessionLife implements SessionListener {
   opened(opened: OpenedSession): void {
     this.#presenterKey = opened.presenterKey;
     this.#opened = true;
+    this.#resumption.end();
     this.#parts.keys.keep(opened.viewerKey, opened.presenterKey);
     this.#parts.state.session.viewerKey.value = opened.viewerKey;
     this.#sync.opened(opened.completed, opened.revision);
@@ -169,10 +170,12 @@ export class SessionLife implements SessionListener {
     const { session } = this.#parts.state;
     const presenting = joined.role === Role.PRESENTER;
     const before = session.me.peek();
-    this.#steeredBefore =
-      presenting && before !== undefined && session.steering.peek()
-        ? { viewerId: before.viewerId, known: new Set(session.people.peek().map(idOf)) }
-        : undefined;
+    if (before !== undefined && !this.#opened)
+      this.#resumption.rejoined({
+        viewerId: before.viewerId,
+        steered: session.steering.peek(),
+        people: session.people.peek(),
+      });
     session.joined(joined);
     if (presenting && this.#presenterKey !== undefined)
       this.#parts.keys.keep(joined.viewerKey, this.#presenterKey);
@@ -262,6 +265,7 @@ export class SessionLife implements SessionListener {
     session.takePresence(presence);
     if (session.steering.peek()) {
       this.#parts.viewpoint().follow();
+      this.#resumption.end();
       this.#sync.allow();
       if (this.setsOutput) this.sendOutputSize();
       if (!steeredBefore && !this.#opened && !session.alone.peek())
@@ -269,26 +273,16 @@ export class SessionLife implements SessionListener {
     } else {
       this.#sync.hold();
       this.#parts.pausePlayback();
-      if (this.#opened && presence.steeringViewerId === 0n) this.#parts.takeControl();
-      else if (this.#resumesSteering(presence)) this.#parts.takeControl();
-      else
+      const resumption = this.#resumption.of(presence, session.presenting.peek());
+      const opens = this.#opened && presence.steeringViewerId === 0n;
+      if (opens || resumption === "takes") this.#parts.takeControl();
+      else if (resumption === "lost")
         this.#sync.discard(() => {
           const why = session.editBlock.peek() ?? "";
           notes.say("control", `Your last change was not taken. ${why}`);
         });
     }
     this.#opened = false;
-    this.#steeredBefore = undefined;
-  }
-
-  // Of who steered when the connection was lost: where the server still sees that connection steer, where nobody does, and where a
-  // presenter got control for having come back first to a server that started again. A colleague who was there and took it keeps it.
-  #resumesSteering({ steeringViewerId, people }: Presence): boolean {
-    const before = this.#steeredBefore;
-    if (before === undefined) return false;
-    if (steeringViewerId === 0n || steeringViewerId === before.viewerId) return true;
-    const steerer = people.find(({ viewerId }) => viewerId === steeringViewerId);
-    return steerer?.role === Role.PRESENTER && !before.known.has(steeringViewerId);
   }
 
   #problem(problem: Problem): void {
@@ -317,5 +311,3 @@ export class SessionLife implements SessionListener {
     }
   }
 }
-
-const idOf = ({ viewerId }: { readonly viewerId: bigint }) => viewerId;
