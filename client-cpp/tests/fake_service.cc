@@ -69,13 +69,18 @@ void FakeService::Send(v1::InteractResponse response) {
   if (call_ != nullptr) call_->Write(response);
 }
 
-void FakeService::SendPresence(std::uint64_t steering_viewer_id) {
+void FakeService::SendPresence(std::uint64_t steering_viewer_id,
+                               const std::vector<std::uint64_t>& others) {
   v1::InteractResponse response;
   v1::Presence& presence = *response.mutable_presence();
-  v1::Person& person = *presence.add_people();
-  person.set_viewer_id(kClient);
-  person.set_role(v1::ROLE_PRESENTER);
-  person.set_follows(true);
+  std::vector<std::uint64_t> ids = {client};
+  ids.insert(ids.end(), others.begin(), others.end());
+  for (const std::uint64_t id : ids) {
+    v1::Person& person = *presence.add_people();
+    person.set_viewer_id(id);
+    person.set_role(v1::ROLE_PRESENTER);
+    person.set_follows(true);
+  }
   presence.set_steering_viewer_id(steering_viewer_id);
   presence.mutable_rules()->set_viewers_may_mark(true);
   Send(std::move(response));
@@ -145,7 +150,7 @@ void FakeService::Answer(Call& call, const v1::InteractRequest& request) {
   if (request.has_join()) {
     v1::InteractResponse response;
     v1::Joined& joined = *response.mutable_joined();
-    joined.set_viewer_id(kClient);
+    joined.set_viewer_id(client);
     const bool presents = request.join().session_key() == kPresenterKey;
     joined.set_role(presents ? v1::ROLE_PRESENTER : v1::ROLE_VIEWER);
     joined.set_viewer_key(kViewerKey);

@@ -2,6 +2,7 @@
 // and sends what it is told.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
@@ -40,8 +41,9 @@ class FakeService final : public v1::ThunderheadService::Service {
 
   // Sends to the newest call.
   void Send(v1::InteractResponse response);
-  // Sends presence with the client as person 7, steered by that person.
-  void SendPresence(std::uint64_t steering_viewer_id);
+  // Sends presence with the client and others, who present, steered by that person.
+  void SendPresence(std::uint64_t steering_viewer_id,
+                    const std::vector<std::uint64_t>& others = {});
   void SendScene(const v1::Scene& scene, std::uint64_t revision);
   // Ends the newest call.
   void EndCall(const grpc::Status& status);
@@ -57,6 +59,7 @@ class FakeService final : public v1::ThunderheadService::Service {
   static constexpr char kPresenterKey[] = "presenter-key";
   static constexpr char kViewerKey[] = "viewer-key";
   static constexpr std::uint64_t kClient = 7;
+  std::atomic<std::uint64_t> client{kClient};  // the client's id in its next call
 
  private:
   using Stream = grpc::ServerReaderWriter<v1::InteractResponse, v1::InteractRequest>;

@@ -185,6 +185,96 @@ TEST_F(SessionTest, ComesBackToTheSameSessionWhenTheServerRestarts) {
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }
 
+// A client whose connection is lost while it steers, and whose last edit has had no answer.
+class ResumptionTest : public SessionTest {
+ protected:
+  static constexpr std::uint64_t kColleague = 3;
+  static constexpr std::uint64_t kClientAgain = FakeService::kClient + 5;
+  static constexpr float kEdited_deg = 90.0F;
+
+  void LoseConnection(const std::string& key, const std::vector<std::uint64_t>& others = {}) {
+    service.answers_scenes = false;
+    SessionOptions options;
+    options.key = key;
+    Begin(options);
+    service.SendScene({}, 1);
+    service.SendPresence(FakeService::kClient, others);
+    ASSERT_TRUE(listener.Await([&] { return session->State().Steers(); }));
+    ASSERT_TRUE(session->Edit(SunTo(kEdited_deg)));
+    ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
+    service.client = kClientAgain;
+    service.answers_scenes = true;
+    service.EndCall(grpc::Status(grpc::StatusCode::UNAVAILABLE, "lost"));
+    ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+    service.SendScene({}, 1);
+  }
+  // Tells who steers, and waits until the client has taken that.
+  void Tell(std::uint64_t steering, const std::vector<std::uint64_t>& others = {}) {
+    service.SendPresence(steering, others);
+    ASSERT_TRUE(listener.Await([&] {
+      const SessionState state = session->State();
+      return state.presence.people_size() == static_cast<int>(1 + others.size()) &&
+             state.presence.steering_viewer_id() == steering;
+    }));
+  }
+  // Once, and not again by a presence that crosses with it.
+  void TakesControlAgainFrom(std::uint64_t steering) {
+    Tell(steering, {FakeService::kClient});
+    Tell(steering, {FakeService::kClient, kColleague});
+    EXPECT_TRUE(KeepsEdit());
+    Tell(kClientAgain);
+    EXPECT_TRUE(EditIsSentAgain());
+    EXPECT_EQ(Count(service.All(), v1::InteractRequest::kTakeControl), 1);
+  }
+  bool KeepsEdit() const { return session->State().scene.sun().azimuth_deg() == kEdited_deg; }
+  bool EditIsSentAgain() { return AwaitCount(v1::InteractRequest::kUpdateScene, 2); }
+};
+
+TEST_F(ResumptionTest, AViewersEditIsKeptWhileTheLostConnectionSteers) {
+  LoseConnection(FakeService::kViewerKey);
+  Tell(FakeService::kClient, {FakeService::kClient});
+  Tell(0);
+  EXPECT_TRUE(KeepsEdit());
+  EXPECT_EQ(Count(service.All(), v1::InteractRequest::kTakeControl), 0);
+  Tell(kClientAgain);
+  EXPECT_TRUE(EditIsSentAgain());
+  EXPECT_EQ(Newest(v1::InteractRequest::kUpdateScene).update_scene().scene().sun().azimuth_deg(),
+            kEdited_deg);
+}
+
+TEST_F(ResumptionTest, AViewersEditIsGivenUpOnceAnotherSteers) {
+  LoseConnection(FakeService::kViewerKey);
+  Tell(0);
+  Tell(kColleague, {kColleague});
+  EXPECT_FALSE(KeepsEdit());
+}
+
+TEST_F(ResumptionTest, APresenterTakesControlAgainFromItsLostConnection) {
+  LoseConnection(FakeService::kPresenterKey);
+  TakesControlAgainFrom(FakeService::kClient);
+}
+
+TEST_F(ResumptionTest, APresenterTakesControlAgainFromNobody) {
+  LoseConnection(FakeService::kPresenterKey);
+  TakesControlAgainFrom(0);
+}
+
+TEST_F(ResumptionTest, APresenterTakesControlFromOneWhoCameFirstToAServerThatStartedAgain) {
+  LoseConnection(FakeService::kPresenterKey);
+  Tell(kColleague, {kColleague});
+  EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
+  EXPECT_TRUE(KeepsEdit());
+}
+
+TEST_F(ResumptionTest, AColleagueWhoWasThereAndTookControlKeepsIt) {
+  LoseConnection(FakeService::kPresenterKey, {kColleague});
+  Tell(kColleague, {kColleague});
+  EXPECT_FALSE(KeepsEdit());
+  session->SetName("A later request");
+  ASSERT_TRUE(AwaitCount(v1::InteractRequest::kSetName, 1));
+  EXPECT_EQ(Count(service.All(), v1::InteractRequest::kTakeControl), 0);
+}
+
 TEST_F(SessionTest, AnswersTheServerThatAsksWhetherItIsThere) {
   Steer();
   v1::InteractResponse asks;

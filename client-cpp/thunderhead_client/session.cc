@@ -153,6 +153,7 @@ std::optional<Session::Outcome> Session::Open() {
   key_ = response.session_id();
   state_.presenter_key = key_;
   opened_ = opens_sessions_ = true;
+  resumption_.End();
   if (began_anew) Say(refusal + "; this is a new session without that scene");
   return {};
 }
@@ -177,7 +178,6 @@ Session::Outcome Session::Interact() {
     const std::lock_guard lock(mutex_);
     call.over = true;
     call_ = nullptr;
-    resumes_steering_ = state_.Presents() && state_.Steers();
     state_.pointers.Clear();
     sync_.Rejoined();
   }

@@ -17,6 +17,7 @@
 
 #include "thunderhead_client/back_off.h"
 #include "thunderhead_client/connection.h"
+#include "thunderhead_client/control_resumption.h"
 #include "thunderhead_client/outbox.h"
 #include "thunderhead_client/scene_sync.h"
 #include "thunderhead_client/session_state.h"
@@ -139,9 +140,9 @@ class Session {
   std::string participant_key_;
   std::string name_;
   v1::Window window_;
-  bool opened_ = false;            // this client opened the session and has not steered it yet
-  bool opens_sessions_ = false;    // it opened the session that key_ is of
-  bool resumes_steering_ = false;  // it steered as a presenter when the connection was lost
+  bool opened_ = false;          // this client opened the session and has not steered it yet
+  bool opens_sessions_ = false;  // it opened the session that key_ is of
+  ControlResumption resumption_;
   bool retry_now_ = false;
   bool ends_ = false;
   Call* call_ = nullptr;

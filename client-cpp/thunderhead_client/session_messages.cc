@@ -91,6 +91,7 @@ void Session::Joined(Call& call, const v1::Joined& joined) {
   state_.link = Link::kLive;
   state_.reason.clear();
   ++state_.joined_count;
+  if (!opened_) resumption_.Rejoined(state_.viewer_id, state_.presence);
   state_.viewer_id = joined.viewer_id();
   state_.role = joined.role();
   state_.viewer_key = joined.viewer_key();
@@ -120,8 +121,8 @@ void Session::TakeScene(Call& call, const v1::SceneTaken& taken,
 void Session::TakePresence(const v1::Presence& presence) {
   const bool steered = state_.Steers();
   state_.presence = presence;
-  const v1::Person* const steerer = state_.Steerer();
   if (state_.Steers()) {
+    resumption_.End();
     if (state_.looks_around) {
       state_.looks_around = false;
       outbox_.DropCamera();
@@ -131,18 +132,18 @@ void Session::TakePresence(const v1::Presence& presence) {
     }
     if (!steered && !opened_ && !state_.Alone()) Say("You steer");
   } else {
-    const bool presenter_steers = steerer != nullptr && steerer->role() == v1::ROLE_PRESENTER;
-    if ((opened_ && steerer == nullptr) ||
-        (resumes_steering_ && (presenter_steers || steerer == nullptr))) {
+    const auto resumption = resumption_.Of(presence, state_.Presents());
+    const bool opens = opened_ && presence.steering_viewer_id() == 0;
+    if (opens || resumption == ControlResumption::Outcome::kTakes) {
       v1::InteractRequest request;
       request.mutable_take_control();
       outbox_.Send(std::move(request));
-    } else if (sync_.Discard()) {
+    } else if (resumption == ControlResumption::Outcome::kLost && sync_.Discard()) {
       Say("Your last change was not taken: another steers");
     }
     if (state_.looks_around && !state_.MayLookAround()) state_.looks_around = false;
   }
-  opened_ = resumes_steering_ = false;
+  opened_ = false;
 }
 
 void Session::TakeRefusal(Call& call, const v1::Refused& refused) {
