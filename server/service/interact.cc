@@ -241,7 +241,8 @@ class InteractCall : public InteractReactor,
       response.mutable_catalogue_changed()->set_revision(changes);
       return ResponseOf(response);
     }
-    if (auto news = News(audience.Presence(), &told_presence_); news.has_value()) return news;
+    if (auto news = News(audience.Presence(person_id_), &told_presence_); news.has_value())
+      return news;
     const session::Told marks = audience.Marks(marks_by_changes_ ? told_marks_ : 0);
     if (auto news = News(marks, &told_marks_); news.has_value()) return news;
     if (auto news = News(audience.TimesHeld(), &told_times_); news.has_value()) return news;

@@ -30,9 +30,9 @@ std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
   const std::uint64_t id = roster_.Join(role, name, now, owner_key, answers_checks);
   std::vector<std::shared_ptr<Viewer>> doubted;
   for (const Person& person : roster_.people()) {
-    if (person.doubted_at == now) doubted.push_back(members_.at(person.id));
+    if (person.doubted_at == now) doubted.push_back(members_.at(person.id).viewer);
   }
-  members_[id] = std::move(member);
+  members_[id] = {std::move(member), roster_.revision()};
   board_.HandOver(owner_key, id);
   Settle(std::move(lock), now);
   for (const auto& asked : doubted) asked->Wake();
@@ -209,9 +209,12 @@ bool Audience::Empty() const {
   return members_.empty();
 }
 
-Told Audience::Presence() const {
+Told Audience::Presence(std::uint64_t id) const {
   const std::lock_guard lock(mutex_);
-  return presence_.told;
+  const auto member = members_.find(id);
+  const bool is_older =
+      member != members_.end() && presence_.told_revision < member->second.joined_at;
+  return is_older ? Told() : presence_.told;
 }
 
 Told Audience::Pointers() const {
@@ -255,7 +258,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   std::unique_lock lock(mutex_);
   std::vector<std::shared_ptr<Viewer>> gone;
   for (const std::uint64_t id : roster_.Advance(now)) {
-    gone.push_back(members_.at(id));
+    gone.push_back(members_.at(id).viewer);
     Forget(id);
   }
   // Found without the lock, as it takes a while.
@@ -347,7 +350,7 @@ void Audience::Settle(std::unique_lock<std::mutex> lock, Time now) {
 
 std::vector<std::shared_ptr<Viewer>> Audience::Members() const {
   std::vector<std::shared_ptr<Viewer>> members;
-  for (const auto& [id, member] : members_) members.push_back(member);
+  for (const auto& [id, member] : members_) members.push_back(member.viewer);
   return members;
 }
 

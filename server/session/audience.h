@@ -120,7 +120,8 @@ class Audience {
   std::uint64_t Returns(std::uint64_t id) const;  // Person::returns
   bool Empty() const;
 
-  Told Presence() const;
+  // For that person: nothing yet where the last telling is older than the person's joining.
+  Told Presence(std::uint64_t id) const;
   Told Pointers() const;
   // For one who was told of the marks `count` times: the next change, or all the marks. Those may
   // be newer than what others were told; a change that comes twice is the same as one. Of 0: all.
@@ -145,6 +146,11 @@ class Audience {
   void Forget(std::uint64_t id);
   void TellMarks(Time now);
   bool TellDue(Time now);
+  struct Member {
+    std::shared_ptr<Viewer> viewer;
+    std::uint64_t joined_at = 0;  // the roster's revision
+  };
+
   std::map<std::uint64_t, Ray> TakeRays();
   void WithdrawPointers();
   bool IsDue(const Subject& subject, std::uint64_t revision, std::chrono::milliseconds pause,
@@ -157,7 +163,7 @@ class Audience {
   mutable std::mutex mutex_;
   Roster roster_;
   Board board_;
-  std::map<std::uint64_t, std::shared_ptr<Viewer>> members_;
+  std::map<std::uint64_t, Member> members_;
   std::map<std::uint64_t, Ray> rays_;  // of pointers whose place is to be found
   std::set<std::uint64_t> finding_;    // people whose pointers' places are being found
   std::uint64_t last_found_ = 0;       // whose ray was taken last

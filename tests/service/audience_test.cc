@@ -105,29 +105,32 @@ class AudienceTest : public ::testing::Test {
 
 TEST_F(AudienceTest, EverybodyIsToldTheSameBytesMadeOnce) {
   const int formatted = formatted_;
-  const std::uint64_t told = audience_.Presence().count;
+  const std::uint64_t told = audience_.Presence(presenter_).count;
   const std::vector<int> wakes = {viewers_[0]->wakes, viewers_[1]->wakes, viewers_[2]->wakes};
   ASSERT_TRUE(Ask(ana_).ok());
-  EXPECT_EQ(audience_.Presence().count, told + 1) << "at once after a pause";
-  EXPECT_EQ(*audience_.Presence().bytes, absl::StrCat("steers ", presenter_, ", asks ", ana_));
+  EXPECT_EQ(audience_.Presence(presenter_).count, told + 1) << "at once after a pause";
+  EXPECT_EQ(*audience_.Presence(presenter_).bytes,
+            absl::StrCat("steers ", presenter_, ", asks ", ana_));
   EXPECT_EQ(formatted_, formatted + 1) << "whatever the number of people";
-  EXPECT_EQ(audience_.Presence().bytes, audience_.Presence().bytes) << "the same, not a copy";
+  EXPECT_EQ(audience_.Presence(presenter_).bytes, audience_.Presence(presenter_).bytes)
+      << "the same, not a copy";
   for (std::size_t i = 0; i < viewers_.size(); ++i) EXPECT_EQ(viewers_[i]->wakes, wakes[i] + 1);
 }
 
 TEST_F(AudienceTest, PresenceIsToldAtMostSoOften) {
-  const std::uint64_t told = audience_.Presence().count;
+  const std::uint64_t told = audience_.Presence(presenter_).count;
   ASSERT_TRUE(Ask(ana_).ok());
   ASSERT_TRUE(Ask(ben_).ok());
-  EXPECT_EQ(audience_.Presence().count, told + 1);
+  EXPECT_EQ(audience_.Presence(presenter_).count, told + 1);
   EXPECT_EQ(Tick(), now_ + Audience::kPresencePause);
   now_ += Audience::kPresencePause - milliseconds(1);
   Tick();
-  EXPECT_EQ(audience_.Presence().count, told + 1);
+  EXPECT_EQ(audience_.Presence(presenter_).count, told + 1);
   now_ += milliseconds(1);
   Tick();
-  EXPECT_EQ(audience_.Presence().count, told + 2);
-  EXPECT_THAT(*audience_.Presence().bytes, ::testing::HasSubstr(absl::StrCat("asks ", ben_)));
+  EXPECT_EQ(audience_.Presence(presenter_).count, told + 2);
+  EXPECT_THAT(*audience_.Presence(presenter_).bytes,
+              ::testing::HasSubstr(absl::StrCat("asks ", ben_)));
 }
 
 TEST_F(AudienceTest, MarksAreToldAtMostSoOften) {
@@ -267,29 +270,29 @@ TEST_F(AudienceTest, ARequestEndsByItselfAndThatIsTold) {
   EXPECT_EQ(Tick(), asked + seconds(20)) << "when it is to be called next";
   now_ = asked + seconds(20) - milliseconds(1);
   Tick();
-  EXPECT_THAT(*audience_.Presence().bytes, ::testing::HasSubstr("asks"));
+  EXPECT_THAT(*audience_.Presence(presenter_).bytes, ::testing::HasSubstr("asks"));
   now_ = asked + seconds(20);
   const int wakes = viewers_[1]->wakes;
   Tick();
-  EXPECT_EQ(*audience_.Presence().bytes, absl::StrCat("steers ", presenter_));
+  EXPECT_EQ(*audience_.Presence(presenter_).bytes, absl::StrCat("steers ", presenter_));
   EXPECT_EQ(viewers_[1]->wakes, wakes + 1);
 }
 
 TEST_F(AudienceTest, ControlOfAnAbsentPresenterBecomesFreeByItselfAndThatIsTold) {
   audience_.Leave(presenter_, now_);
   const Audience::Time left = now_;
-  EXPECT_EQ(*audience_.Presence().bytes, "steers 0, away");
+  EXPECT_EQ(*audience_.Presence(presenter_).bytes, "steers 0, away");
   EXPECT_THAT(due_, Gt(0));
   EXPECT_EQ(Tick(), left + seconds(60));
   now_ = left + seconds(60) - milliseconds(1);
   Tick();
-  EXPECT_EQ(*audience_.Presence().bytes, "steers 0, away");
+  EXPECT_EQ(*audience_.Presence(presenter_).bytes, "steers 0, away");
   now_ = left + seconds(60);
   Tick();
-  EXPECT_EQ(*audience_.Presence().bytes, "steers 0");
+  EXPECT_EQ(*audience_.Presence(presenter_).bytes, "steers 0");
   now_ += seconds(1);
   ASSERT_TRUE(Ask(ben_).ok());
-  EXPECT_EQ(*audience_.Presence().bytes, absl::StrCat("steers ", ben_));
+  EXPECT_EQ(*audience_.Presence(presenter_).bytes, absl::StrCat("steers ", ben_));
 }
 
 TEST_F(AudienceTest, ALostConnectionIsAskedForASignOfLifeAndForgotten) {
@@ -336,8 +339,28 @@ TEST_F(AudienceTest, WhoHasSaidSomethingIsNoLostConnection) {
   EXPECT_TRUE(audience_.IsThere(second));
 }
 
+// Clients decide by the first presence whether they steer.
+TEST_F(AudienceTest, TheFirstPresenceIsNotOlderThanTheJoining) {
+  ASSERT_TRUE(
+      audience_
+          .Change([&](Roster& roster) { return roster.GiveControl(presenter_, ana_, now_); }, now_)
+          .ok());
+  const auto viewer = std::make_shared<ToldViewer>();
+  now_ += milliseconds(50);
+  const std::uint64_t carl = *audience_.Join(Role::kPresenter, "Carl", viewer, now_);
+  ASSERT_TRUE(
+      audience_.Change([&](Roster& roster) { return roster.TakeControl(carl); }, now_).ok());
+  EXPECT_EQ(audience_.Presence(carl).count, 0);
+  EXPECT_EQ(*audience_.Presence(ben_).bytes, absl::StrCat("steers ", ana_)) << "as told before";
+  const int wakes = viewer->wakes;
+  now_ += Audience::kPresencePause;
+  Tick();
+  EXPECT_EQ(viewer->wakes, wakes + 1);
+  EXPECT_EQ(*audience_.Presence(carl).bytes, absl::StrCat("steers ", carl));
+}
+
 TEST_F(AudienceTest, NothingIsToldWithoutNews) {
-  const Told presence = audience_.Presence();
+  const Told presence = audience_.Presence(presenter_);
   const std::uint64_t marks = audience_.Marks(0).count;
   const int wakes = viewers_[0]->wakes;
   for (int i = 0; i < 100; ++i) {
@@ -345,7 +368,7 @@ TEST_F(AudienceTest, NothingIsToldWithoutNews) {
     now_ += seconds(1);
   }
   EXPECT_TRUE(audience_.Erase(presenter_, {}, now_).ok());
-  EXPECT_EQ(audience_.Presence().count, presence.count);
+  EXPECT_EQ(audience_.Presence(presenter_).count, presence.count);
   EXPECT_EQ(audience_.Marks(0).count, marks);
   EXPECT_EQ(viewers_[0]->wakes, wakes);
 }

@@ -185,6 +185,23 @@ TEST(InteractTest, AJoinerIsToldEverythingAtOnce) {
   EXPECT_TRUE(presence.rules().has_viewers_may_steer());
 }
 
+// Presence is told at most once in 0.2 s, and not as it was before somebody joined.
+TEST(InteractTest, TheFirstPresenceOfAJoinerHasTheJoiner) {
+  Class group;
+  std::vector<std::unique_ptr<Interacting>> people;
+  for (int i = 0; i < 2; ++i) {
+    people.push_back(std::make_unique<Interacting>(group.service.stub(), group.created.viewer_key(),
+                                                   Class::Named("")));
+    ASSERT_GT(people.back()->viewer_id(), 0U);
+  }
+  for (const auto& person : people) {
+    person->AwaitNewest(Response::kPresence);
+    const auto messages = person->All();
+    const auto first = std::ranges::find(messages, Response::kPresence, &Response::message_case);
+    EXPECT_NE(Find(first->presence(), person->viewer_id()), nullptr);
+  }
+}
+
 TEST(InteractTest, FramesAreThoseOfWatchFrames) {
   Class group;
   Watcher watcher(group.service.stub(), group.created.viewer_key());
