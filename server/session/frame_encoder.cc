@@ -127,7 +127,7 @@ EncodeFrame JpegEncoder(const std::shared_ptr<Session>& session,
         [&] { return WithJpeg(described, tier, pictures->At(tier), wanted_quality, serialize); });
     if (frame.ok()) return *std::move(frame);
     if (const auto owner = weak_session.lock(); owner != nullptr) {
-      owner->hub().Publish(ProblemOf(described.scene_revision, frame.status()));
+      owner->hub().Note(ProblemOf(described.scene_revision, frame.status()));
     }
     return std::nullopt;
   };

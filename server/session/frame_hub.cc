@@ -1,6 +1,7 @@
 #include "session/frame_hub.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "telemetry/metrics.h"
@@ -198,10 +199,30 @@ std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
   }
   if (waits) on_wait_();
   const std::shared_ptr<const EncodedFrame> frame = Made(*offer, *published);
-  if (frame == nullptr) return std::nullopt;
+  if (frame == nullptr) return NotMade(viewer_id, *offer);
   Counted().frames_sent.Add();
   Counted().frame_bytes_sent.Add(frame->jpeg.size() + frame->vp9.size() + frame->avif.size());
   return frame;
+}
+
+std::optional<FrameEvent> FrameHub::NotMade(std::uint64_t viewer_id, const Offer& offer) {
+  std::optional<FrameEvent> event;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = watches_.find(viewer_id);
+    if (found == watches_.end()) return std::nullopt;
+    Watch& watch = found->second;
+    const auto sent =
+        std::find_if(watch.in_flight.rbegin(), watch.in_flight.rend(),
+                     [&](const Sent& each) { return each.sequence == offer.sequence; });
+    if (sent != watch.in_flight.rend()) watch.in_flight.erase(std::next(sent).base());
+    if (problem_.has_value() && problem_count_ > watch.last_problem) {
+      watch.last_problem = problem_count_;
+      event = *problem_;
+    }
+  }
+  on_demand_();
+  return event;
 }
 
 // Without the lock, as a tier that nobody wanted before is encoded now.
@@ -402,11 +423,7 @@ void FrameHub::Rest(std::uint64_t sequence) {
 }
 
 void FrameHub::Publish(Problem problem) {
-  {
-    const std::lock_guard lock(mutex_);
-    ++problem_count_;
-    problem_ = std::move(problem);
-  }
+  Note(std::move(problem));
   WakeAll();
 }
 
@@ -415,6 +432,12 @@ bool FrameHub::DropUnwatched() {
   const std::lock_guard lock(mutex_);
   if (watches_.empty()) dropped = std::exchange(frame_, nullptr);
   return dropped != nullptr;
+}
+
+void FrameHub::Note(Problem problem) {
+  const std::lock_guard lock(mutex_);
+  ++problem_count_;
+  problem_ = std::move(problem);
 }
 
 void FrameHub::Close(const absl::Status& why) {

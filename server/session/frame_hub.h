@@ -84,7 +84,8 @@ class FrameHub {
   void Leave(std::uint64_t viewer_id);
 
   // Takes the newest frame or problem that the viewer has not had, unless too many of its frames
-  // are in flight, i.e. taken and not yet acknowledged, or it wants fewer a second.
+  // are in flight, i.e. taken and not yet acknowledged, or it wants fewer a second. A frame that
+  // cannot be encoded is not in flight.
   std::optional<FrameEvent> Take(std::uint64_t viewer_id,
                                  Time now = std::chrono::steady_clock::now());
 
@@ -116,6 +117,9 @@ class FrameHub {
   void Rest(std::uint64_t sequence);
   // Replaces the newest problem; a frame of the same or a newer revision ends it.
   void Publish(Problem problem);
+
+  // The same, but wakes nobody, as a viewer may be taking the frame that has the problem.
+  void Note(Problem problem);
 
   // Gives up the newest frame unless somebody watches; true if there was one.
   bool DropUnwatched();
@@ -181,6 +185,9 @@ class FrameHub {
   bool HasFor(const Watch& watch, Time now) const;
   static std::shared_ptr<const EncodedFrame> Made(const Offer& offer, PublishedFrame& published);
   // True if it is to be woken for its next frame.
+  // The problem, if there is one, in place of an offered frame that could not be made. Without
+  // mutex_.
+  std::optional<FrameEvent> NotMade(std::uint64_t viewer_id, const Offer& offer);
   bool Took(Watch& watch, const Offer& offer, Time now);
   void SetLeastSteps(Time now);
   std::shared_ptr<PublishedFrame> Newest(std::uint64_t sequence) const;
