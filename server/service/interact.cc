@@ -453,12 +453,16 @@ class InteractCall : public InteractReactor,
   }
 
   absl::Status Update(std::uint64_t request_id, const v1::SceneUpdate& update) {
-    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MaySteer(person_id_));
     AddUpdate();
-    ChangeScene(engine_, caller_->identity().name, session_, SceneChangeOf(update),
-                [self = shared_from_this(), request_id](const auto& revision) {
-                  self->Updated(request_id, revision);
-                });
+    ChangeScene(
+        engine_, caller_->identity().name, session_, SceneChangeOf(update),
+        [self = shared_from_this()] {
+          return self->session_->audience().MaySteer(self->person_id_);
+        },
+        [self = shared_from_this(), request_id](const auto& revision) {
+          self->caller_->ReportRefusal("Interact/update_scene", revision.status());
+          self->Updated(request_id, revision);
+        });
     return absl::OkStatus();
   }
 

@@ -100,14 +100,18 @@ absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session) {
 
 void ChangeScene(Engine& engine, const std::string& owner,
                  const std::shared_ptr<session::Session>& session, const SceneChange& change,
+                 std::function<absl::Status()> may,
                  std::function<void(const absl::StatusOr<std::uint64_t>&)> done) {
+  if (const absl::Status allowed = may(); !allowed.ok()) return done(allowed);
   const auto changed = Take(engine, *session, change);
   if (!changed.ok()) return done(changed.status());
   const std::uint64_t revision = changed->revision;
   const std::shared_ptr<v1::Scene> scene = changed->scene;
   FrameThen(engine, owner, *scene,
-            [revision, scene, session, done = std::move(done)](const absl::Status& framed) {
+            [revision, scene, session, may = std::move(may),
+             done = std::move(done)](const absl::Status& framed) {
               const absl::Status shown = !framed.ok() ? framed : base::OrOutOfMemory([&] {
+                THUNDERHEAD_RETURN_IF_ERROR(may());
                 session->Show(revision, ToScene(*scene), scene->SerializeAsString());
                 return absl::OkStatus();
               });

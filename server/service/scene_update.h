@@ -33,11 +33,13 @@ struct ReadScene {
 absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session);
 
 // Completes the changed scene and shows it, then calls `done` with its revision: at once, or on
-// another thread if the storm must be read to place the camera. The change's limits were checked.
-// `owner` is the identity that asks. INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the
-// scene is at another revision.
+// another thread if the storm must be read to place the camera. `may` says whether who asks may
+// change the scene, and is called first and, as control may pass on during the read, before the
+// scene is shown. The change's limits were checked. `owner` is the identity that asks.
+// INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the scene is at another revision.
 void ChangeScene(Engine& engine, const std::string& owner,
                  const std::shared_ptr<session::Session>& session, const SceneChange& change,
+                 std::function<absl::Status()> may,
                  std::function<void(const absl::StatusOr<std::uint64_t>&)> done);
 
 }  // namespace thunderhead::service

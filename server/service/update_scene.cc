@@ -19,7 +19,6 @@ absl::StatusOr<std::shared_ptr<session::Session>> FindToSteer(
                                     "call takes the presenter's key"),
         {.reason = "NOT_PRESENTER"});
   }
-  THUNDERHEAD_RETURN_IF_ERROR(found.session->audience().PresenterMaySteer());
   return found.session;
 }
 
@@ -32,12 +31,14 @@ grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContex
   const auto session = FindToSteer(engine, *request);
   if (!session.ok()) return Finished(context, *caller, session.status());
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  ChangeScene(engine, caller->identity().name, *session, SceneChangeOf(*request),
-              [=](const absl::StatusOr<std::uint64_t>& revision) {
-                if (revision.ok()) response->set_scene_revision(*revision);
-                caller->ReportRefusal(revision.status());
-                reactor->Finish(ToGrpcStatus(revision.status()));
-              });
+  ChangeScene(
+      engine, caller->identity().name, *session, SceneChangeOf(*request),
+      [session = *session] { return session->audience().PresenterMaySteer(); },
+      [=](const absl::StatusOr<std::uint64_t>& revision) {
+        if (revision.ok()) response->set_scene_revision(*revision);
+        caller->ReportRefusal(revision.status());
+        reactor->Finish(ToGrpcStatus(revision.status()));
+      });
   return reactor;
 }
 

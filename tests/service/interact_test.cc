@@ -493,6 +493,31 @@ TEST(InteractTest, OfTwoWhoChangeTheSameRevisionOneIsTold) {
   EXPECT_EQ(group.presenter->AwaitScene(2).sun().azimuth_deg(), 120.0F);
 }
 
+// Control may pass on while the storm is read from which an update's camera follows.
+TEST(InteractTest, AnUpdateIsNotShownAfterControlWasTaken) {
+  Class group;
+  group.presenter->Send(Gives(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ben, group.ana->viewer_id()));
+  group.service.store->reading.Close();
+  v1::InteractRequest slow = SunTo(90.0F);
+  slow.mutable_update_scene()->mutable_scene()->set_time_index(2);
+  slow.mutable_update_scene()->mutable_scene()->mutable_camera()->mutable_spotter();
+  const std::uint64_t waits = group.ana->Send(slow);
+  ASSERT_TRUE(group.service.store->reading.AwaitWaiting(1));
+  group.presenter->Send(Takes());
+  ASSERT_TRUE(Class::SteersFor(*group.ben, group.presenter->viewer_id()));
+  group.service.store->reading.Open();
+  const Response refused = group.ana->Answer(waits);
+  EXPECT_EQ(refused.refused().status().code(), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_EQ(ReasonOf(refused.refused().status()), "NOT_STEERING");
+  const std::uint64_t revision =
+      group.presenter->Answer(group.presenter->Send(SunTo(120.0F))).scene_taken().scene_revision();
+  EXPECT_EQ(group.ben->AwaitScene(revision).sun().azimuth_deg(), 120.0F);
+  for (const Response& message : group.ben->All()) {
+    EXPECT_NE(message.scene().scene().sun().azimuth_deg(), 90.0F);
+  }
+}
+
 TEST(InteractTest, ARefusedSceneDoesNotBlockTheNextChange) {
   Class group;
   v1::InteractRequest wrong = SunTo(120.0F);
