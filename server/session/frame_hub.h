@@ -1,8 +1,9 @@
 // Distributes a session's newest frame to its viewers. Each viewer has at most two unacknowledged
-// frames; a slow one skips frames and never slows another. A viewer with a slow link gets video
-// where it can decode it, or smaller pictures; each form is encoded once, whatever the number of
-// viewers. The hub keeps only one frame and one problem, and the newest base picture of each stream
-// of video. Safe from any thread. Does not know how frames are drawn, encoded or sent.
+// frames of JPEG, up to eight of video; a slow one skips frames and never slows another. A viewer
+// with a slow link gets video where it can decode it, or smaller pictures; each form is encoded
+// once, whatever the number of viewers. The hub keeps only one frame and one problem, and the
+// newest base picture of each stream of video. Safe from any thread. Does not know how frames are
+// drawn, encoded or sent.
 #pragma once
 
 #include <algorithm>
@@ -117,7 +118,6 @@ class FrameHub {
   void Rest(std::uint64_t sequence);
   // Replaces the newest problem; a frame of the same or a newer revision ends it.
   void Publish(Problem problem);
-
   // The same, but wakes nobody, as a viewer may be taking the frame that has the problem.
   void Note(Problem problem);
 
@@ -184,10 +184,10 @@ class FrameHub {
   std::optional<Offer> NextFor(const Watch& watch, Time now) const;
   bool HasFor(const Watch& watch, Time now) const;
   static std::shared_ptr<const EncodedFrame> Made(const Offer& offer, PublishedFrame& published);
-  // True if it is to be woken for its next frame.
   // The problem, if there is one, in place of an offered frame that could not be made. Without
   // mutex_.
   std::optional<FrameEvent> NotMade(std::uint64_t viewer_id, const Offer& offer);
+  // True if it is to be woken for its next frame.
   bool Took(Watch& watch, const Offer& offer, Time now);
   void SetLeastSteps(Time now);
   std::shared_ptr<PublishedFrame> Newest(std::uint64_t sequence) const;
