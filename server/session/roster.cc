@@ -45,7 +45,7 @@ std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string ke
                      .key = std::move(key),
                      .answers = answers});
   Person& person = people_.back();
-  if (const auto asked = asked_and_left_.find(person.key); asked != asked_and_left_.end()) {
+  if (const auto asked = asked_and_left_.find({role, person.key}); asked != asked_and_left_.end()) {
     person.asked_at = asked->second.asked_at;
     person.asks = asked->second.is_open && now < asked->second.asked_at + timeouts_.answer;
     asked_and_left_.erase(asked);
@@ -53,7 +53,8 @@ std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string ke
   const bool is_awaited =
       awaited_.has_value() && awaited_->key == person.key && awaited_->role == role;
   const bool is_kept = away_since_.has_value();
-  if (is_awaited || (is_kept && role == Role::kPresenter)) Give(person);
+  const bool is_given = person.asks && GivesToWhoAsks();
+  if (is_awaited || is_given || (is_kept && role == Role::kPresenter)) Give(person);
   return count_;
 }
 
@@ -68,7 +69,7 @@ void Roster::Leave(std::uint64_t id, Time now) {
     heir->asked_at = std::max(heir->asked_at.value_or(*left.asked_at), *left.asked_at);
     heir->asks = heir->asks || (left.asks && heir->id != steering_);
   } else if (left.asked_at.has_value() && !left.key.empty()) {
-    asked_and_left_[left.key] = {*left.asked_at, left.asks};
+    asked_and_left_[{left.role, left.key}] = {*left.asked_at, left.asks};
   }
   if (steering_ != id) return;
   if (heir != nullptr) return Give(*heir);
@@ -133,7 +134,7 @@ absl::Status Roster::AskControl(std::uint64_t id, Time now) {
   if (steering_ == id) return absl::OkStatus();
   if (person->role == Role::kPresenter) return TakeControl(id);
   if (rules_.control_locked) return Locked();
-  if (control_is_free() && rules_.viewers_may_steer) {
+  if (GivesToWhoAsks()) {
     Give(*person);
     return absl::OkStatus();
   }
@@ -204,7 +205,7 @@ absl::Status Roster::SetRules(std::uint64_t id, const Rules& rules) {
   }
   rules_ = rules;
   ++revision_;
-  for (auto& [key, request] : asked_and_left_) {
+  for (auto& [who, request] : asked_and_left_) {
     if (rules_.control_locked) request.is_open = false;
   }
   for (Person& other : people_) {
@@ -263,6 +264,10 @@ std::vector<std::uint64_t> Roster::Advance(Time now) {
     ++revision_;
   }
   return silent;
+}
+
+bool Roster::GivesToWhoAsks() const {
+  return control_is_free() && rules_.viewers_may_steer && !rules_.control_locked;
 }
 
 bool Roster::FreesWhenAway() const { return away_since_.has_value() && rules_.free_when_away; }

@@ -16,6 +16,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -81,8 +82,8 @@ class Roster {
   void RestoreFreeControl() { Free(); }
 
   // Who comes back with the same key and role steers again if control waits for that, asks for
-  // control if the one who left did, and asked last when that one did. Doubts those who are there
-  // with them, if they answer; `answers` says so of the newcomer.
+  // control if the one who left did, or has it if it is free by now, and asked last when that one
+  // did. Doubts those who are there with them, if they answer; `answers` says so of the newcomer.
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "",
                      bool answers = true);
   // What the one who leaves had goes to who is there with the same key and role, or waits for them.
@@ -162,6 +163,8 @@ class Roster {
   absl::Status MayAnswer(std::uint64_t id) const;
   void Give(Person& to);
   void ReturnToView(Person& person);
+  // A viewer who asks for control has it at once.
+  bool GivesToWhoAsks() const;
   bool FreesWhenAway() const;
   // When one who is doubted is given up.
   Time DoubtEnds(const Person& person) const;
@@ -172,7 +175,8 @@ class Roster {
 
   RosterTimeouts timeouts_;
   Rules rules_;
-  std::map<std::string, Request> asked_and_left_;  // by key, for as long as it counts
+  // By role and key, for as long as they count.
+  std::map<std::pair<Role, std::string>, Request> asked_and_left_;
   std::vector<Person> people_;
   std::uint64_t steering_ = 0;
   std::optional<Time> away_since_;  // while control is kept for presenters

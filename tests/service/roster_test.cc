@@ -141,6 +141,30 @@ TEST(RosterTest, WhoComesBackHasAskedBefore) {
   EXPECT_TRUE(group.roster.AskControl(back, kOpenedAt + kTimeouts.ask_again).ok());
 }
 
+TEST(RosterTest, ARequestComesBackWithItsRole) {
+  Class group;
+  const std::uint64_t eve = group.roster.Join(Role::kViewer, "Eve", kOpenedAt, "key");
+  ASSERT_TRUE(group.roster.AskControl(eve, kOpenedAt).ok());
+  group.roster.Leave(eve, kOpenedAt);
+  const std::uint64_t presenting = group.roster.Join(Role::kPresenter, "Eve", kOpenedAt, "key");
+  EXPECT_FALSE(group.roster.Find(presenting)->asks);
+  const std::uint64_t back = group.roster.Join(Role::kViewer, "Eve", kOpenedAt, "key");
+  EXPECT_TRUE(group.roster.Find(back)->asks);
+}
+
+TEST(RosterTest, WhoAskedAndComesBackHasControlThatIsFreeByNow) {
+  for (const Rules& rules : {Rules{}, Rules{.viewers_may_steer = false}}) {
+    Class group(rules);
+    const std::uint64_t eve = group.roster.Join(Role::kViewer, "Eve", kOpenedAt, "key");
+    ASSERT_TRUE(group.roster.AskControl(eve, kOpenedAt).ok());
+    group.roster.Leave(eve, kOpenedAt);
+    ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt).ok());
+    const std::uint64_t back = group.roster.Join(Role::kViewer, "Eve", kOpenedAt, "key");
+    EXPECT_EQ(group.roster.steering(), rules.viewers_may_steer ? back : 0U);
+    EXPECT_EQ(group.roster.Find(back)->asks, !rules.viewers_may_steer);
+  }
+}
+
 TEST(RosterTest, FreeControlIsNotGivenWhereViewersMayNotSteer) {
   Class group({.viewers_may_steer = false});
   ASSERT_TRUE(group.roster.GiveControl(group.presenter, 0, kOpenedAt).ok());
