@@ -24,6 +24,7 @@ class FrameStream : public FramesReactor,
                     public session::Viewer,
                     public std::enable_shared_from_this<FrameStream> {
  public:
+  // The session counts its onlooker already.
   static FramesReactor* Start(std::shared_ptr<session::Session> session, CallerRef caller) {
     auto stream = std::make_shared<FrameStream>(std::move(session), std::move(caller));
     stream->held_by_grpc_ = stream;
@@ -82,6 +83,7 @@ class FrameStream : public FramesReactor,
     // First, as a session that nobody watches expires sooner.
     session_->Touch();
     if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
+    session_->audience().RemoveOnlooker();
     held_by_grpc_.reset();
   }
 
@@ -128,16 +130,15 @@ class FrameStream : public FramesReactor,
   bool finished_ = false;
 };
 
-absl::StatusOr<std::shared_ptr<session::Session>> FindSession(
+// The session, with one onlooker more.
+absl::StatusOr<std::shared_ptr<session::Session>> FindToWatch(
     Engine& engine, const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
   if (engine.drain.HasBegun()) return base::ShuttingDown();
   THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
                                engine.sessions.Find(request.session_id()));
-  if (found.role == session::Role::kViewer &&
-      found.session->hub().Viewers() >= engine.limits.max_viewers_per_session) {
-    return TooManyViewers(engine.limits.max_viewers_per_session);
-  }
+  const std::size_t most = engine.limits.max_viewers_per_session;
+  if (!found.session->audience().AddOnlooker(found.role, most)) return TooManyViewers(most);
   return found.session;
 }
 
@@ -145,7 +146,7 @@ absl::StatusOr<std::shared_ptr<session::Session>> FindSession(
 
 FramesReactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/,
                            CallerRef caller, const v1::WatchFramesRequest* request) {
-  auto session = FindSession(engine, *request);
+  auto session = FindToWatch(engine, *request);
   if (!session.ok()) return new RefusedStream<FramesReactor>(*caller, session.status());
   return FrameStream::Start(*std::move(session), std::move(caller));
 }

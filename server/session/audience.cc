@@ -26,7 +26,9 @@ std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
                                             bool answers_checks) {
   std::unique_lock lock(mutex_);
   const std::size_t lost = roster_.Has(role, owner_key) ? 1 : 0;
-  if (role == Role::kViewer && members_.size() >= most + lost) return std::nullopt;
+  if (role == Role::kViewer && members_.size() + onlookers_ >= most + lost) {
+    return std::nullopt;
+  }
   const std::uint64_t id = roster_.Join(role, name, now, owner_key, answers_checks);
   std::vector<std::shared_ptr<Viewer>> doubted;
   for (const Person& person : roster_.people()) {
@@ -44,6 +46,18 @@ void Audience::Leave(std::uint64_t id, Time now) {
   Forget(id);
   roster_.Leave(id, now);
   Settle(std::move(lock), now);
+}
+
+bool Audience::AddOnlooker(Role role, std::size_t most) {
+  const std::lock_guard lock(mutex_);
+  if (role == Role::kViewer && members_.size() + onlookers_ >= most) return false;
+  ++onlookers_;
+  return true;
+}
+
+void Audience::RemoveOnlooker() {
+  const std::lock_guard lock(mutex_);
+  --onlookers_;
 }
 
 void Audience::Forget(std::uint64_t id) {

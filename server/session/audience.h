@@ -72,13 +72,17 @@ class Audience {
            std::function<void()> on_due, const RosterTimeouts& timeouts = {});
 
   // `member` is woken when it is to be told something. The marks with `owner_key`, if there are
-  // any, become the newcomer's. None for a viewer where `most` people are; who comes back may be
-  // one more, as the lost connection may not have ended yet.
+  // any, become the newcomer's. None for a viewer where `most` people are, onlookers included; who
+  // comes back may be one more, as the lost connection may not have ended yet.
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
                                     std::shared_ptr<Viewer> member, Time now,
                                     std::size_t most = std::numeric_limits<std::size_t>::max(),
                                     const std::string& owner_key = "", bool answers_checks = true);
   void Leave(std::uint64_t id, Time now);
+  // One more who only watches, and is nobody in the roster; false for a viewer where `most` are
+  // already, people included.
+  bool AddOnlooker(Role role, std::size_t most);
+  void RemoveOnlooker();
   // The person has said something.
   void Heard(std::uint64_t id);
   // The person has been asked whether it is there, because of doubt number `doubts`.
@@ -142,15 +146,15 @@ class Audience {
     Time told_at;
   };
 
-  // All need mutex_. TellDue tells those subjects whose pause is over; true if there were any.
-  void Forget(std::uint64_t id);
-  void TellMarks(Time now);
-  bool TellDue(Time now);
   struct Member {
     std::shared_ptr<Viewer> viewer;
     std::uint64_t joined_at = 0;  // the roster's revision
   };
 
+  // All need mutex_. TellDue tells those subjects whose pause is over; true if there were any.
+  void Forget(std::uint64_t id);
+  void TellMarks(Time now);
+  bool TellDue(Time now);
   std::map<std::uint64_t, Ray> TakeRays();
   void WithdrawPointers();
   bool IsDue(const Subject& subject, std::uint64_t revision, std::chrono::milliseconds pause,
@@ -164,6 +168,7 @@ class Audience {
   Roster roster_;
   Board board_;
   std::map<std::uint64_t, Member> members_;
+  std::size_t onlookers_ = 0;
   std::map<std::uint64_t, Ray> rays_;  // of pointers whose place is to be found
   std::set<std::uint64_t> finding_;    // people whose pointers' places are being found
   std::uint64_t last_found_ = 0;       // whose ray was taken last

@@ -352,6 +352,46 @@ TEST(AccessTest, ViewersOfASessionAreLimitedAndPresentersComeIn) {
   EXPECT_TRUE(presenter.Join(created.session_id()).has_joined());
 }
 
+// By either call, whether or not they get pictures.
+TEST(AccessTest, ViewersByOldAndNewCallsAreCountedTogether) {
+  service::ServerOptions options;
+  options.limits.max_viewers_per_session = 2;
+  GuardedService guarded(options);
+  const auto created = guarded.Create();
+  const auto context_of = [&] {
+    auto context = std::make_unique<grpc::ClientContext>();
+    context->AddMetadata("authorization", "Bearer " + TokenOf("viewer"));
+    context->set_deadline(std::chrono::system_clock::now() + kPatience);
+    return context;
+  };
+  v1::WatchFramesRequest request;
+  request.set_session_id(created.viewer_key());
+  v1::WatchFramesResponse response;
+  const auto watching = context_of();
+  const auto watch = guarded.stub().WatchFrames(watching.get(), request);
+  ASSERT_TRUE(watch->Read(&response));
+  HandCall ana(guarded.stub(), "viewer");
+  v1::InteractRequest hidden;
+  hidden.mutable_join()->set_session_key(created.viewer_key());
+  hidden.mutable_join()->mutable_window()->set_hidden(true);
+  EXPECT_TRUE(ana.Send(hidden, v1::InteractResponse::kJoined).has_joined());
+  const auto too_many = context_of();
+  EXPECT_EQ(guarded.stub().WatchFrames(too_many.get(), request)->Finish().error_code(),
+            grpc::StatusCode::RESOURCE_EXHAUSTED);
+  HandCall third(guarded.stub(), "viewer");
+  EXPECT_FALSE(third.Join(created.viewer_key()).has_joined());
+  // Who leaves makes room.
+  watching->TryCancel();
+  watch->Finish();
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  bool joined = false;
+  while (!joined && std::chrono::steady_clock::now() < end) {
+    HandCall next(guarded.stub(), "viewer");
+    joined = next.Join(created.viewer_key()).has_joined();
+  }
+  EXPECT_TRUE(joined);
+}
+
 TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
   service::ServerOptions options;
   options.limits.max_pixels = 64 * 36;
