@@ -878,8 +878,11 @@ TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   }));
 }
 
+// Control waits for the one who comes back, for longer than this test.
+constexpr session::RosterTimeouts kWaitsForEver{.come_back = std::chrono::hours(1)};
+
 TEST(InteractTest, WhoReconnectsSteersAgain) {
-  Class group;
+  Class group({}, With(kWaitsForEver));
   Interacting second(group.service.stub(), group.created.session_id(), Class::Named("Tablet"));
   ASSERT_GT(second.viewer_id(), 0U);
   const std::string key = group.presenter->participant_key();
@@ -1035,11 +1038,12 @@ TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
 }
 
 TEST(InteractTest, APresenterWhoReloadsHasControlAgain) {
-  Class group;
+  Class group({}, With(kWaitsForEver));
   group.presenter->Cancel();
   ASSERT_TRUE(group.ana->AwaitPresence(
       [](const v1::Presence& presence) { return presence.presenter_away(); }));
-  Interacting back(group.service.stub(), group.created.session_id(), {.name = "Teacher"});
+  Interacting back(group.service.stub(), group.created.session_id(),
+                   {.name = "Teacher", .participant_key = group.presenter->participant_key()});
   ASSERT_TRUE(Class::SteersFor(*group.ana, back.viewer_id()));
   EXPECT_EQ(back.AnswerCode(back.Send(SunTo(120.0F))), grpc::StatusCode::OK);
 }
