@@ -30,7 +30,7 @@ const SAME_PLACE_PX = 2;
 // The server takes one request for control in five seconds from a person.
 const ASK_AGAIN_AFTER_MS = 5100;
 
-// Roster::kAnswerWithin and kAwayAfter; people are told at most 0.2 s later.
+// RosterTimeouts::answer and away; people are told at most 0.2 s later.
 const ANSWER_WITHIN_MS = 20_000;
 const AWAY_AFTER_MS = 60_000;
 const TOLD_WITHIN_MS = 300;
