@@ -87,17 +87,27 @@ volume::RegularGrid FinerGrid(volume::RegularGrid grid) {
   return grid;
 }
 
-VdbMetadata OpticsOf(const scene::DrawnField& drawn, const scene::Scene& scene,
-                     const volume::HydrometeorField& field) {
+std::string SourceOfSizes(const scene::DrawnField& drawn) {
+  switch (drawn.sizes) {
+    case physics::SizeSource::kPapers:
+      return "papers";
+    case physics::SizeSource::kGiven:
+      return "scene";
+    case physics::SizeSource::kModel:
+      break;
+  }
+  return drawn.mass_extinction.by_cell ? "model" : "default";
+}
+
+VdbMetadata OpticsOf(const scene::DrawnField& drawn, const volume::HydrometeorField& field) {
   VdbMetadata metadata{{"quantity", "extinction"},
                        {"units", "1/m"},
                        {"albedo", static_cast<double>(drawn.albedo)},
                        {"asymmetry", physics::MeanCosine(drawn.phase)},
                        {"source_variable", field.variable}};
-  if (field.quantity != volume::Quantity::kExtinction) {
-    const scene::FieldParameters& look = scene.fields[physics::IndexOf(drawn.hydrometeor)];
-    metadata["effective_radius_m"] =
-        static_cast<double>(volume::WithDrawnRadius(field, look.optics, look.sizes).radius_m);
+  if (drawn.radius_m.has_value()) {
+    metadata["effective_radius_m"] = static_cast<double>(*drawn.radius_m);
+    metadata["effective_radius_source"] = SourceOfSizes(drawn);
   }
   return metadata;
 }
@@ -155,7 +165,7 @@ absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, const Fields& fields
     grid.name = std::string(physics::NameOf(drawn.hydrometeor));
     THUNDERHEAD_RETURN_IF_ERROR(CheckLargest(
         grid.name, detailed == nullptr ? extinction.Largest() : detailed->Largest_per_m()[i]));
-    grid.metadata = OpticsOf(drawn, shown, fields->fields[drawn.index]);
+    grid.metadata = OpticsOf(drawn, fields->fields[drawn.index]);
     if (detailed != nullptr) {
       grid.grid = FinerGrid(fields->grid);
       grid.fill = [detailed, i, finer = grid.grid](const glm::ivec3& first, VdbBlock& values) {

@@ -28,8 +28,8 @@ struct ExportOptions {
 // The file of `storm`'s fields at the time of `scene`: for each visible field extinction (1/m) as
 // the light volume draws it, named "cloud", "rain" and so on; background 0. Metadata of a grid:
 // quantity, units, albedo, asymmetry (the phase function's mean cosine) and, for a field that has
-// one, effective_radius_m. Of the file: what it is of, when and where. Keeps `fields` alive.
-// INVALID_ARGUMENT if an extinction is too large for a half float.
+// one, effective_radius_m and its source. Of the file: what it is of, when and where. Keeps
+// `fields` alive. INVALID_ARGUMENT if an extinction is too large for a half float.
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene,
                                  const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                  const volume::StormInfo& storm, const ExportOptions& options);

@@ -10,7 +10,7 @@ absl::Status Technique::MakeContent(const scene::Scene& /*scene*/, const Fields&
 Content DescribeMedium(const ResidentMedium& medium, const volume::HydrometeorFields& fields,
                        bool leaps) {
   Content content;
-  content.fields = medium.Content().hydrometeors;
+  content.fields = scene::HydrometeorsOf(medium.Content().fields);
   if (medium.Empty()) return content;
   const glm::dvec3 box_m = 2.0 * medium.HalfExtent_m();
   const glm::dvec3 domain_m = fields.grid.HighCorner_m() - fields.grid.low_corner_m;

@@ -5,14 +5,12 @@
 namespace thunderhead::scene {
 namespace {
 
-// That of cloud water where the technique has one phase function for every field.
-physics::PhaseFunction PhaseShown(const Scene& scene, const volume::HydrometeorField& field,
+// That of cloud water where the technique has one phase function for every field; `optics` has the
+// radius that is drawn.
+physics::PhaseFunction PhaseShown(const Scene& scene, const physics::ParticleOptics& optics,
                                   const FieldLook& look) {
-  if (!look.per_field_phase) {
-    return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
-  }
-  const FieldParameters& parameters = scene.fields[physics::IndexOf(field.hydrometeor)];
-  return physics::PhaseOf(volume::WithDrawnRadius(field, parameters.optics, parameters.sizes));
+  if (look.per_field_phase) return physics::PhaseOf(optics);
+  return physics::PhaseOf(scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics);
 }
 
 }  // namespace
@@ -29,14 +27,19 @@ std::vector<DrawnField> DrawnFieldsOf(const Scene& scene, const volume::Hydromet
     const volume::HydrometeorField& field = fields.fields[i];
     if (!IsDrawn(scene, field)) continue;
     const FieldParameters& parameters = scene.fields[physics::IndexOf(field.hydrometeor)];
+    const physics::ParticleOptics optics =
+        volume::WithDrawnRadius(field, parameters.optics, parameters.sizes);
     DrawnField entry;
     entry.index = i;
     entry.hydrometeor = field.hydrometeor;
     entry.mass_extinction = volume::MassExtinctionOf(field, parameters.optics, parameters.sizes);
     entry.mass_extinction.m2_per_kg *= parameters.scale;
-    entry.albedo = parameters.optics.albedo;
-    entry.phase = PhaseShown(scene, field, look);
-    if (look.false_colors) entry.color = parameters.optics.false_color;
+    if (field.quantity != volume::Quantity::kExtinction) entry.radius_m = optics.radius_m;
+    entry.sizes = parameters.sizes;
+    entry.albedo = optics.albedo;
+    entry.phase = PhaseShown(scene, optics, look);
+    if (look.false_colors) entry.color = optics.false_color;
+    entry.asked_detail = parameters.detail;
     entry.detail = DrawnDetail(scene, field.hydrometeor, fields.grid.spacing_m);
     drawn.push_back(entry);
   }

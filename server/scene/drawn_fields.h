@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "glm/vec3.hpp"
 #include "physics/hydrometeors.h"
+#include "physics/particle_size.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -21,10 +23,14 @@ struct DrawnField {
   // Of the mixing ratio in the file: the scene's scale is in it. By cell where the sizes are the
   // model's.
   volume::MassExtinction mass_extinction;
+  // Effective, of all the field's particles; none where the file gives extinction.
+  std::optional<float> radius_m;
+  physics::SizeSource sizes{};  // where radius_m comes from
   float albedo = 1.0F;
   physics::PhaseFunction phase;  // by physics::PhaseOf
   glm::vec3 color{1.0F};         // white but in false colours
-  Detail detail;                 // with a wavelength if any
+  Detail detail;                 // as it is drawn, with a wavelength if any
+  Detail asked_detail;           // of the scene, whether the technique shows it or not
 };
 
 // In the order of `fields`.

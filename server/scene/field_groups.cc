@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "physics/detail_tile.h"
-#include "scene/drawn_fields.h"
 
 namespace thunderhead::scene {
 
@@ -16,7 +15,7 @@ GroupedFields GroupedFieldsOf(const Scene& scene, const volume::HydrometeorField
     grouped.terms.push_back({static_cast<int>(field.index), field.mass_extinction.m2_per_kg,
                              static_cast<int>(found - grouped.groups.begin()),
                              field.mass_extinction.by_cell});
-    grouped.hydrometeors.push_back(field.hydrometeor);
+    grouped.fields.push_back(field);
   }
   return grouped;
 }

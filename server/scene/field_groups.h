@@ -7,8 +7,8 @@
 
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
-#include "physics/hydrometeors.h"
 #include "physics/optics.h"
+#include "scene/drawn_fields.h"
 #include "scene/scene.h"
 #include "volume/drawn_medium.h"
 #include "volume/extinction.h"
@@ -28,8 +28,8 @@ struct FieldGroup {
 
 struct GroupedFields {
   std::vector<FieldGroup> groups;
-  std::vector<volume::ExtinctionTerm> terms;       // which field adds to which group's channel
-  std::vector<physics::Hydrometeor> hydrometeors;  // of each term
+  std::vector<volume::ExtinctionTerm> terms;  // which field adds to which group's channel
+  std::vector<DrawnField> fields;             // of each term
 };
 
 GroupedFields GroupedFieldsOf(const Scene& scene, const volume::HydrometeorFields& fields);

@@ -31,12 +31,10 @@ class BallPreparation final : public Preparation {
 };
 
 // The detail of the drawn field that has most of it.
-scene::Detail RoughestOf(const scene::Scene& scene,
-                         const std::vector<physics::Hydrometeor>& drawn) {
+scene::Detail RoughestOf(const std::vector<scene::DrawnField>& drawn) {
   scene::Detail roughest;
-  for (const physics::Hydrometeor hydrometeor : drawn) {
-    const scene::Detail& detail = scene.fields[physics::IndexOf(hydrometeor)].detail;
-    if (detail.share > roughest.share) roughest = detail;
+  for (const scene::DrawnField& field : drawn) {
+    if (field.asked_detail.share > roughest.share) roughest = field.asked_detail;
   }
   return roughest;
 }
@@ -68,11 +66,10 @@ class MetaballTechnique final : public Technique {
     });
   }
 
-  absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
+  absl::Status DrawView(const scene::Scene& /*scene*/, const RenderSettings& settings,
                         StageTimes* times) override {
     return Timed(workspace_.Pieces(), scene::FrameStage::kView, times, [&] {
-      return renderer_.DrawView(settings,
-                                RoughestOf(scene, workspace_.medium.Content().hydrometeors),
+      return renderer_.DrawView(settings, RoughestOf(workspace_.medium.Content().fields),
                                 &workspace_.noises);
     });
   }

@@ -183,6 +183,7 @@ TEST_F(StormExportTest, MetadataSaysWhatWhenAndWhere) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(Hydrometeor::kRain);
   EXPECT_FLOAT_EQ(static_cast<float>(rain.metaValue<double>("effective_radius_m")),
                   optics.radius_m);
+  EXPECT_EQ(rain.metaValue<std::string>("effective_radius_source"), "default");
   EXPECT_NEAR(rain.metaValue<double>("asymmetry"), physics::MeanCosine(physics::PhaseOf(optics)),
               1e-12);
 }
@@ -203,15 +204,21 @@ TEST_F(StormExportTest, FieldsAreThoseOfTheScene) {
   scene::FieldParameters& rain = scene.fields[physics::IndexOf(Hydrometeor::kRain)];
   rain.scale = 3.0F;
   rain.optics.albedo = 0.75F;
+  rain.optics.radius_m = 5e-4F;
+  rain.sizes = physics::SizeSource::kGiven;
   rain.optics.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.5F};
   const ReadBack read = Export(scene, fields);
   ASSERT_EQ(read.grids.size(), 1U);
   const openvdb::FloatGrid& grid = *read.grids.at("rain");
-  const double expected = 3.0 * ExtinctionOf(fields->fields[1], 50);
+  // Extinction is inverse to the radius.
+  const double default_m = static_cast<double>(physics::DefaultOptics(Hydrometeor::kRain).radius_m);
+  const double expected = 3.0 * ExtinctionOf(fields->fields[1], 50) * default_m / 5e-4;
   EXPECT_NEAR(grid.getConstAccessor().getValue(openvdb::Coord(6, 4, 0)), expected,
               kHalfPrecision * expected);
   EXPECT_EQ(grid.metaValue<double>("albedo"), 0.75);
   EXPECT_NEAR(grid.metaValue<double>("asymmetry"), 0.5, 1e-9);
+  EXPECT_FLOAT_EQ(static_cast<float>(grid.metaValue<double>("effective_radius_m")), 5e-4F);
+  EXPECT_EQ(grid.metaValue<std::string>("effective_radius_source"), "scene");
 }
 
 TEST_F(StormExportTest, AnEmptyStormIsAFileWithoutGrids) {
@@ -227,6 +234,10 @@ TEST_F(StormExportTest, ColumnsOfTheSampleKeepTheirOpticalDepth) {
   const auto fields = *store->Get(storm.id, 1, {});
   const ReadBack read = Export(SecondTime(), fields);
   ASSERT_EQ(read.grids.size(), 5U);
+  const openvdb::FloatGrid& cloud = *read.grids.at("cloud");
+  EXPECT_EQ(cloud.metaValue<std::string>("effective_radius_source"), "model");
+  EXPECT_FLOAT_EQ(static_cast<float>(cloud.metaValue<double>("effective_radius_m")),
+                  fields->fields[0].sizes.mean_radius_m);
   scene::Scene shown;
   for (const scene::DrawnField& drawn : scene::DrawnFieldsOf(shown, *fields)) {
     const auto accessor =
