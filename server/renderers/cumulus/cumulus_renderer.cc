@@ -8,6 +8,7 @@
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "glm/matrix.hpp"
+#include "renderers/cumulus/bindings.h"
 #include "renderers/cumulus/variants.h"
 #include "renderers/sunlight.h"
 #include "renderers/view_uniforms.h"

@@ -8,6 +8,7 @@
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
 #include "renderers/group_weights.h"
+#include "renderers/half_angle/bindings.h"
 #include "renderers/half_angle/buffer_ring.h"
 #include "renderers/half_angle/slice_reach.h"
 #include "renderers/half_angle/variants.h"

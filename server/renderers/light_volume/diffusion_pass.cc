@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "gl/device_memory.h"
 #include "glm/common.hpp"
+#include "renderers/light_volume/bindings.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
 

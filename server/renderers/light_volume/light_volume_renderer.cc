@@ -8,6 +8,7 @@
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "glm/mat4x3.hpp"
+#include "renderers/light_volume/bindings.h"
 #include "renderers/view_uniforms.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"

@@ -9,6 +9,7 @@
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "renderers/light_frame.h"
+#include "renderers/metaball/bindings.h"
 #include "renderers/metaball/light_order.h"
 #include "renderers/metaball/tiles.h"
 #include "renderers/metaball/variants.h"

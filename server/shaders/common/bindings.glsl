@@ -1,16 +1,18 @@
 // Numbers that shaders share with the C++ that runs them: texture units, image units, bindings of storage buffers, sizes
-// of work groups. Compiles as GLSL and as C++ (shaders/bindings.h). Within a program each number of a kind is used once, which
-// tests check (gl/strict_programs.h); programs of different techniques share numbers.
+// of work groups. Compiles as GLSL and as C++ (shaders/bindings.h). A technique's own are in its folder (e.g.
+// half_angle/bindings.glsl). Within a program each number of a kind is used once, which tests check
+// (gl/strict_programs.h); programs of different techniques share numbers.
 
 // The transmittance below which a ray of paper or consistent transport ends.
 const float kOpaqueTransmittance = 5e-3F;
 
-// Textures of a medium.
+// Of a medium.
 const int kMediumPlaneUnit = 0;  // and the one after
 const int kBricksUnit = 2;
 const int kPhaseCurvesUnit = 3;
 const int kDetailNoiseUnit = 8;  // and as many as there are noises
 const int kDetailControlUnit = 16;
+const int kBlocksBinding = 0;  // of cells that a ray may meet
 
 // Of the ground and the picture.
 const int kGroundDistanceUnit = 7;
@@ -40,57 +42,11 @@ const int kAureoleUnit = 4;
 const int kTargetLimitUnit = 17;
 const int kTargetImages = 6;  // and the one after
 
-// Of half-angle slicing.
-const int kSliceLightUnit = 4;
-const int kSliceThicknessUnit = 5;
-const int kEyeBeforeUnit = 6;
-const int kDistanceBeforeUnit = 13;
-const int kLeavingLightImage = 0;
-const int kRingDepthImage = 1;
-const int kSliceThicknessImage = 2;
-
-// Of the light volume.
-const int kArrivedUnit = 4;
-const int kCarriedUnit = 5;
-const int kThicknessUnit = 6;
-const int kExitsUnit = 5;
-const int kNetInwardUnit = 6;
-const int kCorrectionRedUnit = 13;
-const int kCorrectionGreenUnit = 14;
-const int kCorrectionBlueUnit = 15;
-const int kCarriedImage = 0;
-const int kThicknessImage = 1;
-const int kShadowImage = 2;
-const int kArrivedImage = 3;
-const int kSampledCellsImage = 4;
-const int kSampledLightImage = 5;
-const int kBlocksBinding = 0;
-
-// Of metaballs.
-const int kBallLightImage = 0;
-const int kBallsBinding = 0;
-const int kBallArrivedBinding = 1;
-const int kBallOrderBinding = 2;
-const int kBallSourcesBinding = 3;
-const int kBallTilesBinding = 4;
-
-// Of cumulus.
-const int kCoreDepthUnit = 4;
-const int kSunDepthUnit = 5;
-const int kResolvedDepthUnit = 6;
-const int kCoresUnit = 4;
-const int kLayerUnit = 5;
-const int kRoughnessNoiseUnit = 8;
-const int kBubblesBinding = 0;
-const int kBubbleOrderBinding = 1;
-
 // Table of sunlight by height: up to 24 km, above which air attenuates little.
 const int kSunlightLevels = 33;
 const float kSunlightStep_m = 750.0f;
 
 // Invocations in a work group: along each of two sides, or in total.
 const int kLightGroupSide = 8;
-const int kArriveGroupSize = 32;
-const int kBallGroupSize = 64;
 const int kMeterGroupSize = 64;
 const int kTargetGroupSide = 8;

@@ -1,5 +1,5 @@
 // The ellipsoids of a cumulus surface, and where a ray meets one. Metres from the middle of the surface's box.
-#include "common/bindings.glsl"
+#include "cumulus/bindings.glsl"
 
 struct Bubble {
   vec4 unit_x;   // rows of the matrix to where the bubble is the unit ball; w of this: radius of the ball of its volume

@@ -1,8 +1,8 @@
 // A quadrangle for each bubble that covers its silhouette exactly: the tangent cone of the eye touches the unit ball in a
 // circle. Its depth is that of the nearest point that the bubble could have, less slack_m, so that what is hidden is left out
 // before it is shaded. `order` has the farthest first; variant FRONT_FIRST draws it backwards.
-#include "common/bindings.glsl"
 #include "common/view.glsl"
+#include "cumulus/bindings.glsl"
 #include "cumulus/bubble.glsl"
 
 layout(std430, binding = kBubbleOrderBinding) readonly buffer Order { uint order[]; };

@@ -1,5 +1,5 @@
 // The surface's shadow from the sun's depths, as common/storm_shadow.glsl takes it.
-#include "common/bindings.glsl"
+#include "cumulus/bindings.glsl"
 
 layout(binding = kSunDepthUnit) uniform sampler2D depth;
 

@@ -1,6 +1,5 @@
 // Where the fragment's ray meets its bubble. Variants: BASE (the surface is cut off below base_m), GROUND (what it hides is
 // left out).
-#include "common/bindings.glsl"
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
 #include "cumulus/bubble.glsl"

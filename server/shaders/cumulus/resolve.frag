@@ -1,5 +1,5 @@
 // The cores that lie together and the layer in front of them: radiance (rgb) and transmittance (a).
-#include "common/bindings.glsl"
+#include "cumulus/bindings.glsl"
 
 layout(binding = kCoresUnit) uniform sampler2D cores;
 layout(binding = kLayerUnit) uniform sampler2D layer;

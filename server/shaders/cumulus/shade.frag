@@ -3,8 +3,8 @@
 // deepest point, 0 to 1 through the corona; where two bubbles are closer than its thickness their cores are mixed too.
 // Writes the cores that lie together, weighted, and what lies in front of them as a layer.
 // Variants: PLAIN (Lambert's law alone), and those of cumulus/meeting.glsl.
-#include "common/bindings.glsl"
 #include "common/sunlight.glsl"
+#include "cumulus/bindings.glsl"
 #include "cumulus/meeting.glsl"
 
 layout(binding = kCoreDepthUnit) uniform sampler2D core_depth;    // of depth.frag

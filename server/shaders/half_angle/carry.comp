@@ -5,6 +5,7 @@
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
+#include "half_angle/bindings.glsl"
 #include "half_angle/slice_light.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;

@@ -5,7 +5,6 @@
 // Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), EVEN_ALBEDO (one albedo and
 // colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER: 1 where all rays meet the slices in their order, 0 where
 // all meet them against it, 2 where a wide view has both.
-#include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
@@ -14,6 +13,7 @@
 #include "common/view.glsl"
 #define GLOWS CONSISTENT
 #include "common/scattered.glsl"
+#include "half_angle/bindings.glsl"
 #include "physics/light_transport.glsl"
 
 // Light that enters each slice of the slab, a layer a slice. r: share of sunlight, g: optical depth towards the sun.

@@ -8,6 +8,7 @@
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/box.glsl"
+#include "light_volume/bindings.glsl"
 #include "physics/light_transport.glsl"
 
 layout(local_size_x = kArriveGroupSize) in;

@@ -8,6 +8,7 @@
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
+#include "light_volume/bindings.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kCarriedImage) uniform writeonly image3D carried;

@@ -1,5 +1,5 @@
 // The correction of what a ray sees (renderers::LightCorrection), by place in the medium's box, 0 to 1, and direction.
-#include "common/bindings.glsl"
+#include "light_volume/bindings.glsl"
 
 layout(binding = kCorrectionRedUnit) uniform sampler3D correction_red;
 layout(binding = kCorrectionGreenUnit) uniform sampler3D correction_green;

@@ -3,7 +3,7 @@
 // similarity-scaled extinction. Extinctions are by the step. Needs common/medium.glsl, common/phase.glsl and
 // light_volume/segment.glsl.
 // Variant: TINTED (the light is absorbed or coloured).
-#include "common/bindings.glsl"
+#include "light_volume/bindings.glsl"
 #include "physics/light_transport.glsl"
 
 // Root of the optical depth to the nearest surface; sky seen there, and the x of its net flux (DiffuseLight::SkySeen).

@@ -15,6 +15,7 @@
 #include "common/view.glsl"
 #define GLOWS (CONSISTENT && !DIFFUSION)
 #include "common/scattered.glsl"
+#include "light_volume/bindings.glsl"
 #include "light_volume/segment.glsl"
 #if DIFFUSION
 #include "light_volume/diffuse_seen.glsl"

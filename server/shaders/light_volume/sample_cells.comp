@@ -3,6 +3,7 @@
 // Variants: GROUPS, DETAILS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
+#include "light_volume/bindings.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kSampledCellsImage, rgba32f) uniform writeonly image3D cells;

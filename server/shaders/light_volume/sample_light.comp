@@ -1,5 +1,6 @@
 // The light that has arrived (arrive.comp), at the cells of the diffusion equation: the root of its optical depth.
 #include "common/bindings.glsl"
+#include "light_volume/bindings.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kSampledLightImage, r32f) uniform writeonly image3D light;

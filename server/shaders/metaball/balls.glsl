@@ -1,5 +1,5 @@
 // The balls as the passes share them. Coordinates are metres from the middle of their box.
-#include "common/bindings.glsl"
+#include "metaball/bindings.glsl"
 
 struct Ball {
   vec4 middle_radius;   // metres

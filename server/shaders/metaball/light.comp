@@ -5,8 +5,8 @@
 // g similarity scaled, so that what a ball takes from the light is what it scatters, however thick it is.
 // PASS: 0 splats; 1, after all levels, gives the light scattered many times, which depends on what is behind the ball too.
 // DIFFUSE (with PASS 1): the light is no beam but the sky above and the ground below: their shares.
-#include "common/bindings.glsl"
 #include "metaball/balls.glsl"
+#include "metaball/bindings.glsl"
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 

@@ -1,10 +1,10 @@
 // The radiance of each ball per opacity. The phase functions are looked up once a ball (Man, 4.2): its light comes from
 // one direction, and the eye sees it in one.
 // Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (as common/phase.glsl has it), PAPER, ISOTROPIC, PARALLEL (view rays).
-#include "common/bindings.glsl"
 #include "common/phase.glsl"
 #include "common/sunlight.glsl"
 #include "metaball/balls.glsl"
+#include "metaball/bindings.glsl"
 
 layout(local_size_x = kBallGroupSize) in;
 layout(std430, binding = kBallArrivedBinding) readonly buffer Arrived { vec2 arrived[]; };  // of light.comp

@@ -10,6 +10,7 @@
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
 #include "metaball/balls.glsl"
+#include "metaball/bindings.glsl"
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 

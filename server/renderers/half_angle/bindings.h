@@ -1,0 +1,8 @@
+// shaders/half_angle/bindings.glsl for C++.
+#pragma once
+
+namespace thunderhead::shaders {
+
+#include "shaders/half_angle/bindings.glsl"
+
+}  // namespace thunderhead::shaders
