@@ -1,9 +1,6 @@
 #include "jobs/job_board.h"
 
 #include <algorithm>
-#include <chrono>
-#include <string_view>
-#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -11,22 +8,6 @@
 
 namespace thunderhead::jobs {
 namespace {
-
-// Time to draw a few pictures; others' jobs end sooner or later.
-constexpr std::chrono::seconds kRetryAfter{30};
-
-std::size_t IndexOf(PictureState state) { return static_cast<std::size_t>(state); }
-
-absl::Status TooMany(const std::string& what, std::size_t maximum, const char* unit,
-                     const char* reason) {
-  return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat(what, ", and this server allows ", maximum,
-                                                "; try again when some have ended and "
-                                                "their results were fetched")),
-      {.reason = reason,
-       .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", unit}},
-       .retry_after = kRetryAfter});
-}
 
 absl::Status NotFound(const std::string& id) {
   return base::WithDetails(
@@ -81,89 +62,6 @@ std::size_t JobBoard::Unended(const Entry& entry) const {
          entry.counts[IndexOf(PictureState::kDrawing)];
 }
 
-absl::Status JobBoard::CheckPictures(const NewJob& job) const {
-  std::size_t all = job.pictures.size();
-  std::size_t own = job.pictures.size();
-  for (const auto& [id, entry] : jobs_) {
-    all += Unended(entry);
-    if (entry.record.owner == job.owner) own += Unended(entry);
-  }
-  if (own > limits_.max_pictures_per_owner) {
-    return TooMany(absl::StrCat("with this job ", own, " of your pictures would wait to be drawn"),
-                   limits_.max_pictures_per_owner, "pictures", "TOO_MANY_JOB_PICTURES");
-  }
-  if (all > limits_.max_pictures) {
-    return TooMany(absl::StrCat("with this job ", all, " pictures would wait to be drawn"),
-                   limits_.max_pictures, "pictures", "TOO_MANY_JOB_PICTURES");
-  }
-  return absl::OkStatus();
-}
-
-std::pair<std::size_t, std::size_t> JobBoard::Kept(const std::string* owner) const {
-  std::size_t jobs = 0;
-  std::size_t pictures = 0;
-  for (const auto& [id, entry] : jobs_) {
-    if (owner != nullptr && entry.record.owner != *owner) continue;
-    ++jobs;
-    pictures += entry.record.pictures.size();
-  }
-  return {jobs, pictures};
-}
-
-std::vector<JobBoard::Jobs::iterator> JobBoard::Forgettable(const std::string& first_of) {
-  std::vector<Jobs::iterator> jobs;
-  for (auto job = jobs_.begin(); job != jobs_.end(); ++job) {
-    if (job->second.record.ended_at.has_value() && job->second.unfetched == 0) jobs.push_back(job);
-  }
-  std::ranges::stable_sort(jobs, {}, [&](const Jobs::iterator& job) {
-    return std::pair(job->second.record.owner != first_of, *job->second.record.ended_at);
-  });
-  return jobs;
-}
-
-absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
-  struct Share {
-    const std::string* owner;  // null: everybody's
-    const char* who;
-    std::size_t max_jobs;
-    std::size_t max_pictures;
-  };
-  std::vector<Jobs::iterator> candidates = Forgettable(job.owner);
-  std::vector<Jobs::iterator> to_forget;
-  for (const Share& share :
-       {Share{&job.owner, "you have", limits_.max_jobs_per_owner,
-              limits_.max_kept_pictures_per_owner},
-        Share{nullptr, "the server has", limits_.max_jobs, limits_.max_kept_pictures}}) {
-    auto [jobs, pictures] = Kept(share.owner);
-    const auto forget = [&jobs = jobs, &pictures = pictures](const Jobs::iterator& one) {
-      --jobs;
-      pictures -= one->second.record.pictures.size();
-    };
-    std::ranges::for_each(to_forget, forget);
-    while (jobs >= share.max_jobs || pictures + job.pictures.size() > share.max_pictures) {
-      const bool helps =
-          !candidates.empty() &&
-          (share.owner == nullptr || candidates.front()->second.record.owner == *share.owner);
-      if (helps) {
-        forget(candidates.front());
-        to_forget.push_back(candidates.front());
-        candidates.erase(candidates.begin());
-        continue;
-      }
-      if (jobs >= share.max_jobs) {
-        return TooMany(absl::StrCat(share.who, " ", jobs, " render jobs"), share.max_jobs, "jobs",
-                       "TOO_MANY_JOBS");
-      }
-      return TooMany(absl::StrCat(share.who, " ", pictures, " pictures in render jobs, and with ",
-                                  "this job ", pictures + job.pictures.size()),
-                     share.max_pictures, "pictures", "TOO_MANY_JOB_PICTURES");
-    }
-  }
-  // Not before it is known that it suffices.
-  for (const Jobs::iterator& one : to_forget) Erase(one);
-  return absl::OkStatus();
-}
-
 absl::Status JobBoard::Add(const std::string& id, const std::string& result_key, NewJob job,
                            Time now) {
   if (absl::Status full = CheckPictures(job); !full.ok()) return full;
@@ -195,35 +93,6 @@ absl::Status JobBoard::Check(const std::string& id, const Asker& asker) const {
       absl::PermissionDeniedError("this render job is another's; only who created it, or an "
                                   "operator, may see or end it"),
       {.reason = "NOT_YOUR_JOB"});
-}
-
-JobBoard::Unfetched JobBoard::UnfetchedBytes() const {
-  Unfetched unfetched;
-  for (const auto& [id, entry] : jobs_) {
-    unfetched.all += entry.unfetched_bytes;
-    unfetched.by_owner[entry.record.owner] += entry.unfetched_bytes;
-  }
-  return unfetched;
-}
-
-std::optional<Problem> JobBoard::PausedBecause(const std::string& owner,
-                                               const Unfetched& unfetched) const {
-  const auto own = unfetched.by_owner.find(owner);
-  const std::uint64_t own_bytes = own == unfetched.by_owner.end() ? 0 : own->second;
-  const auto because = [](const char* whose, std::uint64_t bytes, std::uint64_t maximum,
-                          const char* flag) {
-    return Problem{absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
-                   absl::StrCat("no further picture is begun: results ", whose,
-                                " that nobody has fetched take ", bytes, " bytes of ", maximum,
-                                " (", flag, "); fetch some, or forget jobs")};
-  };
-  if (own_bytes >= limits_.max_result_bytes_per_owner) {
-    return because("of yours", own_bytes, limits_.max_result_bytes_per_owner, "--jobs-quota-each");
-  }
-  if (unfetched.all >= limits_.max_result_bytes) {
-    return because("of all jobs", unfetched.all, limits_.max_result_bytes, "--jobs-quota");
-  }
-  return std::nullopt;
 }
 
 JobView JobBoard::ViewOf(const Entry& entry, const Unfetched& unfetched) const {
@@ -501,114 +370,6 @@ void JobBoard::Forget(const std::string& id) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) Erase(job);
 }
 
-std::optional<Time> JobBoard::AbandonedAt(const Entry& entry, const Unfetched& unfetched) const {
-  if (entry.record.ended_at.has_value() || entry.unfetched == 0) return std::nullopt;
-  if (entry.counts[IndexOf(PictureState::kWaiting)] == 0) return std::nullopt;
-  // Those in hand come to their end first.
-  if (entry.counts[IndexOf(PictureState::kDrawing)] > 0) return std::nullopt;
-  if (!PausedBecause(entry.record.owner, unfetched).has_value()) return std::nullopt;
-  return entry.last_used + limits_.keep;
-}
-
-void JobBoard::EndAbandoned(Entry& entry, Time now, Expired& expired) {
-  const Problem problem{
-      absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
-      absl::StrCat("nobody fetched results of this job for ", limits_.keep.count(),
-                   " s (--jobs-keep), while they kept it from being drawn on")};
-  for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
-    PictureRecord& picture = entry.record.pictures[i];
-    if (picture.state == PictureState::kWaiting) {
-      picture.problem = problem;
-      SetState(entry, i, PictureState::kFailed);
-      ++expired.failed;
-    } else if (picture.state == PictureState::kDrawn && !picture.fetched) {
-      expired.dropped.push_back(
-          {{entry.record.id, i}, picture.extension, picture.sha256, picture.bytes});
-      picture.problem = problem;
-      SetState(entry, i, PictureState::kDropped);
-    }
-  }
-  EndIfDone(entry, now);
-}
-
-JobBoard::Expired JobBoard::Expire(Time now) {
-  for (auto job = jobs_.begin(); job != jobs_.end();) {
-    const auto here = job++;
-    const std::optional<Time>& ended_at = here->second.record.ended_at;
-    if (ended_at.has_value() && *ended_at + limits_.keep <= now) Erase(here);
-  }
-  Expired expired;
-  // One by one, the oldest first: without its results others may go on.
-  while (true) {
-    const Unfetched unfetched = UnfetchedBytes();
-    std::optional<Time> first;
-    Entry* abandoned = nullptr;
-    for (auto& [id, entry] : jobs_) {
-      const std::optional<Time> at = AbandonedAt(entry, unfetched);
-      if (!at.has_value() || *at > now || (first.has_value() && *first <= *at)) continue;
-      first = at;
-      abandoned = &entry;
-    }
-    if (abandoned == nullptr) return expired;
-    EndAbandoned(*abandoned, now, expired);
-  }
-}
-
-std::optional<Time> JobBoard::NextExpiry() const {
-  std::optional<Time> next;
-  const Unfetched unfetched = UnfetchedBytes();
-  for (const auto& [id, entry] : jobs_) {
-    const std::optional<Time>& ended_at = entry.record.ended_at;
-    const std::optional<Time> at = ended_at.has_value() ? std::optional(*ended_at + limits_.keep)
-                                                        : AbandonedAt(entry, unfetched);
-    if (!at.has_value()) continue;
-    if (!next.has_value() || *at < *next) next = at;
-  }
-  return next;
-}
-
-std::vector<std::string> JobBoard::TakePauses() {
-  std::vector<std::string> changed;
-  const Unfetched unfetched = UnfetchedBytes();
-  for (auto& [id, entry] : jobs_) {
-    const bool waits = entry.counts[IndexOf(PictureState::kWaiting)] > 0;
-    const bool is_paused = waits && PausedBecause(entry.record.owner, unfetched).has_value();
-    // One of which nothing waits any more has said so already.
-    if (std::exchange(entry.was_paused, is_paused) == is_paused || !waits) continue;
-    ++entry.version;
-    changed.push_back(id);
-  }
-  return changed;
-}
-
-std::vector<ResultFile> JobBoard::MakeRoom() {
-  std::vector<ResultFile> dropped;
-  if (result_bytes_ <= limits_.max_result_bytes) return dropped;
-  // Of a running job last; the oldest first.
-  std::vector<std::tuple<bool, Time, PicturePlace>> order;
-  for (const auto& [id, entry] : jobs_) {
-    for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
-      const PictureRecord& picture = entry.record.pictures[i];
-      if (picture.state != PictureState::kDrawn || !picture.fetched) continue;
-      order.emplace_back(!entry.record.ended_at.has_value(), picture.drawn_at, PicturePlace{id, i});
-    }
-  }
-  std::ranges::sort(order);
-  for (const auto& candidate : order) {
-    if (result_bytes_ <= limits_.max_result_bytes) break;
-    const PicturePlace& picture = std::get<PicturePlace>(candidate);
-    Entry& entry = jobs_.at(picture.job_id);
-    PictureRecord& record = entry.record.pictures[picture.place];
-    dropped.push_back({picture, record.extension, record.sha256, record.bytes});
-    record.problem = {absl::StatusCode::kNotFound, "RESULT_DROPPED",
-                      absl::StrCat("it was fetched, and dropped to make room: the results of all "
-                                   "jobs may take ",
-                                   limits_.max_result_bytes, " bytes (--jobs-quota)")};
-    SetState(entry, picture.place, PictureState::kDropped);
-  }
-  return dropped;
-}
-
 std::vector<JobChange> JobBoard::TakeChanges() {
   std::map<std::string, JobChange> by_id;
   for (const PicturePlace& picture : std::exchange(unsaved_, {})) {
@@ -655,16 +416,6 @@ PictureCounts JobBoard::Counts() const {
 std::size_t JobBoard::Running() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       jobs_, [](const auto& job) { return !job.second.record.ended_at.has_value(); }));
-}
-
-std::size_t JobBoard::Paused() const {
-  const Unfetched unfetched = UnfetchedBytes();
-  std::size_t paused = 0;
-  for (const auto& [id, entry] : jobs_) {
-    const std::size_t waiting = entry.counts[IndexOf(PictureState::kWaiting)];
-    if (waiting > 0 && PausedBecause(entry.record.owner, unfetched).has_value()) paused += waiting;
-  }
-  return paused;
 }
 
 std::set<std::string> JobBoard::Ids() const {

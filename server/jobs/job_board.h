@@ -34,6 +34,7 @@ struct Asker {
 };
 
 using PictureCounts = std::array<std::size_t, kPictureStates>;
+inline std::size_t IndexOf(PictureState state) { return static_cast<std::size_t>(state); }
 
 // A job without its pictures.
 struct JobView {
@@ -138,7 +139,7 @@ class JobBoard {
   // Cancels what has not ended.
   void Cancel(const std::string& id, Time now);
   void Forget(const std::string& id);
-  // What Expire has ended. The files of the results are to be removed.
+  // The outcome of Expire. The files of dropped results are to be removed.
   struct Expired {
     std::vector<ResultFile> dropped;
     std::size_t failed = 0;  // pictures that will not be drawn

@@ -1,0 +1,135 @@
+// Results that nobody fetches: when they pause drawing, and when jobs end for them or for their
+// age.
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "jobs/job_board.h"
+
+namespace thunderhead::jobs {
+
+JobBoard::Unfetched JobBoard::UnfetchedBytes() const {
+  Unfetched unfetched;
+  for (const auto& [id, entry] : jobs_) {
+    unfetched.all += entry.unfetched_bytes;
+    unfetched.by_owner[entry.record.owner] += entry.unfetched_bytes;
+  }
+  return unfetched;
+}
+
+std::optional<Problem> JobBoard::PausedBecause(const std::string& owner,
+                                               const Unfetched& unfetched) const {
+  const auto own = unfetched.by_owner.find(owner);
+  const std::uint64_t own_bytes = own == unfetched.by_owner.end() ? 0 : own->second;
+  const auto because = [](const char* whose, std::uint64_t bytes, std::uint64_t maximum,
+                          const char* flag) {
+    return Problem{absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
+                   absl::StrCat("no further picture is begun: results ", whose,
+                                " that nobody has fetched take ", bytes, " bytes of ", maximum,
+                                " (", flag, "); fetch some, or forget jobs")};
+  };
+  if (own_bytes >= limits_.max_result_bytes_per_owner) {
+    return because("of yours", own_bytes, limits_.max_result_bytes_per_owner, "--jobs-quota-each");
+  }
+  if (unfetched.all >= limits_.max_result_bytes) {
+    return because("of all jobs", unfetched.all, limits_.max_result_bytes, "--jobs-quota");
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> JobBoard::TakePauses() {
+  std::vector<std::string> changed;
+  const Unfetched unfetched = UnfetchedBytes();
+  for (auto& [id, entry] : jobs_) {
+    const bool waits = entry.counts[IndexOf(PictureState::kWaiting)] > 0;
+    const bool is_paused = waits && PausedBecause(entry.record.owner, unfetched).has_value();
+    // One of which nothing waits any more has said so already.
+    if (std::exchange(entry.was_paused, is_paused) == is_paused || !waits) continue;
+    ++entry.version;
+    changed.push_back(id);
+  }
+  return changed;
+}
+
+std::size_t JobBoard::Paused() const {
+  const Unfetched unfetched = UnfetchedBytes();
+  std::size_t paused = 0;
+  for (const auto& [id, entry] : jobs_) {
+    const std::size_t waiting = entry.counts[IndexOf(PictureState::kWaiting)];
+    if (waiting > 0 && PausedBecause(entry.record.owner, unfetched).has_value()) paused += waiting;
+  }
+  return paused;
+}
+
+std::optional<Time> JobBoard::AbandonedAt(const Entry& entry, const Unfetched& unfetched) const {
+  if (entry.record.ended_at.has_value() || entry.unfetched == 0) return std::nullopt;
+  if (entry.counts[IndexOf(PictureState::kWaiting)] == 0) return std::nullopt;
+  // Those in hand come to their end first.
+  if (entry.counts[IndexOf(PictureState::kDrawing)] > 0) return std::nullopt;
+  if (!PausedBecause(entry.record.owner, unfetched).has_value()) return std::nullopt;
+  return entry.last_used + limits_.keep;
+}
+
+void JobBoard::EndAbandoned(Entry& entry, Time now, Expired& expired) {
+  const Problem problem{
+      absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
+      absl::StrCat("nobody fetched results of this job for ", limits_.keep.count(),
+                   " s (--jobs-keep), while they kept it from being drawn on")};
+  for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
+    PictureRecord& picture = entry.record.pictures[i];
+    if (picture.state == PictureState::kWaiting) {
+      picture.problem = problem;
+      SetState(entry, i, PictureState::kFailed);
+      ++expired.failed;
+    } else if (picture.state == PictureState::kDrawn && !picture.fetched) {
+      expired.dropped.push_back(
+          {{entry.record.id, i}, picture.extension, picture.sha256, picture.bytes});
+      picture.problem = problem;
+      SetState(entry, i, PictureState::kDropped);
+    }
+  }
+  EndIfDone(entry, now);
+}
+
+JobBoard::Expired JobBoard::Expire(Time now) {
+  for (auto job = jobs_.begin(); job != jobs_.end();) {
+    const auto here = job++;
+    const std::optional<Time>& ended_at = here->second.record.ended_at;
+    if (ended_at.has_value() && *ended_at + limits_.keep <= now) Erase(here);
+  }
+  Expired expired;
+  // One by one, the oldest first: without its results others may go on.
+  while (true) {
+    const Unfetched unfetched = UnfetchedBytes();
+    std::optional<Time> first;
+    Entry* abandoned = nullptr;
+    for (auto& [id, entry] : jobs_) {
+      const std::optional<Time> at = AbandonedAt(entry, unfetched);
+      if (!at.has_value() || *at > now || (first.has_value() && *first <= *at)) continue;
+      first = at;
+      abandoned = &entry;
+    }
+    if (abandoned == nullptr) return expired;
+    EndAbandoned(*abandoned, now, expired);
+  }
+}
+
+std::optional<Time> JobBoard::NextExpiry() const {
+  std::optional<Time> next;
+  const Unfetched unfetched = UnfetchedBytes();
+  for (const auto& [id, entry] : jobs_) {
+    const std::optional<Time>& ended_at = entry.record.ended_at;
+    const std::optional<Time> at = ended_at.has_value() ? std::optional(*ended_at + limits_.keep)
+                                                        : AbandonedAt(entry, unfetched);
+    if (!at.has_value()) continue;
+    if (!next.has_value() || *at < *next) next = at;
+  }
+  return next;
+}
+
+}  // namespace thunderhead::jobs
