@@ -18,7 +18,7 @@ inline constexpr std::int64_t kImagePaths = 1'000'000;
 struct Setting {
   scene::Technique technique;
   double image_scale = 1.0;
-  int jpeg_quality = 88;
+  int jpeg_quality = scene::Output{}.jpeg_quality;
   double light_detail = 1.0;  // as in renderers::DrawQuality
   bool single_precision = false;
   double million_paths = 0.0;  // of traced light

@@ -21,12 +21,10 @@ using FieldsPtr = std::shared_ptr<const volume::HydrometeorFields>;
 struct FramesFlags {
   std::string storm;
   std::optional<int> time_index;
-  std::string size = "300x300";
-  int slices = 128;
+  measure::FrameRateOptions options;
+  std::string size = absl::StrCat(options.width_px, "x", options.height_px);
   std::string transport = "consistent";
-  int runs = 5;
   std::string device = "auto";
-  std::string mode;
   bool json = false;
 };
 
@@ -56,24 +54,21 @@ absl::StatusOr<FieldsPtr> Choose(const FramesFlags& flags) {
 
 absl::Status MeasureFrames(const FramesFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
-  measure::FrameRateOptions options;
+  measure::FrameRateOptions options = flags.options;
   THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
   options.width_px = size.width_px;
   options.height_px = size.height_px;
-  if (flags.slices < 1 || flags.slices > 4096) {
+  if (options.slices < 1 || options.slices > 4096) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--slices is ", flags.slices, "; it must be from 1 to 4096"));
+        absl::StrCat("--slices is ", options.slices, "; it must be from 1 to 4096"));
   }
-  options.slices = flags.slices;
   for (const auto& transport : accuracy::kTransportNames) {
     if (transport.name == flags.transport) options.transport = transport.value;
   }
-  if (flags.runs < 1) {
+  if (options.runs < 1) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--runs is ", flags.runs, "; it must be 1 or more"));
+        absl::StrCat("--runs is ", options.runs, "; it must be 1 or more"));
   }
-  options.runs = flags.runs;
-  options.only_mode = flags.mode;
   THUNDERHEAD_ASSIGN_OR_RETURN(const FieldsPtr fields, Choose(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
@@ -99,7 +94,7 @@ Command AddMeasureFrames(CLI::App& measure) {
                      "Index of the time, from 0; by default the one with the most condensate");
   frames->add_option("--size", flags->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   frames
-      ->add_option("--slices", flags->slices,
+      ->add_option("--slices", flags->options.slices,
                    "Slices, or samples along a ray, in the papers' modes")
       ->capture_default_str();
   frames
@@ -107,11 +102,11 @@ Command AddMeasureFrames(CLI::App& measure) {
                    "Transport in the papers' modes: paper, consistent or diffusion")
       ->check(CLI::IsMember({"paper", "consistent", "diffusion"}))
       ->capture_default_str();
-  frames->add_option("--runs", flags->runs, "Number of runs; their medians are printed")
+  frames->add_option("--runs", flags->options.runs, "Number of runs; their medians are printed")
       ->capture_default_str();
   frames->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
-  frames->add_option("--mode", flags->mode,
+  frames->add_option("--mode", flags->options.only_mode,
                      "Only rows of this mode or preset; \"default\": the setting of a new scene");
   frames->add_flag("--json", flags->json, "Print JSON");
   return {frames, [flags] { return MeasureFrames(*flags); }};

@@ -89,7 +89,7 @@ absl::Status MeasureSlices(const SlicesFlags& flags) {
                                TechniqueNamed(flags.scene.technique));
   // Procedural detail does not converge with the number of slices.
   subject.scene.rendering.technique = technique.settings();
-  subject.scene.output = {160, 160, 88};
+  subject.scene.output = {.width_px = 160, .height_px = 160};
   // Black sky and ground, so that only the light of the cloud is measured.
   subject.scene.sky = {0.0, 0.0};
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,

@@ -126,7 +126,7 @@ scene::Scene LowSunScene(const accuracy::PlainTechnique& plain, double elevation
   scene.rendering.technique = plain.settings();
   scene::SetSlices(&scene.rendering.technique, 32);
   scene.sun.elevation_deg = elevation_deg;
-  scene.output = {32, 18, 88};
+  scene.output = {.width_px = 32, .height_px = 18};
   scene::OrbitCamera camera;
   camera.target_m.z = 2000.0;
   camera.distance_m = 12e3;

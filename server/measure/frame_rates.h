@@ -20,7 +20,7 @@ namespace thunderhead::measure {
 struct FrameRateOptions {
   int width_px = 300;  // the papers' size and slices
   int height_px = 300;
-  int slices = 128;
+  int slices = scene::HalfAngle{}.slices;
   scene::Transport transport = scene::Transport::kConsistent;  // of the papers' translucent modes
   int runs = 5;                                                // results are their medians
   double seconds_a_run = 0.4;

@@ -73,9 +73,9 @@ struct RenderSettings {
   scene::Technique technique;
   scene::View view;
   Illumination illumination;
-  glm::ivec2 eye_size{1};  // of the eye buffer in pixels
-  int slices = 128;        // or samples along a ray
-  DrawQuality quality{};   // its shares are in the sizes above already
+  glm::ivec2 eye_size{1};                    // of the eye buffer in pixels
+  int slices = scene::LightVolume{}.slices;  // or samples along a ray
+  DrawQuality quality{};                     // its shares are in the sizes above already
   // Distance of the ground along each pixel's ray; none where nothing hides a part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
   // Where in the eye buffer the medium is; none: it may be anywhere.

@@ -44,8 +44,8 @@ bool Diffuses(const RenderSettings& settings) {
 glm::vec2 NearStep(int slices) {
   constexpr double kInCells = 0.25;
   constexpr double kByDistance = 1.0 / 24.0;
-  constexpr double kUsualSlices = 128.0;
-  return glm::vec2(std::max(kUsualSlices / slices, 1.0) * glm::dvec2(kInCells, kByDistance));
+  const double usual_slices = scene::LightVolume{}.slices;
+  return glm::vec2(std::max(usual_slices / slices, 1.0) * glm::dvec2(kInCells, kByDistance));
 }
 
 }  // namespace
