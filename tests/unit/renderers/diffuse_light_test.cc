@@ -175,14 +175,30 @@ TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
 TEST(DiffuseLight, NothingBreaks) {
   for (const double depth : {0.0, 1e-8, 1e-2, 1e8}) {
     for (const double sine : {-0.1, 0.0, 1e-4, 1.0}) {
+      SCOPED_TRACE(testing::Message() << "depth " << depth << ", sine " << sine);
       const Layer layer(depth);
       DiffuseLight light(layer.cells);
       const auto& net = light.SolveSun(Sun(sine), layer.ArrivedRoot(std::max(sine, 1e-4)));
-      for (const float value : net) ASSERT_TRUE(std::isfinite(value)) << depth << " " << sine;
-      for (const glm::vec2& value : light.SkyInward()) {
-        ASSERT_TRUE(std::isfinite(value.x) && std::isfinite(value.y)) << depth;
+      const std::size_t cells = layer.cells.light_per_m.size();
+      ASSERT_EQ(net.size(), cells);
+      ASSERT_EQ(light.SkyInward().size(), cells);
+      ASSERT_EQ(light.FromWalls().size(), cells);
+      float sun = 0.0F;
+      float sky = 0.0F;
+      for (std::size_t i = 0; i < cells; ++i) {
+        const glm::vec2& inward = light.SkyInward()[i];
+        ASSERT_TRUE(std::isfinite(net[i]));
+        ASSERT_TRUE(std::isfinite(inward.x) && std::isfinite(inward.y));
+        ASSERT_TRUE(std::isfinite(light.FromWalls()[i]));
+        sun = std::max(sun, net[i]);
+        sky = std::max(sky, std::abs(inward.x) + std::abs(inward.y));
       }
-      for (const float value : light.FromWalls()) ASSERT_TRUE(std::isfinite(value)) << depth;
+      // A depth of 1e-8 scatters less than single precision holds.
+      const bool scatters = depth > 1e-8;
+      EXPECT_EQ(sky > 0.0F, scatters) << sky;
+      if (scatters && sine > 0.0) {
+        EXPECT_GT(sun, 0.0F);
+      }
     }
   }
 }
