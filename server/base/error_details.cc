@@ -80,4 +80,9 @@ absl::Status ShuttingDown() {
                      {.reason = "SHUTTING_DOWN", .retry_after = kRestart});
 }
 
+absl::Status TooManyConnections() {
+  return WithDetails(absl::ResourceExhaustedError("there are too many connections"),
+                     {.reason = "TOO_MANY_CONNECTIONS"});
+}
+
 }  // namespace thunderhead::base

@@ -37,4 +37,7 @@ absl::Status InvalidField(const std::string& field, const std::string& descripti
 // UNAVAILABLE because the server stops; another may soon stand in its place.
 absl::Status ShuttingDown();
 
+// RESOURCE_EXHAUSTED for a connection beyond the limits, which is closed.
+absl::Status TooManyConnections();
+
 }  // namespace thunderhead::base

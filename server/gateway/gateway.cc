@@ -15,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/line_limit.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
@@ -138,7 +139,7 @@ class Gateway::Listener {
     auto link = std::make_shared<ClientLink>(std::move(socket), std::move(tls),
                                              site_.options.write_stall_timeout);
     if (!links_.MakeRoom(*link)) {
-      TellOfRefusal(site_.options, link->Peer(), "Connect", TooManyConnections());
+      TellOfRefusal(site_.options, link->Peer(), "Connect", base::TooManyConnections());
       return;
     }
     links_.Add(link);

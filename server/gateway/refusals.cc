@@ -24,11 +24,6 @@ absl::Status MessageTooLarge() {
                            {.reason = "MESSAGE_TOO_LARGE"});
 }
 
-absl::Status TooManyConnections() {
-  return base::WithDetails(absl::ResourceExhaustedError("there are too many connections"),
-                           {.reason = "TOO_MANY_CONNECTIONS"});
-}
-
 absl::Status AnswersNotTaken() {
   return base::WithDetails(
       absl::ResourceExhaustedError(

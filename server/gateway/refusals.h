@@ -12,7 +12,6 @@ absl::Status HostNotAllowed();
 absl::Status OriginNotAllowed();
 absl::Status HeaderTooLarge();
 absl::Status MessageTooLarge();
-absl::Status TooManyConnections();
 absl::Status AnswersNotTaken();
 
 void TellOfRefusal(const GatewayOptions& options, const std::string& peer, const char* act,

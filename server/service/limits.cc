@@ -50,11 +50,6 @@ absl::Status CheckSize(const Limits& limits, const v1::Scene& scene) {
   return absl::OkStatus();
 }
 
-absl::Status TooManyConnections() {
-  return base::WithDetails(absl::ResourceExhaustedError("there are too many connections"),
-                           {.reason = "TOO_MANY_CONNECTIONS"});
-}
-
 absl::Status TooManyViewers(std::size_t maximum) {
   return base::WithDetails(
       absl::ResourceExhaustedError(absl::StrCat("the session already has the maximum of ", maximum,

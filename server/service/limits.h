@@ -44,9 +44,6 @@ std::chrono::milliseconds DeliveryTime(const Limits& limits, std::size_t bytes);
 // `scene` has its defaults.
 absl::Status CheckSize(const Limits& limits, const v1::Scene& scene);
 
-// RESOURCE_EXHAUSTED for a connection beyond the limits, which is closed.
-absl::Status TooManyConnections();
-
 // RESOURCE_EXHAUSTED for a session with as many viewers as it may have.
 absl::Status TooManyViewers(std::size_t maximum);
 

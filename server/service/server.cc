@@ -154,7 +154,7 @@ class RunningServer final : public Server {
                                    door_->Proxies(), connection_calls_),
                        [this](const std::string& peer) {
                          telemetry::Counted().refusals.Of("TOO_MANY_CONNECTIONS").Add();
-                         door_->ReportBeforeCall(peer, "Connect", TooManyConnections());
+                         door_->ReportBeforeCall(peer, "Connect", base::TooManyConnections());
                        }));
     }
     SetServing(true);
