@@ -34,7 +34,7 @@ class Audit {
   // that a flood of connections does not hide who tries tokens. What was allowed is always written.
   static constexpr int kMaxRefusalsPerSecond = 50;
 
-  // Waits until lines are written, for so long at most.
+  // Waits at most that long until all lines are written.
   using FlushLines = std::function<void(std::chrono::milliseconds)>;
 
   // `write` takes one line without its end, from any thread, one at a time; it may write later,
@@ -45,7 +45,7 @@ class Audit {
   // `status` is the act's outcome: allowed if OK. Its reason is written, not its message, which may
   // repeat what the client sent.
   void Write(const Act& act, const absl::Status& status, Clock::time_point now = Clock::now());
-  // Waits until what was said is written, for so long at most; from any thread.
+  // Waits at most that long until everything reported is written; from any thread.
   void Flush(std::chrono::milliseconds time) const {
     if (flush_ != nullptr) flush_(time);
   }

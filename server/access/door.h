@@ -59,7 +59,7 @@ class Door {
   // A refusal of the gateway before there was a call, for the audit.
   void ReportBeforeCall(const std::string& peer, std::string_view act, const absl::Status& refusal);
 
-  // Waits until the audit is written, for so long at most; from any thread.
+  // Waits at most that long until the audit is written; from any thread.
   void FlushAudit(std::chrono::milliseconds time) const { audit_->Flush(time); }
 
   // A token of this process' own, with which it calls itself as an operator.

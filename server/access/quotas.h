@@ -19,7 +19,8 @@ struct QuotaLimits {
   std::size_t max_streams_per_identity = 512;
   // The mean; twice as many at once after a second of rest. 0: no limit.
   double requests_per_second = 500.0;
-  // Of one network, that nobody has: after them it may show none that was not right before.
+  // Of invalid tokens from one network: beyond this limit it may only show tokens that were valid
+  // before.
   double wrong_tokens_per_second = 5.0;
 };
 
@@ -35,7 +36,7 @@ class RequestBudget {
   absl::Status Take(double per_second, Time now);
   // How many there are now.
   double LeftAt(double per_second, Time now) const;
-  // True if nothing was taken for so long that a new one would be the same.
+  // True if nothing was taken for so long that the bucket is as full as a new one.
   bool IsFull(double per_second, Time now) const;
 
  private:

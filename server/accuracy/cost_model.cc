@@ -93,7 +93,8 @@ void CostModel::Observe(double mega_samples, double total_ms,
 void CostModel::Fit() {
   FitLine();
   reach_mega_samples_ = kReach * std::sqrt(sum_xx_ / weight_);
-  // As the mean of the frames; those far below a million samples say less than what is supposed.
+  // The frames' own mean together with the assumed cost, which weighs as much as a frame of a
+  // million samples: much smaller frames say less than it.
   const double mean = (sum_xy_ / weight_ + kUnknownMsPerMegaSample) / (sum_xx_ / weight_ + 1.0);
   ms_beyond_reach_ = std::min(ms_per_mega_sample_, mean);
 }

@@ -15,7 +15,7 @@
 
 namespace thunderhead::accuracy {
 
-// A setting with what it is believed to cost and to miss here.
+// A setting with its predicted cost and error on this machine.
 struct Offer {
   Setting setting;
   double milliseconds = 0.0;

@@ -14,7 +14,7 @@
 namespace thunderhead::app {
 namespace {
 
-// A model that writes has written a part within so long.
+// A running model writes each part of a file within this time.
 constexpr absl::Duration kStillWritten = absl::Minutes(2);
 
 }  // namespace

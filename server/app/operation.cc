@@ -47,11 +47,11 @@ int Taken(const sigset_t& signals) {
 void AddBudget(const std::string& name, const base::MemoryBudget* budget,
                std::vector<telemetry::Gauge>& gauges) {
   if (budget == nullptr) return;
-  gauges.push_back({absl::StrCat("thunderhead_", name, "_bytes"), "What may be used of it in all",
+  gauges.push_back({absl::StrCat("thunderhead_", name, "_bytes"), "Size of the budget",
                     static_cast<double>(budget->Bytes())});
   for (const base::MemoryUse use : base::kMemoryUses) {
-    gauges.push_back({absl::StrCat("thunderhead_", name, "_used_bytes"), "What is used of it",
-                      static_cast<double>(budget->Used(use)), "use",
+    gauges.push_back({absl::StrCat("thunderhead_", name, "_used_bytes"),
+                      "Bytes of the budget in use", static_cast<double>(budget->Used(use)), "use",
                       std::string(base::LabelOf(use))});
   }
 }

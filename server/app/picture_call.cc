@@ -31,7 +31,8 @@ absl::StatusOr<v1::RenderImageResponse> CallForPicture(
   if (picture.image().empty()) picture.set_image(std::move(bytes));
   const grpc::Status status = reader->Finish();
   if (stop.stop_requested()) return absl::CancelledError("interrupted: no picture was written");
-  // Words of its own are from a server that has the call and cannot do what is asked.
+  // An explanation besides the code comes from a server that has the call and cannot do what is
+  // asked.
   if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED && status.error_message().empty()) {
     return absl::UnimplementedError(
         "the server is older than this program and lacks the call that it needs "

@@ -15,7 +15,7 @@ namespace thunderhead::app {
 
 enum class ProgressStyle { kAuto, kLines, kJson, kEcflow, kNone };
 
-// Where a picture's time went, without what it waited for others.
+// The time that a picture took, without waiting for others.
 struct PictureTimes {
   double read_ms = 0.0;   // the storm's file
   double draw_ms = 0.0;   // until its pixels are read back

@@ -108,7 +108,7 @@ void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) 
   }
 }
 
-// True for a name of a picture, not of what is made of or for pictures.
+// True for the name of a picture, as opposed to a file made from pictures or for making them.
 bool IsPicture(const PictureRunOptions& options, const std::string& file) {
   return std::filesystem::path(file).extension() ==
          std::filesystem::path(options.product.Text()).extension();

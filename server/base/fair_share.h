@@ -12,8 +12,8 @@ namespace thunderhead::base {
 
 class FairShare {
  public:
-  // One of `waiting`, which must not be empty; of several the first. Who is new, or comes back
-  // after not having waited, begins with what was done for the one with least.
+  // One of `waiting`, which must not be empty; the first where several are equal. Newcomers, and
+  // those who come back after a pause, start with as much as the one with least has had.
   std::string Next(const std::vector<std::string>& waiting);
   // One of those for whom `may` is true; none if there is none.
   std::optional<std::string> Next(const std::vector<std::string>& waiting,

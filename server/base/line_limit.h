@@ -1,5 +1,5 @@
-// How many lines a second may be written of what others can cause as often as they like. A plain
-// value with a clock given; whoever shares it locks.
+// Limits how many lines a second are logged about events that others can cause as often as they
+// like. A plain value that is given the time; callers that share it lock.
 #pragma once
 
 #include <chrono>

@@ -19,20 +19,21 @@ namespace thunderhead::base {
 
 class LineWriter {
  public:
-  // Writes a line, before which so many were left out; an empty one at the end if it is to say so
-  // of the last. A line for which it throws is left out. May hang, so it must own all that it uses.
+  // Writes a line; `left_out` is the number of lines that were dropped just before it. Called with
+  // an empty line at the end if the last lines were dropped. If it throws, the line counts as
+  // dropped. May hang, so it must own everything it uses.
   using WriteLine = std::function<void(const std::string& line, std::uint64_t left_out)>;
 
-  // Lines beyond `max_waiting` are left out.
+  // Beyond `max_waiting` waiting lines, new ones are dropped.
   LineWriter(std::size_t max_waiting, WriteLine write);
-  // Writes what waits, unless that hangs.
+  // Writes the waiting lines, unless writing hangs.
   ~LineWriter();
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
   // Returns at once; from any thread.
   void Write(std::string line);
-  // Waits until what waits is written, for so long at most; true if it is.
+  // Waits at most that long until all waiting lines are written; true if they are.
   bool Flush(std::chrono::milliseconds time);
 
  private:

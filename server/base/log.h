@@ -1,4 +1,4 @@
-// Errors that nobody else is told in full: a line of the log each.
+// Logs errors that no client is told in full, one line each.
 #pragma once
 
 #include "absl/status/status.h"

@@ -19,7 +19,7 @@ class LooseThread {
   LooseThread(LooseThread&&) noexcept = default;
   LooseThread& operator=(LooseThread&&) = delete;
 
-  // Waits for its end, for so long at most; true if it has ended.
+  // Waits at most that long for it to end; true if it has.
   bool EndsWithin(std::chrono::milliseconds time) const;
 
   // True if one was left behind in this process: it must end by _exit, as the thread may wake up

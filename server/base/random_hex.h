@@ -1,4 +1,4 @@
-// Names that nobody can guess, nor one from another.
+// Random names: nobody can guess one, or derive one from another.
 #pragma once
 
 #include <string>

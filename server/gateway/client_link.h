@@ -39,7 +39,7 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
 
   // The client's address with its port.
   const std::string& Peer() const { return peer_; }
-  // What of it one client has: base::NetworkOf.
+  // The client's network (base::NetworkOf), by which its connections are counted.
   const std::string& Network() const { return network_; }
 
   void Begin(LinkUse use) {

@@ -85,7 +85,7 @@ struct GatewayOptions {
   // header timeouts and the time that it takes at this rate.
   double min_bytes_per_second = 8192.0;
   // Closes a connection whose client accepts no bytes for this time, too, and cancels its call.
-  // What is small enough is cut by the least rate before: of the default, all below 720 KiB.
+  // Small answers reach the limit of min_bytes_per_second before: by default, those below 720 KiB.
   std::chrono::milliseconds write_stall_timeout = std::chrono::seconds(120);
   // Pings the client of a WebSocket that sent nothing for this time, and drops it, cancelling its
   // call, if nothing comes for this time again. While it is held back, its machine need only

@@ -66,7 +66,7 @@ void DescribeKept(const std::string& entity_tag, http::fields& header) {
   header.set(http::field::accept_ranges, "bytes");
 }
 
-// What a thread of files finds for the gateway's.
+// The result of looking for a page's file on a thread for files.
 using FileOr = absl::StatusOr<std::shared_ptr<const OpenFile>>;
 struct PageFile {
   std::optional<StaticFile> about;  // none: there is nothing at that path

@@ -27,7 +27,8 @@ bool CanBeSpared(const ClientLink& link, ClientLink::Clock::time_point now) {
   return false;
 }
 
-// Files after requests that are not complete; the one that has taken longest first.
+// The order in which connections are closed: those that wait for a request or receive one before
+// those that are sent a file, and of each kind the one that has taken longest first.
 auto Rank(const ClientLink& link) {
   return std::tuple(link.Use() == LinkUse::kSending, link.UsedSince());
 }

@@ -61,8 +61,8 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   // the last of these.
   void BeginWrite(grpc::ByteBuffer message);
   void BeginHalfClose();
-  // Waits until gRPC has taken what was written last, which flow control delays while the server
-  // does not read. False if the call accepts no more.
+  // Waits until gRPC has taken the last write, which flow control delays while the server does not
+  // read. False if the call accepts no more.
   boost::asio::awaitable<bool> AwaitWritten();
 
   // The call's outcome; cancels the call if not all messages were read.

@@ -30,7 +30,7 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // A job with all of its pictures or, on an error, nothing of it.
+  // Stores a job with all of its pictures or, on an error, nothing of it.
   virtual absl::Status Add(const JobRecord& job) = 0;
   // All of the changes or, on an error, none. Jobs that are not there are no error.
   virtual absl::Status Save(const std::vector<JobChange>& changes) = 0;

@@ -102,7 +102,7 @@ void Jobs::Create(NewJob job, const Done& done) {
 
 void Jobs::SaveNew(const std::string& id, const Done& done) {
   Lock lock(mutex_);
-  // It may have been cancelled by whoever guessed that it would be there.
+  // Somebody who guessed its id may have cancelled and forgotten it by now.
   std::optional<JobNews> news = board_.NewsOf(id, 0);
   if (!news.has_value()) {
     lock.unlock();

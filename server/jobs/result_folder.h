@@ -25,7 +25,7 @@ class ResultFolder {
                      const std::string& extension) const;
   std::string AboutPathOf(const std::string& job_id, std::size_t place) const;
 
-  // Those of a picture or a job; what is not there is no error.
+  // Removes the files of a picture or of a job; files that do not exist are no error.
   void Remove(const std::string& job_id, std::size_t place, const std::string& extension) const;
   void Remove(const std::string& job_id) const;
 

@@ -11,9 +11,9 @@ void Check(bool kept, const std::string& figure, const std::string& bound,
   if (!kept) not_kept->push_back(absl::StrCat(figure, ", ", bound));
 }
 
-void CheckMost(const std::optional<double>& bound, const std::optional<double>& figure,
-               const std::string& name, const std::string& unit,
-               std::vector<std::string>* not_kept) {
+void CheckUpperBound(const std::optional<double>& bound, const std::optional<double>& figure,
+                     const std::string& name, const std::string& unit,
+                     std::vector<std::string>* not_kept) {
   if (!bound.has_value()) return;
   const std::string measured = figure.has_value()
                                    ? absl::StrFormat("%s %.0f %s", name, *figure, unit)
@@ -38,16 +38,17 @@ std::vector<std::string> NotKept(const Bounds& bounds, const Report& report) {
     p95_ms = viewers.latency_ms->p95;
     p99_ms = viewers.latency_ms->p99;
   }
-  CheckMost(bounds.max_p95_ms, p95_ms, "latency p95", "ms", &not_kept);
-  CheckMost(bounds.max_p99_ms, p99_ms, "latency p99", "ms", &not_kept);
+  CheckUpperBound(bounds.max_p95_ms, p95_ms, "latency p95", "ms", &not_kept);
+  CheckUpperBound(bounds.max_p99_ms, p99_ms, "latency p99", "ms", &not_kept);
   std::optional<double> spread_ms;
   if (viewers.spread_ms.has_value()) spread_ms = viewers.spread_ms->p99;
-  CheckMost(bounds.max_spread_ms, spread_ms, "first to last viewer p99", "ms", &not_kept);
+  CheckUpperBound(bounds.max_spread_ms, spread_ms, "first to last viewer p99", "ms", &not_kept);
   std::optional<double> growth_mb;
   if (report.server.has_value()) {
     growth_mb = report.server->rss_last_mb - report.server->rss_first_mb;
   }
-  CheckMost(bounds.max_growth_mb, growth_mb, "growth of the server's memory", "MB", &not_kept);
+  CheckUpperBound(bounds.max_growth_mb, growth_mb, "growth of the server's memory", "MB",
+                  &not_kept);
   return not_kept;
 }
 

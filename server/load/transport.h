@@ -52,8 +52,8 @@ class Transport {
 // Credentials for a guarded server.
 struct Access {
   std::string token;  // empty: none
-  // PEM of those who may vouch for the server by TLS; empty: no TLS, or those of the machine where
-  // there must be.
+  // CA certificates, as PEM, by which the server's certificate is verified. Empty: no TLS or, where
+  // a transport always uses TLS, the machine's own CA certificates.
   std::string tls_roots;
 };
 

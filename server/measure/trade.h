@@ -33,7 +33,8 @@ struct TradeRow {
   double relative_rmse = 0.0;        // of linear radiance, without the truth's own noise
   double relative_bias = 0.0;
   double flip = 0.0;  // of the decoded JPEG
-  // The relative RMSE as a server that has no truth measures it; not a number where nobody did.
+  // The relative RMSE as a server measures it, which has no reference; NaN where it was not
+  // measured.
   accuracy::Estimated estimated_error{kUnmeasured, kUnmeasured, kUnmeasured};
   bool pareto = false;  // no other setting is both faster and more accurate
 };

@@ -110,7 +110,7 @@ std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows
   return front;
 }
 
-// JSON has no word for what is not a number.
+// JSON has no NaN.
 std::string EstimateJson(const TradeRow& row) {
   const accuracy::Estimated& error = row.estimated_error;
   if (std::isnan(error.value)) return "\"measured\": false, ";

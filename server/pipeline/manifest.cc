@@ -222,8 +222,8 @@ absl::Status Manifest::ReadOther(const std::string& manifest) {
   return absl::OkStatus();
 }
 
-// The lines reach the disk here before they leave it there: whoever is killed in between leaves
-// them twice, and the next run takes them over again.
+// The lines reach the disk here before they leave it there: a process that is killed in between
+// leaves them in both places, and the next run takes them over again.
 absl::Status Manifest::TakeOver(const std::vector<std::string>& manifests) {
   std::vector<std::pair<std::string, int>> taken;  // locked
   absl::Status read;
@@ -258,8 +258,8 @@ absl::Status Manifest::TakeOver(const std::vector<std::string>& manifests) {
   return moved;
 }
 
-// Before the line that takes its place is written: whoever is killed in between has a product
-// without a line, which is made again, and no line that is not true.
+// Done before its new line is written: a process that is killed in between leaves a product without
+// a line, which is made again, but never a false line.
 absl::Status Manifest::RemoveFromOthers(const std::string& name) {
   const auto others = others_.find(name);
   if (others == others_.end()) return absl::OkStatus();

@@ -93,7 +93,7 @@ BoxProjection::Interval BoxProjection::Across(double middle_m, double half_m, do
   const double far_m = half_width_m + tan_half_width * (forward_m + half_m_.z);
   const double low_m = middle_m - half_m;
   const double high_m = middle_m + half_m;
-  // Off the axis, what is near is seen farther off.
+  // Off the axis, near points project farther outwards.
   const double low = low_m / (low_m < 0.0 ? near_m : far_m);
   const double high = high_m / (high_m < 0.0 ? far_m : near_m);
   return {(0.5 * low + 0.5) * size_px - margin_px_, (0.5 * high + 0.5) * size_px + margin_px_};

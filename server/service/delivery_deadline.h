@@ -26,7 +26,7 @@ class DeliveryDeadline {
   void Taken();
 
  private:
-  // What the alarm may still look at when the call has ended.
+  // State that the alarm may still use after the call has ended.
   struct Call {
     explicit Call(grpc::CallbackServerContext* of) : context(of) {}
 

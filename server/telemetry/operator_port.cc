@@ -100,7 +100,7 @@ class RunningPort final : public OperatorPort {
       : pages_(std::move(pages)), acceptor_(io_), pause_(io_) {}
 
   ~RunningPort() override {
-    // What is open ends with it.
+    // This ends open connections, too.
     io_.stop();
     if (thread_.joinable()) thread_.join();
   }

@@ -140,7 +140,7 @@ class CachedStormStore final : public StormStore,
   std::chrono::steady_clock::time_point HangsAt(const Activity& activity) const;
   // The file other than `path` that netCDF-C has worked on for longer than `time`.
   std::optional<HungRead> HolderFor(std::chrono::milliseconds time, std::string_view path) const;
-  // What a read that begins now in this process would wait behind.
+  // The reads that a read beginning now in this process would wait behind.
   std::optional<HungRead> HungBefore() const;
   std::uint64_t DeviceOf(std::string_view path) const;
   // True if another process may read that time while that read hangs: it is on another device or,

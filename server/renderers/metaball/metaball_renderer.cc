@@ -129,7 +129,7 @@ LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
 }
 
 gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
-  // A buffer must have a size; nobody reads it.
+  // An empty buffer is an error in GL; this element is never read.
   if (values.empty()) return {sizeof(std::uint32_t), nullptr, 0};
   return {values.size() * sizeof(std::uint32_t), values.data(), 0};
 }

@@ -40,7 +40,7 @@ const bool kDiffusion = DIFFUSION == 1;
 const bool kGlows = CONSISTENT == 1 && !kDiffusion;  // samples send light scattered many times
 const float kEndTransmittance = kDiffusion ? 0.02 : kOpaqueTransmittance;  // below which a ray ends
 
-// Of a segment, and of what is seen before it, from which on the segment is parted.
+// A segment is split where its optical depth and the transmittance in front of it exceed these.
 const float kFaceDepth = 1.0;
 const float kFaceSeen = 0.1;
 
