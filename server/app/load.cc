@@ -78,6 +78,11 @@ absl::StatusOr<load::LoadOptions> LoadOptionsOf(const LoadFlags& flags) {
     return absl::InvalidArgumentError("--throttled needs --kbit, the rate that those viewers read");
   }
   if (flags.kbit_per_s.has_value()) load::Throttle(*flags.kbit_per_s, flags.throttled, options);
+  if (options.looking > options.viewers) {
+    return absl::InvalidArgumentError(absl::StrCat("--looking is ", options.looking,
+                                                   ", more than the ", options.viewers,
+                                                   " viewers who read all that comes"));
+  }
   return options;
 }
 
@@ -153,6 +158,11 @@ Command AddLoad(CLI::App& app) {
   load->add_option("--steer", options.steer_hz,
                    "Updates of the camera a second by the presenter; 0 for none")
       ->check(CLI::Range(0.0, 240.0))
+      ->capture_default_str();
+  load->add_option("--looking", options.looking,
+                   "Of --viewers, those who look around: each turns a view of its own, --steer "
+                   "times a second")
+      ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   load->add_option("--kbit", flags->kbit_per_s,
                    "kbit/s that each viewer reads at most; with --throttled those alone")

@@ -84,7 +84,11 @@ class RunningLoad {
         stills_(options.stills, transport, errors_),
         presenter_(session.scene().camera(), errors_) {
     presenter_.Join(transport, session.session_id());
-    AddViewers(ViewerKind::kHealthy, options.viewers);
+    AddViewers(ViewerKind::kHealthy, options.viewers - options.looking);
+    AddViewers(ViewerKind::kLooking, options.looking);
+    for (const auto& viewer : viewers_) {
+      if (viewer->kind() == ViewerKind::kLooking) viewer->LookAround(session.scene().camera());
+    }
     AddViewers(ViewerKind::kThrottled, options.throttled);
     AddViewers(ViewerKind::kStalled, options.stalled);
     AddViewers(ViewerKind::kPassing, options.passing);
@@ -152,6 +156,10 @@ class RunningLoad {
       const double now_s = Now_s();
       if (now_s >= next_update_s) {
         presenter_.Turn(kTurnSpeed_deg_per_s * step_s);
+        // The other way than the session's.
+        for (const auto& viewer : viewers_) {
+          if (viewer->kind() == ViewerKind::kLooking) viewer->Turn(-kTurnSpeed_deg_per_s * step_s);
+        }
         // After a pause of this program: no burst.
         next_update_s = std::max(next_update_s + step_s, now_s);
       }
@@ -187,9 +195,15 @@ class RunningLoad {
     if (const auto sample = server_->Sample(); sample.has_value()) samples_.push_back(*sample);
   }
 
+  // The viewers of Progress::frames_per_s.
+  ViewerKind MainKind() const {
+    if (options_.viewers > options_.looking) return ViewerKind::kHealthy;
+    return options_.looking > 0 ? ViewerKind::kLooking : ViewerKind::kThrottled;
+  }
+
   void Tell(double share) {
     Progress told{.share = share};
-    const ViewerKind counted = options_.viewers > 0 ? ViewerKind::kHealthy : ViewerKind::kThrottled;
+    const ViewerKind counted = MainKind();
     int viewers = 0;
     std::uint64_t frames = 0;
     for (const auto& viewer : viewers_) {

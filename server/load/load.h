@@ -19,7 +19,8 @@ namespace thunderhead::load {
 enum class LoadCodec { kJpeg, kVp9 };
 
 struct LoadOptions {
-  int viewers = 10;   // healthy ones; 0 where all are throttled
+  int viewers = 10;   // that read all that comes; 0 where all are throttled
+  int looking = 0;    // of these, those who look around
   int throttled = 0;  // besides them
   int stalled = 0;    // besides them
   int passing = 0;    // besides them
@@ -28,7 +29,7 @@ struct LoadOptions {
   double seconds = 10.0;
   int width_px = 640;
   int height_px = 360;
-  double steer_hz = 30.0;  // updates a second; 0: none
+  double steer_hz = 30.0;  // updates a second, and motions of each who looks around; 0: none
   StillOptions stills;     // asked for when the measured time begins
 };
 
@@ -40,7 +41,8 @@ void Throttle(double kbit_per_s, std::optional<int> throttled, LoadOptions& opti
 struct Progress {
   double share = 0.0;  // of the time
   int joined = 0;      // viewers that have had a frame
-  // The mean of healthy viewers since the last call; of throttled ones if there are no others.
+  // The mean of healthy viewers since the last call; if there are none, of those who look around,
+  // or of throttled ones.
   double frames_per_s = 0.0;
   int errors = 0;
 };

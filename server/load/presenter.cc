@@ -1,11 +1,11 @@
 #include "load/presenter.h"
 
-#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "load/response_reader.h"
+#include "load/turning.h"
 #include "thunderhead/v1/interact.pb.h"
 
 namespace thunderhead::load {
@@ -23,8 +23,7 @@ void Presenter::Join(Transport& transport, const std::string& key) {
 }
 
 void Presenter::Turn(double angle_deg) {
-  v1::OrbitCamera& orbit = *camera_.mutable_orbit();
-  orbit.set_azimuth_deg(static_cast<float>(std::remainder(orbit.azimuth_deg() + angle_deg, 360.0)));
+  load::Turn(angle_deg, camera_);
   v1::InteractRequest request;
   request.set_request_id(++request_count_);
   *request.mutable_update_scene()->mutable_scene()->mutable_camera() = camera_;

@@ -20,6 +20,7 @@ inline double Now_s() {
 
 enum class ViewerKind {
   kHealthy,
+  kLooking,    // reads all that comes, of a view of its own that it turns
   kThrottled,  // reads at a limited rate
   kStalled,    // joins and never reads
   kPassing,    // leaves without a word and comes again, over and over

@@ -84,10 +84,15 @@ Report ReportOf(const Recording& recording) {
   Report report;
   report.seconds = recording.period.Seconds();
   report.healthy = FiguresOf(recording, ViewerKind::kHealthy);
+  report.looking = FiguresOf(recording, ViewerKind::kLooking);
+  report.looking.latency_ms.reset();
+  report.looking.spread_ms.reset();
+  report.looking.latency_growth = {};
   report.throttled = FiguresOf(recording, ViewerKind::kThrottled);
   report.stalled = CountOf(recording, ViewerKind::kStalled);
   report.passing = CountOf(recording, ViewerKind::kPassing);
   report.healthy_first = FirstFramesOf(recording, ViewerKind::kHealthy);
+  report.looking_first = FirstFramesOf(recording, ViewerKind::kLooking);
   report.throttled_first = FirstFramesOf(recording, ViewerKind::kThrottled);
   report.passing_first = FirstFramesOf(recording, ViewerKind::kPassing);
   const std::vector<double>& came_ms = recording.stills.came_ms;

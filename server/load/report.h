@@ -54,9 +54,11 @@ struct Report {
   double steer_hz = 0.0;
   double throttle_kbit_per_s = 0.0;
   ViewerFigures healthy;
+  ViewerFigures looking;  // without latencies, as own views count revisions of their own
   ViewerFigures throttled;
   int stalled = 0;
   FirstFrames healthy_first;
+  FirstFrames looking_first;
   FirstFrames throttled_first;
   int passing = 0;
   FirstFrames passing_first;
@@ -66,11 +68,15 @@ struct Report {
   std::map<std::string, int> errors;    // counts by message
 
   int ErrorCount() const;
-  // The viewers that the figures of the whole load are of: those that read all they get, or if all
-  // are throttled these.
-  const ViewerFigures& Main() const { return healthy.viewers > 0 ? healthy : throttled; }
+  // The viewers that the figures of the whole load are of: those that read all they get, or if
+  // there are none those who look around, or throttled ones.
+  const ViewerFigures& Main() const {
+    if (healthy.viewers > 0) return healthy;
+    return looking.viewers > 0 ? looking : throttled;
+  }
   const FirstFrames& MainFirst() const {
-    return healthy.viewers > 0 ? healthy_first : throttled_first;
+    if (healthy.viewers > 0) return healthy_first;
+    return looking.viewers > 0 ? looking_first : throttled_first;
   }
 };
 

@@ -59,6 +59,12 @@ std::string ThrottledJson(const Report& report) {
       Json(figures.latency_growth.first_third_ms), Json(figures.latency_growth.last_third_ms));
 }
 
+std::string LookingJson(const Report& report) {
+  if (report.looking.viewers == 0) return "null";
+  return absl::StrFormat("{\"viewers\": %d, %s, \"first_frame_ms\": %s}", report.looking.viewers,
+                         Keys(report.looking), Json(report.looking_first));
+}
+
 std::string PassingJson(const Report& report) {
   if (report.passing == 0) return "null";
   return absl::StrFormat("{\"viewers\": %d, \"visits\": %d, \"first_frame_ms\": %s}",
@@ -153,6 +159,11 @@ std::string ToText(const Report& report) {
       report.transport, report.seconds, report.width_px, report.height_px, report.steer_hz);
   if (report.healthy.viewers > 0) text += Text(report.healthy);
   AppendFirst(report.healthy_first, text);
+  if (report.looking.viewers > 0) {
+    absl::StrAppendFormat(&text, "looking around: %d\n%s", report.looking.viewers,
+                          Text(report.looking));
+    AppendFirst(report.looking_first, text);
+  }
   AppendThrottled(report, text);
   if (report.stalled > 0) absl::StrAppendFormat(&text, "stalled: %d\n", report.stalled);
   if (report.passing > 0) {
@@ -180,14 +191,15 @@ std::string ToJson(const Report& report) {
       "\"steer_hz\": %g,\n"
       "  \"viewers\": %d, %s,\n"
       "  \"first_frame_ms\": %s,\n"
-      "  \"throttled\": %s,\n  \"stalled\": %d,\n  \"passing\": %s,\n  \"stills\": %s,\n  %s,\n  "
+      "  \"looking\": %s,\n  \"throttled\": %s,\n  \"stalled\": %d,\n  \"passing\": %s,\n  "
+      "\"stills\": %s,\n  %s,\n  "
       "\"client_cpu\": "
       "%.3g,\n"
       "  \"errors\": %d, \"error_messages\": {%s}\n}\n",
       Quoted(report.transport), report.seconds, report.width_px, report.height_px, report.steer_hz,
-      report.Main().viewers, Keys(report.Main()), Json(report.MainFirst()), ThrottledJson(report),
-      report.stalled, PassingJson(report), StillsJson(report.stills), ServerJson(report.server),
-      report.own_cpu, report.ErrorCount(), errors);
+      report.Main().viewers, Keys(report.Main()), Json(report.MainFirst()), LookingJson(report),
+      ThrottledJson(report), report.stalled, PassingJson(report), StillsJson(report.stills),
+      ServerJson(report.server), report.own_cpu, report.ErrorCount(), errors);
 }
 
 }  // namespace thunderhead::load

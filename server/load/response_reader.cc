@@ -19,7 +19,8 @@ constexpr std::uint32_t MessageTag(int field) {
   return WireFormatLite::MakeTag(field, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
 }
 
-// Reads only as far as it must: the picture may be skipped, but never looked at.
+// Reads only as far as it must: the picture may be skipped, but never looked at. Servers write the
+// sequence and the view before the rest.
 bool ReadFrame(CodedInputStream& stream, Response& response) {
   response.part = Part::kFrame;
   while (response.sequence == 0 || response.scene_revision == 0) {
@@ -28,6 +29,10 @@ bool ReadFrame(CodedInputStream& stream, Response& response) {
     bool ok = false;
     if (tag == VarintTag(v1::Frame::kSequenceFieldNumber)) {
       ok = stream.ReadVarint64(&response.sequence);
+    } else if (tag == VarintTag(v1::Frame::kOwnViewFieldNumber)) {
+      std::uint64_t own_view = 0;
+      ok = stream.ReadVarint64(&own_view);
+      response.own_view = own_view != 0;
     } else if (tag == VarintTag(v1::Frame::kSceneRevisionFieldNumber)) {
       ok = stream.ReadVarint64(&response.scene_revision);
     } else {

@@ -15,6 +15,7 @@ struct Response {
 
   Part part = Part::kOther;
   std::uint64_t sequence = 0;        // of a frame
+  bool own_view = false;             // of a frame
   std::uint64_t scene_revision = 0;  // of a frame or a SceneTaken
   std::uint64_t request_id = 0;      // of a SceneTaken or a refusal
   std::string refusal;               // why

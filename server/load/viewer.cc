@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "load/response_reader.h"
+#include "load/turning.h"
 #include "thunderhead/v1/interact.pb.h"
 
 namespace thunderhead::load {
@@ -29,6 +30,20 @@ void Viewer::Join(Transport& transport, const std::string& key, double kbit_per_
   link_->Send(request.SerializeAsString());
 }
 
+void Viewer::LookAround(const v1::Camera& camera) {
+  own_camera_ = camera;
+  v1::InteractRequest request;
+  *request.mutable_detach()->mutable_camera() = camera;
+  link_->Send(request.SerializeAsString());
+}
+
+void Viewer::Turn(double angle_deg) {
+  load::Turn(angle_deg, own_camera_);
+  v1::InteractRequest request;
+  *request.mutable_move_camera()->mutable_camera() = own_camera_;
+  link_->Send(request.SerializeAsString());
+}
+
 void Viewer::ComeAgain(Transport& transport, const std::string& key) {
   Stop();
   // A call that ended by itself has told its error.
@@ -40,7 +55,7 @@ void Viewer::ComeAgain(Transport& transport, const std::string& key) {
 
 void Viewer::Leave() {
   leaving_ = true;
-  if (kind() == ViewerKind::kHealthy) return link_->HalfClose();
+  if (kind() == ViewerKind::kHealthy || kind() == ViewerKind::kLooking) return link_->HalfClose();
   link_->Close();
   ended_ = true;
 }
@@ -53,6 +68,9 @@ void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::
   if (!response.has_value()) return errors_.Add("a message is no InteractResponse");
   if (response->part == Response::Part::kRefused) return errors_.Add(response->refusal);
   if (response->part != Response::Part::kFrame) return;
+  Acknowledge(response->sequence, response->own_view);
+  // The session's view came until the own one was there.
+  if (kind() == ViewerKind::kLooking && !response->own_view) return;
   if (waits_since_s_.has_value()) {
     record_.first_frames_ms.push_back(1e3 * (now_s - *waits_since_s_));
     waits_since_s_.reset();
@@ -62,13 +80,13 @@ void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::
     ++record_.frame_count;
     record_.frame_bytes += bytes;
   }
-  Acknowledge(response->sequence);
   ++frames_;
 }
 
-void Viewer::Acknowledge(std::uint64_t sequence) {
+void Viewer::Acknowledge(std::uint64_t sequence, bool own_view) {
   v1::InteractRequest request;
   request.mutable_acknowledge()->set_sequence(sequence);
+  request.mutable_acknowledge()->set_own_view(own_view);
   link_->Send(request.SerializeAsString());
 }
 

@@ -10,6 +10,7 @@
 
 #include "load/recording.h"
 #include "load/transport.h"
+#include "thunderhead/v1/scene.pb.h"
 
 namespace thunderhead::load {
 
@@ -20,6 +21,10 @@ class Viewer final : public Listener {
 
   // Connects and joins; a throttled viewer reads at that rate. With `takes_video` it asks for VP9.
   void Join(Transport& transport, const std::string& key, double kbit_per_s, bool takes_video);
+  // Leaves the session's view for its own, which begins with that camera; an orbit.
+  void LookAround(const v1::Camera& camera);
+  // Turns the camera of its own view by an angle.
+  void Turn(double angle_deg);
   // Breaks off the call and joins again.
   void ComeAgain(Transport& transport, const std::string& key);
   // Asks the server to end the call; one that does not read breaks it off.
@@ -38,13 +43,14 @@ class Viewer final : public Listener {
   void OnEnd(const absl::Status& status) override;
 
  private:
-  void Acknowledge(std::uint64_t sequence);
+  void Acknowledge(std::uint64_t sequence, bool own_view);
 
   const std::atomic<bool>& measuring_;
   Errors& errors_;
   ViewerRecord record_;
   std::atomic<std::uint64_t> frames_{0};
   bool takes_video_ = false;
+  v1::Camera own_camera_;
   std::optional<double> waits_since_s_;  // for its first frame
   std::atomic<bool> leaving_{false};
   std::atomic<bool> ended_{false};

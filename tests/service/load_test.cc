@@ -149,6 +149,22 @@ TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
   EXPECT_THAT(report->throttled.fps_median, Le(0.7 * report->healthy.fps_min)) << ToText(*report);
 }
 
+TEST_P(LoadTest, WhoLooksAroundGetsPicturesOfTheOwnViewAndTheOthersTheSessions) {
+  options_.looking = 2;
+  const auto report = Run();
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_EQ(report->healthy.viewers, 1);
+  EXPECT_EQ(report->looking.viewers, 2);
+  // More than the two that may be unacknowledged.
+  EXPECT_THAT(report->looking.fps_min, Gt(2.0)) << ToText(*report);
+  EXPECT_THAT(report->healthy.fps_min, Gt(2.0)) << ToText(*report);
+  EXPECT_EQ(report->looking_first.count, 2U);
+  EXPECT_FALSE(report->looking.latency_ms.has_value());
+  EXPECT_THAT(ToText(*report), HasSubstr("looking around: 2\n"));
+  EXPECT_THAT(ToJson(*report), HasSubstr("\"looking\": {\"viewers\": 2, "));
+}
+
 TEST_P(LoadTest, ARateWithoutANumberThrottlesAllViewers) {
   Throttle(16.0, std::nullopt, options_);
   std::atomic<double> shown_fps{0.0};

@@ -31,6 +31,15 @@ v1::InteractResponse FrameResponse() {
   return response;
 }
 
+// A response with that serialized frame.
+std::optional<Response> ReadFrame(const std::string& frame) {
+  EXPECT_LT(frame.size(), 1U << 14);
+  std::string bytes = "\x12";
+  bytes.push_back(static_cast<char>((frame.size() & 0x7F) | 0x80));
+  bytes.push_back(static_cast<char>(frame.size() >> 7));
+  return Read(bytes + frame);
+}
+
 TEST(ReadResponse, ReadsSequenceAndRevisionOfAFrame) {
   const auto response = Read(FrameResponse().SerializeAsString());
   ASSERT_TRUE(response.has_value());
@@ -39,17 +48,25 @@ TEST(ReadResponse, ReadsSequenceAndRevisionOfAFrame) {
   EXPECT_EQ(response->scene_revision, 300);
 }
 
+TEST(ReadResponse, ReadsWhoseViewAFrameIsWhereServersWriteIt) {
+  EXPECT_FALSE(Read(FrameResponse().SerializeAsString())->own_view);
+  v1::Frame view;
+  view.set_own_view(true);
+  const std::string frame = view.SerializeAsString() + FrameResponse().frame().SerializeAsString();
+  const auto read = ReadFrame(frame);
+  ASSERT_TRUE(read.has_value());
+  EXPECT_TRUE(read->own_view);
+  EXPECT_EQ(read->sequence, 70000);
+  EXPECT_EQ(read->scene_revision, 300);
+}
+
 TEST(ReadResponse, FindsASequenceBehindThePicture) {
   v1::InteractResponse response = FrameResponse();
   response.mutable_frame()->clear_sequence();
   v1::Frame sequence;
   sequence.set_sequence(5);
   const std::string frame = response.frame().SerializeAsString() + sequence.SerializeAsString();
-  ASSERT_LT(frame.size(), 1U << 14);
-  std::string bytes = "\x12";
-  bytes.push_back(static_cast<char>((frame.size() & 0x7F) | 0x80));
-  bytes.push_back(static_cast<char>(frame.size() >> 7));
-  const auto read = Read(bytes + frame);
+  const auto read = ReadFrame(frame);
   ASSERT_TRUE(read.has_value());
   EXPECT_EQ(read->sequence, 5);
   EXPECT_EQ(read->scene_revision, 300);
