@@ -292,7 +292,6 @@ void App::Draw() {
     DrawTool(ui_, layout);
     DrawTimeLine(ui_, layout);
     DrawSessionBar(ui_, layout);
-    DrawAccuracy(ui_, layout);
     DrawNotices(ui_, layout);
     DrawPanel(ui_, layout);
     ui_.choices.focuses_panel = false;

@@ -87,6 +87,8 @@ std::string FormatQuantity(double value, const client::Limits& limits) {
   return absl::StrCat(FormatNumber(value * unit.factor), close ? "" : " ", unit.symbol);
 }
 
+std::string FormatPercent(double share) { return FormatNumber(100.0 * share) + " %"; }
+
 std::string FormatLength(double length_m) {
   if (std::abs(length_m) < 1000.0) return FormatNumber(length_m) + " m";
   return FormatNumber(length_m / 1000.0) + " km";
@@ -192,6 +194,28 @@ std::string DescribeAmount(const v1::FieldDescription& field) {
                            : field.units() == "kg m-3" ? "g/m³"
                                                        : "g/kg";
   return absl::StrCat("up to ", FormatNumber(1000.0 * field.maximum()), " ", unit);
+}
+
+std::string ErrorSource(const v1::AccuracyReport& report) {
+  if (!report.has_error_low() || !report.has_error_high()) return "from a table, until measured";
+  return absl::StrCat("measured: ", FormatNumber(100.0 * report.error_low()), " to ",
+                      FormatPercent(report.error_high()));
+}
+
+std::string DescribeError(const v1::AccuracyReport& report) {
+  const std::string error = FormatPercent(report.estimated_error());
+  if (!report.measured()) {
+    const std::string slices = report.has_discretisation_error()
+                                   ? ", few slices " + FormatPercent(report.discretisation_error())
+                                   : "";
+    return absl::StrCat("Estimated error ", error, " (light model ",
+                        FormatPercent(report.model_error()), slices, ")");
+  }
+  const std::string bias =
+      report.has_bias() ? absl::StrCat(", ", FormatPercent(std::abs(report.bias())), " too ",
+                                       report.bias() < 0.0F ? "dark" : "bright", " on the whole")
+                        : "";
+  return absl::StrCat("Measured error ", error, " (", ErrorSource(report), bias, ")");
 }
 
 }  // namespace thunderhead::desktop

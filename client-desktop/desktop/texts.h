@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "thunderhead/v1/frame.pb.h"
 #include "thunderhead/v1/scene.pb.h"
 #include "thunderhead/v1/storm.pb.h"
 #include "thunderhead_client/limits.h"
@@ -20,6 +21,7 @@ DisplayUnit DisplayUnitOf(const client::Limits& limits);
 // Three significant digits, without an exponent where the number is readable without.
 std::string FormatNumber(double value);
 std::string FormatQuantity(double value, const client::Limits& limits);
+std::string FormatPercent(double share);        // "8.4 %" of 0.084
 std::string FormatLength(double length_m);      // "8.4 km"
 std::string FormatBytes(double bytes);          // "1.2 MB"
 std::string FormatBitRate(double bytes_per_s);  // "1.4 Mbit/s"
@@ -40,5 +42,10 @@ std::string NameOf(v1::Hydrometeor hydrometeor);  // "Cloud"
 bool IsExtinction(const v1::FieldDescription& field);
 // "up to 8.2 g/kg", of mass by volume in g/m³, of extinction in /km.
 std::string DescribeAmount(const v1::FieldDescription& field);
+// "measured: 8.1 to 9.4 %", or where the error comes from until it is.
+std::string ErrorSource(const v1::AccuracyReport& report);
+// "Measured error 8.7 % (measured: 8.1 to 9.4 %, 2 % too dark on the whole)"; before it is
+// measured, the parts of the table's.
+std::string DescribeError(const v1::AccuracyReport& report);
 
 }  // namespace thunderhead::desktop

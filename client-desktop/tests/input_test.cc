@@ -367,6 +367,34 @@ TEST(Texts, AmountsAreInThePagesUnits) {
   }
 }
 
+TEST(Texts, TheErrorIsTheTablesUntilItIsMeasured) {
+  v1::AccuracyReport report;
+  report.set_estimated_error(0.135F);
+  report.set_model_error(0.128F);
+  EXPECT_EQ(ErrorSource(report), "from a table, until measured");
+  EXPECT_EQ(DescribeError(report), "Estimated error 13.5 % (light model 12.8 %)");
+  report.set_discretisation_error(0.007F);
+  EXPECT_EQ(DescribeError(report), "Estimated error 13.5 % (light model 12.8 %, few slices 0.7 %)");
+}
+
+TEST(Texts, AMeasuredErrorHasItsIntervalAndBias) {
+  v1::AccuracyReport report;
+  report.set_measured(true);
+  report.set_estimated_error(0.087F);
+  report.set_error_low(0.081F);
+  report.set_error_high(0.094F);
+  report.set_bias(-0.02F);
+  // The table's parts stay in the report.
+  report.set_model_error(0.128F);
+  report.set_discretisation_error(0.007F);
+  EXPECT_EQ(ErrorSource(report), "measured: 8.1 to 9.4 %");
+  EXPECT_EQ(DescribeError(report),
+            "Measured error 8.7 % (measured: 8.1 to 9.4 %, 2 % too dark on the whole)");
+  report.set_bias(0.02F);
+  EXPECT_EQ(DescribeError(report),
+            "Measured error 8.7 % (measured: 8.1 to 9.4 %, 2 % too bright on the whole)");
+}
+
 TEST(FieldColors, ComeBackFromTheScreen) {
   v1::Color color;
   color.set_red(0.5F);

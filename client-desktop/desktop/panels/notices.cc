@@ -1,4 +1,5 @@
-// Below the bar at the right: how far the picture is off, and what went wrong or happened.
+// Below the bar at the right, beside a panel that is open there: how far the picture is off, and
+// what went wrong or happened.
 #include <imgui.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "desktop/controls.h"
 #include "desktop/panels/panels.h"
 #include "desktop/style.h"
+#include "desktop/texts.h"
 
 namespace thunderhead::desktop {
 namespace {
@@ -33,8 +35,9 @@ std::string AccuracyText(const v1::Frame& frame) {
     return text;
   }
   if (!frame.has_accuracy()) return "";
-  return absl::StrFormat("This picture is about %.0f %% off",
-                         100.0F * frame.accuracy().estimated_error());
+  const v1::AccuracyReport& accuracy = frame.accuracy();
+  return absl::StrCat("This picture is ", FormatPercent(accuracy.estimated_error()), " off\n",
+                      ErrorSource(accuracy));
 }
 
 // Its right upper corner is at `at`; the next one's is below it.
@@ -56,12 +59,6 @@ void Notice(const Layout& layout, const char* id, const std::string& text, const
 
 }  // namespace
 
-void DrawAccuracy(Ui& ui, const Layout& layout) {
-  ImVec2 at(layout.window.x - layout.margin, layout.top());
-  if (ui.choices.panel != Panel::kNone) return;
-  Notice(layout, "accuracy", AccuracyText(ui.frame), ImGui::GetStyle().Colors[ImGuiCol_Text], at);
-}
-
 void DrawNotices(Ui& ui, const Layout& layout) {
   static int seen_count = 0;
   static Clock::time_point said_at{};
@@ -69,13 +66,11 @@ void DrawNotices(Ui& ui, const Layout& layout) {
     seen_count = ui.state.notice_count;
     said_at = Clock::now();
   }
-  const bool open = ui.choices.panel != Panel::kNone;
-  // Beside a panel that is open, below the accuracy otherwise.
   ImVec2 at(layout.window.x - layout.margin, layout.top());
-  if (open) {
+  if (ui.choices.panel == Panel::kNone) {
+    Notice(layout, "accuracy", AccuracyText(ui.frame), ImGui::GetStyle().Colors[ImGuiCol_Text], at);
+  } else {
     at.x -= layout.panel_width() + layout.margin;
-  } else if (!AccuracyText(ui.frame).empty()) {
-    at.y += 4.2F * layout.margin;
   }
   if (ui.state.link != client::Link::kLive) Notice(layout, "link", ui.state.reason, kBad, at);
   if (ui.state.problem) Notice(layout, "problem", ui.state.problem->message(), kBad, at);

@@ -32,9 +32,8 @@ void DrawToolRail(Ui& ui, const Layout& layout);
 // The tool that is open.
 void DrawTool(Ui& ui, const Layout& layout);
 void DrawTimeLine(Ui& ui, const Layout& layout);
-// Who steers, and the way back from looking around; the accuracy; notices.
+// Who steers, and the way back from looking around; the accuracy and notices.
 void DrawSessionBar(Ui& ui, const Layout& layout);
-void DrawAccuracy(Ui& ui, const Layout& layout);
 void DrawNotices(Ui& ui, const Layout& layout);
 // The panel at the right that is open.
 void DrawPanel(Ui& ui, const Layout& layout);

@@ -46,12 +46,7 @@ void DrawAccuracyRows(const v1::Frame& frame) {
   Row("Technique", frame.modelled().technique());
   if (!frame.has_accuracy()) return;
   const v1::AccuracyReport& accuracy = frame.accuracy();
-  std::string error = absl::StrFormat("%.1f %%: model %.1f %%", 100.0F * accuracy.estimated_error(),
-                                      100.0F * accuracy.model_error());
-  if (accuracy.has_discretisation_error()) {
-    absl::StrAppendFormat(&error, ", slices %.1f %%", 100.0F * accuracy.discretisation_error());
-  }
-  Row("Error", error);
+  Row("Error", DescribeError(accuracy));
   if (accuracy.has_unmet()) Row("Not reached", accuracy.unmet().message());
   if (frame.modelled().traced_paths() > 0) {
     Row("Paths traced",
