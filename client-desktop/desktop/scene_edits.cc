@@ -1,12 +1,15 @@
 #include "desktop/scene_edits.h"
 
+#include <google/protobuf/util/message_differencer.h>
+
+#include <algorithm>
+
 namespace thunderhead::desktop {
 namespace {
 
-// The others are the papers'.
-bool IsQuality(v1::Preset preset) {
-  return preset == v1::PRESET_FAST || preset == v1::PRESET_BALANCED || preset == v1::PRESET_TRUE;
-}
+// An error within reach for every view, and a time per frame that still moves smoothly.
+constexpr float kFirstError = 0.5F;
+constexpr float kFirst_ms = 100.0F;
 
 }  // namespace
 
@@ -32,6 +35,30 @@ void ChooseParticleSizes(v1::Scene& scene, v1::ParticleSizes sizes) {
     field.clear_sizes();
     field.clear_radius_m();
   }
+}
+
+void ChooseGoal(v1::Scene& scene, v1::Accuracy::LimitCase goal) {
+  scene.clear_accuracy();
+  if (goal == v1::Accuracy::kMaxError) scene.mutable_accuracy()->set_max_error(kFirstError);
+  if (goal == v1::Accuracy::kMaxMilliseconds) {
+    scene.mutable_accuracy()->set_max_milliseconds(kFirst_ms);
+  }
+}
+
+bool IsQuality(v1::Preset preset) {
+  return preset == v1::PRESET_FAST || preset == v1::PRESET_BALANCED || preset == v1::PRESET_TRUE;
+}
+
+v1::Preset PresetOf(const v1::Scene& scene, const v1::GetServerInfoResponse& server) {
+  if (scene.accuracy().limit_case() != v1::Accuracy::LIMIT_NOT_SET) return v1::PRESET_UNSPECIFIED;
+  if (scene.rendering().has_preset()) return scene.rendering().preset();
+  const auto& presets = server.presets();
+  const auto found =
+      std::find_if(presets.begin(), presets.end(), [&](const v1::PresetDescription& each) {
+        return google::protobuf::util::MessageDifferencer::Equals(each.rendering(),
+                                                                  scene.rendering());
+      });
+  return found == presets.end() ? v1::PRESET_UNSPECIFIED : found->preset();
 }
 
 }  // namespace thunderhead::desktop

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "thunderhead/v1/scene.pb.h"
+#include "thunderhead/v1/thunderhead.pb.h"
 
 namespace thunderhead::desktop {
 
@@ -18,5 +19,14 @@ void ChoosePreset(v1::Scene& scene, v1::Preset preset);
 
 // Where the sizes of all fields' particles come from: the fields no longer say so themselves.
 void ChooseParticleSizes(v1::Scene& scene, v1::ParticleSizes sizes);
+
+// The accuracy or the speed that the server is to reach in place of a quality, at first the page's;
+// LIMIT_NOT_SET: none.
+void ChooseGoal(v1::Scene& scene, v1::Accuracy::LimitCase goal);
+// True for those that trade speed for accuracy; the other presets are the papers'.
+bool IsQuality(v1::Preset preset);
+// The preset that the scene's rendering is, which the server replaces by what it stands for;
+// PRESET_UNSPECIFIED for none, or while an accuracy goal overrides it.
+v1::Preset PresetOf(const v1::Scene& scene, const v1::GetServerInfoResponse& server);
 
 }  // namespace thunderhead::desktop

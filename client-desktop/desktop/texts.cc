@@ -187,6 +187,29 @@ std::string NameOf(v1::Hydrometeor hydrometeor) {
   return name;
 }
 
+std::string NameOf(v1::Preset preset) {
+  switch (preset) {
+    case v1::PRESET_UNSPECIFIED:
+      return "None";
+    case v1::PRESET_FAST:
+      return "Fast";
+    case v1::PRESET_BALANCED:
+      return "Balanced";
+    case v1::PRESET_TRUE:
+      return "True";
+    case v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO:
+      return "Uniform phase, low albedo";
+    case v1::PRESET_UNIFORM_PHASE_TRANSLUCENT:
+      return "Uniform phase, translucent";
+    case v1::PRESET_PER_FIELD_PHASE_TRANSLUCENT:
+      return "Phase per field, translucent";
+    case v1::PRESET_PER_FIELD_PHASE_DETAIL_TRANSLUCENT:
+      return "Phase per field, detail, translucent";
+    default:
+      return absl::StrCat("Preset ", static_cast<int>(preset));
+  }
+}
+
 bool IsExtinction(const v1::FieldDescription& field) { return field.units() == "m-1"; }
 
 std::string DescribeAmount(const v1::FieldDescription& field) {

@@ -38,6 +38,7 @@ std::string CompassPoint(double azimuth_deg);  // "NNE"
 std::string DescribePose(const client::Pose& pose);
 std::string DescribeSun(const v1::Sun& sun);
 std::string NameOf(v1::Hydrometeor hydrometeor);  // "Cloud"
+std::string NameOf(v1::Preset preset);            // "Uniform phase, low albedo"
 // The field is extinction already: the sizes of its particles have no effect.
 bool IsExtinction(const v1::FieldDescription& field);
 // "up to 8.2 g/kg", of mass by volume in g/m³, of extinction in /km.

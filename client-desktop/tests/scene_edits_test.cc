@@ -58,6 +58,37 @@ TEST(ChoosePreset, AlsoSaysWhereSizesComeFrom) {
   EXPECT_EQ(scene.particle_sizes(), v1::PARTICLE_SIZES_PAPERS);
 }
 
+TEST(ChooseGoal, IsOneOfTwoOrNone) {
+  v1::Scene scene = AScene();
+  ChooseGoal(scene, v1::Accuracy::kMaxError);
+  EXPECT_EQ(scene.accuracy().max_error(), 0.5F);
+  ChooseGoal(scene, v1::Accuracy::kMaxMilliseconds);
+  EXPECT_EQ(scene.accuracy().limit_case(), v1::Accuracy::kMaxMilliseconds);
+  EXPECT_EQ(scene.accuracy().max_milliseconds(), 100.0F);
+  ChooseGoal(scene, v1::Accuracy::LIMIT_NOT_SET);
+  EXPECT_FALSE(scene.has_accuracy());
+}
+
+TEST(PresetOf, IsFoundByItsSettingsUnlessAGoalOverridesIt) {
+  v1::GetServerInfoResponse server;
+  v1::PresetDescription& fast = *server.add_presets();
+  fast.set_preset(v1::PRESET_FAST);
+  fast.mutable_rendering()->mutable_light_volume();
+  v1::PresetDescription& papers = *server.add_presets();
+  papers.set_preset(v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO);
+  papers.mutable_rendering()->mutable_half_angle();
+  v1::Scene scene;
+  scene.mutable_rendering()->set_preset(v1::PRESET_TRUE);
+  EXPECT_EQ(PresetOf(scene, server), v1::PRESET_TRUE);
+  *scene.mutable_rendering() = papers.rendering();
+  EXPECT_EQ(PresetOf(scene, server), v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO);
+  ChooseGoal(scene, v1::Accuracy::kMaxError);
+  EXPECT_EQ(PresetOf(scene, server), v1::PRESET_UNSPECIFIED);
+  ChooseGoal(scene, v1::Accuracy::LIMIT_NOT_SET);
+  scene.mutable_rendering()->mutable_half_angle()->set_detail(true);
+  EXPECT_EQ(PresetOf(scene, server), v1::PRESET_UNSPECIFIED);
+}
+
 TEST(ChooseParticleSizes, HoldsForFieldsThatHadSizesOfTheirOwn) {
   v1::Scene scene = AScene();
   scene.mutable_fields(0)->set_sizes(v1::PARTICLE_SIZES_GIVEN);

@@ -1,14 +1,19 @@
-// Quality in words, what the picture misses, colours, exposure, sky and ground.
-#include <google/protobuf/util/message_differencer.h>
+// Quality in words, what the picture misses, colours, exposure, sky and ground, the accuracy asked
+// for and the papers' modes.
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "desktop/controls.h"
 #include "desktop/panels/panels.h"
 #include "desktop/scene_edits.h"
+#include "desktop/texts.h"
 
 namespace thunderhead::desktop {
 namespace {
@@ -16,45 +21,69 @@ namespace {
 constexpr std::array<v1::Preset, 3> kQualities{v1::PRESET_FAST, v1::PRESET_BALANCED,
                                                v1::PRESET_TRUE};
 
-bool HasGoal(const v1::Scene& scene) {
-  return scene.accuracy().limit_case() != v1::Accuracy::LIMIT_NOT_SET;
-}
-
-// The server replaces a preset by what it stands for. -1 for none of the three, or while an
-// accuracy goal overrides it.
-int QualityOf(const Ui& ui) {
-  if (HasGoal(ui.state.scene)) return -1;
-  const v1::Rendering& rendering = ui.state.scene.rendering();
-  for (int i = 0; i < static_cast<int>(kQualities.size()); ++i) {
-    const v1::Preset preset = kQualities.at(static_cast<std::size_t>(i));
-    if (rendering.has_preset() && rendering.preset() == preset) return i;
-    for (const v1::PresetDescription& each : ui.storms.server.presets()) {
-      if (each.preset() == preset &&
-          google::protobuf::util::MessageDifferencer::Equals(each.rendering(), rendering)) {
-        return i;
-      }
-    }
+std::string WordsOf(const v1::Scene& scene, v1::Preset preset) {
+  switch (preset) {
+    case v1::PRESET_FAST:
+      return "Fewer samples and no fine detail.";
+    case v1::PRESET_BALANCED:
+      return "Fine detail; traced light while it rests.";
+    case v1::PRESET_TRUE:
+      return "As Balanced; files wait for traced light.";
+    case v1::PRESET_UNSPECIFIED:
+      return scene.accuracy().limit_case() == v1::Accuracy::LIMIT_NOT_SET
+                 ? "Custom: as every setting (X) says."
+                 : "Set by the goal below.";
+    default:
+      return absl::StrCat("As in the paper: ", NameOf(preset), ".");
   }
-  return -1;
 }
 
-void DrawQuality(Ui& ui) {
-  int quality = QualityOf(ui);
+void Choose(Ui& ui, v1::Preset preset) {
+  ui.Edit("rendering", [=](v1::Scene& scene) { ChoosePreset(scene, preset); });
+}
+
+void DrawQuality(Ui& ui, v1::Preset preset) {
+  const auto* const found = std::find(kQualities.begin(), kQualities.end(), preset);
+  int quality = found == kQualities.end() ? -1 : static_cast<int>(found - kQualities.begin());
   if (Segments("quality", {"Fast", "Balanced", "True"}, quality)) {
-    const v1::Preset preset = kQualities.at(static_cast<std::size_t>(quality));
-    ui.Edit("rendering", [=](v1::Scene& scene) { ChoosePreset(scene, preset); });
+    Choose(ui, kQualities.at(static_cast<std::size_t>(quality)));
   }
-  const std::array<const char*, 4> words{
-      HasGoal(ui.state.scene) ? "Set by the accuracy goal, which is among every setting (X)."
-                              : "Custom: as every setting (X) says.",
-      "Fewer samples and no fine detail.", "Fine detail; traced light while it rests.",
-      "As Balanced; files wait for traced light."};
-  Quiet(words.at(static_cast<std::size_t>(quality + 1)));
+  Quiet(WordsOf(ui.state.scene, preset));
   std::string missing;
   for (const v1::NotShown& each : ui.frame.modelled().not_shown()) {
     absl::StrAppend(&missing, missing.empty() ? "Not shown: " : ", ", each.message());
   }
   if (!missing.empty()) Quiet(missing + ".");
+}
+
+// The accuracy or the speed that the server is to reach.
+void DrawGoal(Ui& ui) {
+  int goal = ui.state.scene.accuracy().limit_case();
+  if (Choice("Accuracy",
+             {{v1::Accuracy::LIMIT_NOT_SET, "As the quality above"},
+              {v1::Accuracy::kMaxError, "At most this error"},
+              {v1::Accuracy::kMaxMilliseconds, "At most this time a frame"}},
+             goal)) {
+    ui.Edit("accuracy", [=](v1::Scene& scene) {
+      ChooseGoal(scene, static_cast<v1::Accuracy::LimitCase>(goal));
+    });
+  }
+  // One of them, or none.
+  Setting(ui, "accuracy.max_error", "Error");
+  Setting(ui, "accuracy.max_milliseconds", "Time");
+  if (ui.frame.accuracy().has_unmet()) Quiet(ui.frame.accuracy().unmet().message() + ".");
+}
+
+void DrawPapersModes(Ui& ui, v1::Preset preset) {
+  std::vector<std::pair<int, std::string>> options{
+      {v1::PRESET_UNSPECIFIED, NameOf(v1::PRESET_UNSPECIFIED)}};
+  for (const v1::PresetDescription& each : ui.storms.server.presets()) {
+    if (!IsQuality(each.preset())) options.emplace_back(each.preset(), NameOf(each.preset()));
+  }
+  int mode = IsQuality(preset) ? v1::PRESET_UNSPECIFIED : preset;
+  if (Choice("Papers' settings", options, mode) && mode != v1::PRESET_UNSPECIFIED) {
+    Choose(ui, static_cast<v1::Preset>(mode));
+  }
 }
 
 // Each technique has these settings under its own name, or not at all.
@@ -91,7 +120,8 @@ void DrawExposure(Ui& ui) {
 
 void LookTool(Ui& ui) {
   ImGui::BeginDisabled(!ui.state.Steers());
-  DrawQuality(ui);
+  const v1::Preset preset = PresetOf(ui.state.scene, ui.storms.server);
+  DrawQuality(ui, preset);
   ImGui::Spacing();
   DrawTechniqueSettings(ui);
   DrawExposure(ui);
@@ -100,6 +130,8 @@ void LookTool(Ui& ui) {
   Setting(ui, "sky.ground_albedo", "Albedo of the ground");
   Setting(ui, "display.white_balance", "White balance");
   Setting(ui, "ground.rings", "Rings every 10 km");
+  DrawGoal(ui);
+  DrawPapersModes(ui, preset);
   ImGui::EndDisabled();
 }
 
