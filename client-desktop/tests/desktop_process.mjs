@@ -22,11 +22,9 @@ export function startDesktop(display, port, flags = []) {
     });
   }
   const ended = new Promise((resolve) => child.once("exit", resolve));
-  const status = () => {
-    // Just after it was begun anew it is empty.
-    const line = existsSync(file) ? readFileSync(file, "utf8").split("\n").at(-2) : undefined;
-    return line === undefined ? {} : JSON.parse(line);
-  };
+  // Just after it was begun anew it is empty.
+  const lines = () => (existsSync(file) ? readFileSync(file, "utf8").split("\n").slice(0, -1) : []);
+  const status = () => JSON.parse(lines().at(-1) ?? "{}");
   return {
     child,
     ended,
@@ -42,6 +40,11 @@ export function startDesktop(display, port, flags = []) {
         if (Date.now() > deadline) throw new Error(`never came: ${what}; ${JSON.stringify(now)}`);
         await sleep(100);
       }
+    },
+    // The status after all that was done to it before this call: the line that comes next may have been begun before.
+    async settled() {
+      const count = lines().length;
+      return this.until("two more lines", () => lines().length >= count + 2);
     },
     async stop() {
       if (child.exitCode === null && child.signalCode === null) child.kill();

@@ -13,6 +13,8 @@ import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 1280, height: 800 };
 const WINDOW = ["--width", String(SIZE.width), "--height", String(SIZE.height), "--scale", "1"];
+// The bar about who steers, above the time line.
+const SESSION_BAR = { x: 300, y: 660, width: 680, height: 36 };
 const MIDDLE = { x: 700, y: 330 };
 
 let display;
@@ -151,7 +153,7 @@ test("a browser joins as a viewer and follows", async () => {
     await desktop.until("a request", (now) => now.asking === 1);
     await sleep(1000);
     display.screenshot("asked");
-    const give = accentIn(display.pixels(), { x: 300, y: 660, width: 680, height: 36 });
+    const give = accentIn(display.pixels(), SESSION_BAR);
     await display.click(give.x, give.y);
     await desktop.until("gave control", (now) => !now.steers);
     const turnedBefore = desktop.status().azimuth_deg;
@@ -209,6 +211,9 @@ test("a browser presents, the window views, looks around and comes back", async 
     assert.ok(apart(await azimuthOf(page), azimuth) < 0.5, "the presenter's view moved");
     await sleep(500);
     display.screenshot("looking_around");
+    const back = accentIn(display.pixels(), SESSION_BAR);
+    await display.click(back.x, back.y);
+    await viewer.until("back with the presenter", (now) => !now.looks_around && apart(now.azimuth_deg, azimuth) < 0.5);
   } finally {
     await browser.close();
   }
