@@ -22,19 +22,20 @@ absl::Status SdlError(const char* what) {
                    "; it needs a display (DISPLAY or WAYLAND_DISPLAY) and OpenGL 3"));
 }
 
-float ScaleOfMonitor(SDL_Window* window) {
+// 0 where it is not known.
+float DpiOfMonitor(SDL_Window* window) {
   float dpi = 0.0F;
   const int display = SDL_GetWindowDisplayIndex(window);
-  if (display < 0 || SDL_GetDisplayDPI(display, nullptr, &dpi, nullptr) != 0) return 1.0F;
-  return ScaleOfDpi(dpi);
+  if (display < 0 || SDL_GetDisplayDPI(display, nullptr, &dpi, nullptr) != 0) return 0.0F;
+  return dpi;
 }
 
 }  // namespace
 
-float ScaleOfDpi(float dpi) {
+float ScaleOfMonitor(float dpi, float pixels_per_unit) {
   constexpr float kUsual_dpi = 96.0F;
   constexpr float kStep = 0.25F;
-  if (!(dpi >= kUsual_dpi && dpi <= 4.0F * kUsual_dpi)) return 1.0F;
+  if (pixels_per_unit > 1.0F || !(dpi >= kUsual_dpi && dpi <= 4.0F * kUsual_dpi)) return 1.0F;
   return std::round(dpi / kUsual_dpi / kStep) * kStep;
 }
 
@@ -94,10 +95,10 @@ Window::~Window() {
 }
 
 void Window::Rescale() {
-  const float scale =
-      options_.scale > 0.0 ? static_cast<float>(options_.scale) : ScaleOfMonitor(window_);
   const float pixels_per_unit =
       static_cast<float>(width_px()) / std::max(1.0F, static_cast<float>(width()));
+  const float scale = options_.scale > 0.0 ? static_cast<float>(options_.scale)
+                                           : ScaleOfMonitor(DpiOfMonitor(window_), pixels_per_unit);
   if (scale == scale_ && pixels_per_unit == pixels_per_unit_) return;
   scale_ = scale;
   pixels_per_unit_ = pixels_per_unit;

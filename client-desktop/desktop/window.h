@@ -19,9 +19,10 @@ struct WindowOptions {
   double scale = 0.0;  // of texts and controls; 0: as the monitor asks
 };
 
-// Of texts and controls. Monitors report sizes that do not make sense, projectors above all: 1
-// then.
-float ScaleOfDpi(float dpi);
+// Of texts and controls, in the window's units. Monitors report sizes that do not make sense,
+// projectors above all: 1 then. `dpi` counts the monitor's pixels: where a unit is several of them,
+// as under Wayland, the desktop has scaled the window already, and it is 1 as well.
+float ScaleOfMonitor(float dpi, float pixels_per_unit);
 
 class Window {
  public:

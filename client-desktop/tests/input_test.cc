@@ -435,10 +435,15 @@ std::string TextOf(const std::string& path) {
 TEST(Scale, IsThatOfTheMonitorInQuartersWhereThatMakesSense) {
   for (const auto& [dpi, scale] :
        {std::pair{96.0F, 1.0F}, {110.0F, 1.25F}, {144.0F, 1.5F}, {192.0F, 2.0F}, {384.0F, 4.0F}}) {
-    EXPECT_EQ(ScaleOfDpi(dpi), scale) << dpi;
+    EXPECT_EQ(ScaleOfMonitor(dpi, 1.0F), scale) << dpi;
   }
   for (const float dpi : {0.0F, -1.0F, 40.0F, 5000.0F, std::nanf("")})
-    EXPECT_EQ(ScaleOfDpi(dpi), 1.0F);
+    EXPECT_EQ(ScaleOfMonitor(dpi, 1.0F), 1.0F);
+}
+
+TEST(Scale, IsOneWhereTheDesktopScalesTheWindowItself) {
+  EXPECT_EQ(ScaleOfMonitor(192.0F, 2.0F), 1.0F);
+  EXPECT_EQ(ScaleOfMonitor(144.0F, 1.5F), 1.0F);
 }
 
 TEST(StatusFile, ThatCannotBeWrittenIsNamed) {

@@ -10,10 +10,11 @@ import { deflateSync } from "node:zlib";
 export const OUTPUT = fileURLToPath(new URL("output/", import.meta.url));
 const START_TIMEOUT_MS = 20_000;
 
-// With `managed` a window manager runs in it, which programs need to change between full screen and a window.
-export async function startDisplay(width, height, { managed = false } = {}) {
+// With `dpi` it reports a monitor as fine as that, with `managed` a window manager runs in it, which programs need to change between full screen and a window.
+export async function startDisplay(width, height, { managed = false, dpi } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "thunderhead-xvfb-"));
   const flags = ["-screen", "0", `${width}x${height}x24`, "-fbdir", folder, "-nolisten", "tcp", "-displayfd", "3"];
+  if (dpi !== undefined) flags.push("-dpi", String(dpi));
   const child = spawn("Xvfb", flags, { stdio: ["ignore", "ignore", "ignore", "pipe"] });
   const number = await new Promise((resolve, reject) => {
     const timer = setTimeout(() => reject(new Error("Xvfb did not start")), START_TIMEOUT_MS);
@@ -24,6 +25,8 @@ export async function startDisplay(width, height, { managed = false } = {}) {
     });
   });
   const env = { ...process.env, DISPLAY: `:${number}`, LIBGL_ALWAYS_SOFTWARE: "1", SDL_VIDEODRIVER: "x11" };
+  // Xvfb tells a size of its screen, but none of its outputs by RandR.
+  if (dpi !== undefined) env.SDL_VIDEO_X11_XRANDR = "0";
   // It needs no file of fonts for that one.
   const manager = managed ? spawn("evilwm", ["-fn", "fixed"], { env, stdio: "inherit" }) : undefined;
   const xdotool = (...words) => execFileSync("xdotool", words.map(String), { env, encoding: "utf8" });
