@@ -6,6 +6,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 import { freePort, ROOT, startServer } from "../../tests/e2e/server_process.mjs";
+import { throttledLink } from "../../tests/e2e/throttled_link.mjs";
 import { rests, startDesktop } from "./desktop_process.mjs";
 import { difference, eventually, pixelsLike, region } from "./pixels.mjs";
 import { startDisplay } from "./xvfb.mjs";
@@ -49,6 +50,10 @@ after(async () => {
 
 // That view's camera is in the picture.
 const shows = (at) => (now) => now.view === at && now.camera === ["orbit", "top_down"][at] && now.shown_revision === now.revision;
+
+// The corner has a warning.
+const CORNER = { x: 0, y: SIZE.height - 60, width: SIZE.width, height: 60 };
+const warns = () => pixelsLike(region(display.pixels(), CORNER), [255, 140, 122]) > 100;
 
 test("every view is taken by the server, round after round", async () => {
   for (const at of [0, 1, 0, 1, 0]) {
@@ -101,7 +106,45 @@ test("a view that the server refuses says why", async () => {
   kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "3600", "--views", view]);
   const { notice } = await kiosk.until("the refusal", (now) => now.notice !== "");
   assert.match(notice, /elevation_deg/);
-  const corner = { x: 0, y: SIZE.height - 60, width: SIZE.width, height: 60 };
-  await eventually("the wall says nothing", () => pixelsLike(region(display.pixels(), corner), [255, 140, 122]) > 100);
+  await eventually("the wall says nothing", warns);
   display.screenshot("kiosk_refused");
+});
+
+test("a link that falls silent is a loss, which the wall tells and comes back from", async () => {
+  await kiosk.stop();
+  const link = await throttledLink({ port: serverFlags.grpcPort, kbitPerS: 100_000, roundTripMs: 2 });
+  try {
+    kiosk = startDesktop(display, link.port, ["--kiosk", "--view-seconds", "3600", "--views", join(folder, "view_0.json")]);
+    const { joined } = await kiosk.until("the view", (now) => shows(0)(now) && rests(now));
+    link.silence();
+    await kiosk.until("the loss", (now) => now.link === "lost", 30_000);
+    await eventually("the wall says nothing", warns);
+    display.screenshot("kiosk_silent");
+    link.heal();
+    await kiosk.until("back", (now) => now.joined > joined && shows(0)(now) && now.link === "live");
+    await eventually("the warning stays", () => !warns());
+  } finally {
+    await kiosk.stop();
+    await link.close();
+  }
+});
+
+test("with the viewers' key it shows its views' cameras to itself, without views what the presenter shows", async () => {
+  const view = (at) => ["--view-seconds", "3600", "--views", join(folder, `view_${at}.json`)];
+  const presenter = startDesktop(display, serverFlags.grpcPort, ["--kiosk", ...view(1)]);
+  try {
+    const { viewer_key, revision } = await presenter.until("the presenter's view", (now) => now.camera === "top_down" && rests(now));
+    const key = ["--kiosk", "--key", viewer_key];
+    kiosk = startDesktop(display, serverFlags.grpcPort, [...key, ...view(0)]);
+    const own = await kiosk.until("the view", (now) => now.camera === "orbit" && Math.abs(now.azimuth_deg - 45) < 0.5);
+    assert.deepEqual({ role: own.role, looks_around: own.looks_around }, { role: "viewer", looks_around: true });
+    const { camera, revision: later } = await presenter.settled();
+    assert.deepEqual({ camera, revision: later }, { camera: "top_down", revision }, "it has changed the presenter's scene");
+    await kiosk.stop();
+    kiosk = startDesktop(display, serverFlags.grpcPort, key);
+    const followed = await kiosk.until("the presenter's view", (now) => now.camera === "top_down" && now.frames > 0);
+    assert.equal(followed.looks_around, false);
+  } finally {
+    await presenter.stop();
+  }
 });
