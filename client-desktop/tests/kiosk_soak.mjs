@@ -17,7 +17,7 @@ const seconds = Number(values.seconds);
 const restartEvery = Number(values["restart-every"]);
 const VIEWS = ["west.json", "above.json"].map((name) => fileURLToPath(new URL(`../../deploy/views/${name}`, import.meta.url)));
 // Growth over the second half that is taken for a leak, in bytes: a kiosk that leaked a picture of 960 x 540 a view would exceed it.
-const MAX_GROWTH = 4e6;
+const MAX_GROWTH = 2e6;
 
 const display = await startDisplay(960, 540);
 const state = mkdtempSync(join(tmpdir(), "thunderhead-state-"));
