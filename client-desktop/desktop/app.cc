@@ -44,6 +44,12 @@ bool Differs(const v1::Window& a, const v1::Window& b) {
   return a.width_px() != b.width_px() || a.height_px() != b.height_px() || a.hidden() != b.hidden();
 }
 
+// As the last drawing left it.
+KeyFocus FocusNow() {
+  const ImGuiIO& io = ImGui::GetIO();
+  return {io.WantTextInput, io.WantCaptureKeyboard && (io.NavVisible || ImGui::IsAnyItemActive())};
+}
+
 // True for an event after which another control, or none, may have the keyboard.
 bool MovesFocus(const SDL_Event& event) {
   if (event.type == SDL_MOUSEBUTTONDOWN || event.type == SDL_MOUSEBUTTONUP) return true;
@@ -186,7 +192,8 @@ bool App::TakeEvents(int timeout_ms) {
       TakeEvent(event);
       if (MovesFocus(event)) settling_draws_ = kFocusDraws;
       // ImGui sees a key that is down when it draws: a press and a release between two is none.
-      if (event.type == SDL_KEYDOWN && ImGui::GetIO().WantTextInput) {
+      const KeyFocus focus = FocusNow();
+      if (event.type == SDL_KEYDOWN && (focus.text || focus.controls)) {
         settling_draws_ = std::max(settling_draws_, 1);
       }
     }
@@ -199,11 +206,9 @@ bool App::TakeEvent(const SDL_Event& event) {
   redraw_until_ = Clock::now() + kSettles;
   if (event.type == SDL_WINDOWEVENT) resized_at_ = Clock::now();
   if (flags_.kiosk) return false;
-  const ImGuiIO& io = ImGui::GetIO();
   pointer_.SetSize(window_->width(), window_->height());
   pointer_.SetTool(stage_.HandTool());
-  const KeyFocus focus{io.WantTextInput,
-                       io.WantCaptureKeyboard && (io.NavVisible || ImGui::IsAnyItemActive())};
+  const KeyFocus focus = FocusNow();
   if (event.type == SDL_KEYDOWN) return TakeKey(event.key, focus, keys_);
   if (event.type == SDL_TEXTINPUT) {
     return TakeText(event.text.text, static_cast<Uint16>(SDL_GetModState()), focus, keys_);

@@ -49,17 +49,22 @@ std::string JsonString(const std::string& text) {
 struct View {
   const char* kind = "none";
   double azimuth_deg = 0.0;
+  // Where the camera stands, or what it turns around or hangs over, from the storm's middle.
+  double x_m = 0.0;
+  double y_m = 0.0;
 };
 
 View ViewOf(const Ui& ui) {
   const auto pose = client::PoseOf(ui.state.shown_camera);
   if (!pose) return {};
-  if (const auto* orbit = std::get_if<client::OrbitPose>(&*pose))
-    return {"orbit", orbit->azimuth_deg};
-  if (const auto* spotter = std::get_if<client::SpotterPose>(&*pose)) {
-    return {"spotter", spotter->azimuth_deg};
+  if (const auto* orbit = std::get_if<client::OrbitPose>(&*pose)) {
+    return {"orbit", orbit->azimuth_deg, orbit->target_m[0], orbit->target_m[1]};
   }
-  return {"top_down", 0.0};
+  if (const auto* spotter = std::get_if<client::SpotterPose>(&*pose)) {
+    return {"spotter", spotter->azimuth_deg, spotter->place_m[0], spotter->place_m[1]};
+  }
+  const auto& top_down = std::get<client::TopDownPose>(*pose);
+  return {"top_down", 0.0, top_down.center_m[0], top_down.center_m[1]};
 }
 
 // Of all threads of this process.
@@ -119,7 +124,8 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
       absl::StrFormat(
           R"({"t_s":%.1f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
           R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
-          R"("camera":"%s","azimuth_deg":%.2f,"refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
+          R"("camera":"%s","azimuth_deg":%.2f,"x_m":%.1f,"y_m":%.1f,"sun_azimuth_deg":%.2f,"sun_elevation_deg":%.2f,)"
+          R"("refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
           std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
           JsonString(ui.state.reason),
           JsonString(ui.state.problem ? ui.state.problem->message() : ""),
@@ -127,7 +133,8 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
           ui.state.Presents() ? "presenter" : "viewer", ui.state.Steers() ? "true" : "false",
           ui.state.looks_around ? "true" : "false", ui.state.presence.people_size(), asking,
           ui.state.viewer_key, ui.state.scene.storm_id(), ui.time_index(), ui.state.scene_revision,
-          ui.frame.scene_revision(), camera.kind, camera.azimuth_deg,
+          ui.frame.scene_revision(), camera.kind, camera.azimuth_deg, camera.x_m, camera.y_m,
+          ui.state.shown_sun.azimuth_deg(), ui.state.shown_sun.elevation_deg(),
           ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
           ui.state.pointers.pointers_size(), view) +
       absl::StrFormat(

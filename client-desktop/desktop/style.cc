@@ -1,5 +1,7 @@
 #include "desktop/style.h"
 
+#include <imgui_internal.h>
+
 #include <array>
 #include <filesystem>
 #include <string>
@@ -93,6 +95,15 @@ bool BeginPanel(const char* name, const ImVec2& place, const ImVec2& size, ImGui
       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing |
       ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoBringToFrontOnFocus;
   return ImGui::Begin(name, nullptr, kFlags | more);
+}
+
+void GiveKeysToPanel() {
+  ImGui::SetWindowFocus();
+  // A window that is focused so marks no control, and the arrows would still turn the camera.
+  ImGuiContext& context = *ImGui::GetCurrentContext();
+  ImGui::NavInitWindow(context.CurrentWindow, true);
+  context.NavDisableHighlight = false;
+  context.NavDisableMouseHover = true;
 }
 
 }  // namespace thunderhead::desktop

@@ -23,4 +23,8 @@ ImFont* SmallFont();
 bool BeginPanel(const char* name, const ImVec2& place, const ImVec2& size,
                 ImGuiWindowFlags more = 0);
 
+// Gives the keyboard to the panel that was begun: its first control is marked, arrows choose
+// another one.
+void GiveKeysToPanel();
+
 }  // namespace thunderhead::desktop

@@ -37,7 +37,7 @@ void DrawPanel(Ui& ui, const Layout& layout) {
     ImGui::SetNextWindowSizeConstraints({width, 0.0F}, {width, most});
     const ImVec2 place(layout.window.x - layout.margin - width, layout.top());
     if (BeginPanel(each.title, place, {width, each.whole ? most : 0.0F})) {
-      if (ui.choices.focuses_panel) ImGui::SetWindowFocus();
+      if (ui.choices.focuses_panel) GiveKeysToPanel();
       Title(each.title, each.key);
       ImGui::Spacing();
       each.draw(ui);

@@ -65,7 +65,7 @@ void DrawTool(Ui& ui, const Layout& layout) {
                                         {layout.tool_width, layout.bottom() - layout.top()});
     // As high as its controls.
     if (BeginPanel(each.title, place, {layout.tool_width, 0.0F})) {
-      if (ui.choices.focuses_panel) ImGui::SetWindowFocus();
+      if (ui.choices.focuses_panel) GiveKeysToPanel();
       Title(each.title, each.key);
       ImGui::Spacing();
       each.draw(ui);
