@@ -143,7 +143,7 @@ test("fingers find every button, slider and switch", async () => {
 
 const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
-// Texts over the picture that leave the window, or lie on one another or under a bar.
+// Texts over the picture that leave the window, or lie on one another or under a bar; and bars that touch the window's edge.
 const unreadable = (page) =>
   page.evaluate(() => {
     const boxes = (selector) =>
@@ -151,12 +151,15 @@ const unreadable = (page) =>
         .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect() }))
         .filter(({ box }) => box.width > 0);
     const texts = boxes("[data-testid=annotations] text");
-    const over = [...texts, ...boxes(".top-bar, .time-line, .rail, .truth, aside")];
+    const bars = boxes(".top-bar, .time-line, .rail, .truth, aside");
+    const over = [...texts, ...bars];
     const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
-    return texts.flatMap(({ name, box }, at) => [
+    const atEdge = bars.filter(({ box }) => box.left < 1 || box.right > innerWidth - 1 || box.bottom > innerHeight - 1);
+    const ofTexts = texts.flatMap(({ name, box }, at) => [
       ...(box.left < 0 || box.right > innerWidth || box.bottom > innerHeight ? [`${name} is clipped`] : []),
       ...over.flatMap((other, place) => (place > at && meet(box, other.box) ? [`${name} meets ${other.name}`] : [])),
     ]);
+    return [...atEdge.map(({ name }) => `${name} touches the window's edge`), ...ofTexts];
   });
 
 for (const [name, options] of [
@@ -186,6 +189,19 @@ for (const [name, options] of [
     assert.deepEqual(await unreadable(page), [], "with every setting open");
     await page.context().close();
   });
+
+test("a panel of the bar leaves the time line free on a desktop", async () => {
+  const page = await visit({ viewport: { width: 1920, height: 1080 } });
+  const line = await page.locator(".time-line").boundingBox();
+  for (const panel of PANELS) {
+    await openPanel(page, panel);
+    await unfold(page);
+    const box = await page.locator(panel === "drawer" ? ".drawer" : ".popover").boundingBox();
+    assert.ok(box.y + box.height <= line.y, `${panel} ends at ${box.y + box.height}, the time line begins at ${line.y}`);
+    await page.keyboard.press("Escape");
+  }
+  await page.context().close();
+});
 
 // Of what is between the bars and an open tool.
 const probeCross = (page) =>
