@@ -116,6 +116,32 @@ export async function setNumber(page, name, value) {
   }, String(value));
 }
 
+// Moves the focus with the tabulator key until it is on an element of that name, or on the summary of a section of that name.
+export async function tabTo(page, testId, most = 80) {
+  for (let presses = 0; presses <= most; presses += 1) {
+    const focused = await page.evaluate(() => {
+      const element = document.activeElement;
+      return (element?.matches("summary") ? element.parentElement : element)?.dataset.testid;
+    });
+    if (focused === testId) return;
+    await page.keyboard.press("Tab");
+  }
+  throw new Error(`the tabulator key does not reach ${testId}`);
+}
+
+// A forecaster has a minute for each question. Only what a person does and waits for is within it: not a movie that the
+// server goes on drawing, nor an error that is measured better with every second.
+const MOST_MS_A_QUESTION = 60_000;
+
+export async function withinAMinute(question, answer) {
+  const began = Date.now();
+  const given = await answer();
+  const tookMs = Date.now() - began;
+  console.log(`${question}: ${(tookMs / 1000).toFixed(1)} s`);
+  if (tookMs > MOST_MS_A_QUESTION) throw new Error(`${question}: took ${tookMs} ms`);
+  return given;
+}
+
 // Opens a tool of the rail; undefined closes the one that is open.
 export async function openTool(page, name) {
   const open = page.locator("[data-testid=rail] button[aria-controls=tool][aria-expanded=true]");

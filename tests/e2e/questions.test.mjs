@@ -1,6 +1,8 @@
-// End-to-end tests of two of a forecaster's questions, by mouse and by keys alone: what changed between the last two runs, and
-// send this view to a colleague. Two runs of a model on the real server: the later one has a larger cloud.
+// End-to-end tests of three of a forecaster's questions, by mouse and by keys alone: what changed between the last two runs,
+// send this view to a colleague, and make a movie of the next two hours. Two runs of a model on the real server: the later one has a
+// larger cloud.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -19,7 +21,9 @@ import {
   rested,
   restedStill,
   screenshot,
+  tabTo,
   until,
+  withinAMinute,
 } from "./driver.mjs";
 import { boxMean, difference, grabCanvas, greyShare } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
@@ -55,7 +59,6 @@ before(async () => {
   await openTool(page, undefined);
   await rested(page);
   // Not the last time, which is the last of both runs: this one has another place in each.
-  await focusPicture();
   await changing(() => key(","), page);
 });
 
@@ -84,18 +87,6 @@ async function text(id) {
 }
 
 const key = (name) => page.keyboard.press(name);
-const focusPicture = () => page.getByTestId("storm-canvas").focus();
-const focused = () => page.evaluate(() => document.activeElement?.dataset.testid);
-
-// Moves the focus with the tabulator key until it is on an element.
-async function tabTo(testId, most = 40) {
-  for (let presses = 0; presses < most; presses += 1) {
-    if ((await focused()) === testId) return;
-    await key("Tab");
-  }
-  throw new Error(`the tabulator key does not reach ${testId}`);
-}
-
 const chosen = (testId) => page.getByTestId(testId).evaluate(({ selectedOptions }) => selectedOptions[0].label);
 
 async function comparedPicture() {
@@ -122,11 +113,13 @@ async function edgePercent() {
 test("what changed between the last two runs, by mouse", async () => {
   assert.match(await text("run"), /run 2020-05-20 00:00Z/);
   assert.match(await text("top-time"), /07:00Z/);
-  await openPanel(page, "compare");
-  await page.getByTestId("compare-storm").selectOption({ index: 1 });
-  assert.match(await chosen("compare-storm"), /run_06/);
-  await page.getByTestId("compare").click();
-  await assertRunsCompared();
+  await withinAMinute("what changed between the last two runs, by mouse", async () => {
+    await openPanel(page, "compare");
+    await page.getByTestId("compare-storm").selectOption({ index: 1 });
+    assert.match(await chosen("compare-storm"), /run_06/);
+    await page.getByTestId("compare").click();
+    await assertRunsCompared();
+  });
   const { x, y, width, height } = await page.getByTestId("swipe").boundingBox();
   await dragBetween(page, { x: x + width / 2, y: y + height / 2 }, { x: x + 0.3 * width, y: y + height / 2 });
   const edge = await edgePercent();
@@ -138,20 +131,20 @@ test("what changed between the last two runs, by mouse", async () => {
 });
 
 test("what changed between the last two runs, by keys alone", async () => {
-  await focusPicture();
-  await key("c");
-  await tabTo("compare-storm");
-  await key("ArrowDown");
-  assert.match(await chosen("compare-storm"), /run_06/);
-  await key("Escape");
-  await assertRunsCompared();
-  await tabTo("swipe", 60);
+  await withinAMinute("what changed between the last two runs, by keys", async () => {
+    await key("c");
+    await tabTo(page, "compare-storm");
+    await key("ArrowDown");
+    assert.match(await chosen("compare-storm"), /run_06/);
+    await key("Escape");
+    await assertRunsCompared();
+  });
+  await tabTo(page, "swipe");
   const before = await edgePercent();
   for (let presses = 0; presses < 5; presses += 1) await key("ArrowLeft");
   assert.equal(await edgePercent(), before - 5);
-  await focusPicture();
   await key("c");
-  await tabTo("compare-end");
+  await tabTo(page, "compare-end");
   await key("Enter");
   assert.equal(await page.getByTestId("compared-canvas").count(), 0);
   await key("Escape");
@@ -187,28 +180,88 @@ const copied = async () => {
 test("send this view to a colleague, by mouse", async () => {
   await changing(() => dragBetween(page, { x: 400, y: 300 }, { x: 520, y: 280 }), page);
   const first = await canvasData(page);
-  await openPanel(page, "share");
-  await page.getByTestId("copy-link").click();
-  const link = await copied();
-  await page.getByTestId("share").click();
-  await assertSameView(link);
+  await withinAMinute("send this view to a colleague, by mouse", async () => {
+    await openPanel(page, "share");
+    await page.getByTestId("copy-link").click();
+    const link = await copied();
+    await page.getByTestId("share").click();
+    await assertSameView(link);
+  });
   assert.equal((await canvasData(page)).azimuth, first.azimuth, "somebody who watches turns nothing");
 });
 
 test("send this view to a colleague, by keys alone", async () => {
-  await focusPicture();
+  await tabTo(page, "storm-canvas");
   await changing(async () => {
     for (let presses = 0; presses < 4; presses += 1) await key("ArrowRight");
     await key("ArrowUp");
   }, page);
   await page.evaluate(() => navigator.clipboard.writeText(""));
-  await focusPicture();
-  await key("h");
-  await tabTo("copy-link");
-  await key("Enter");
-  const link = await copied();
+  await withinAMinute("send this view to a colleague, by keys", async () => {
+    await key("h");
+    await tabTo(page, "copy-link");
+    await key("Enter");
+    const link = await copied();
+    await key("Escape");
+    await assertSameView(link);
+  });
+});
+
+// Number of pictures and seconds of a movie.
+function lengthOf(file) {
+  const shown = ["-show_entries", "stream=nb_read_frames:format=duration", "-of", "json"];
+  const { streams, format } = JSON.parse(
+    execFileSync("ffprobe", ["-v", "error", "-count_frames", "-select_streams", "v:0", ...shown, file], { encoding: "utf8" }),
+  );
+  return { pictures: Number(streams[0].nb_read_frames), seconds: Number(format.duration) };
+}
+
+// A movie of two hours has three pictures, an hour between them. The person's way ends where the server is at work: how long its
+// pictures take depends on the machine.
+async function assertTwoHourMovie(how, ask) {
+  const coming = page.waitForEvent("download", { timeout: 2 * PICTURE_TIMEOUT_MS });
+  await withinAMinute(`make a movie of the next two hours, by ${how}`, async () => {
+    await ask();
+    await page.getByTestId("keep-work").waitFor();
+  });
+  const download = await coming;
+  assert.match(download.suggestedFilename(), /^run_00.*0600Z\.webm$/);
+  const { pictures, seconds } = lengthOf(await download.path());
+  assert.equal(pictures, 3);
+  assert.ok(Math.abs(seconds - 0.75) < 0.3, `it lasts ${seconds} s`);
+  await page.getByTestId("keep-work").waitFor({ state: "detached" });
+}
+
+async function assertTwoHoursAsked() {
+  assert.match(await chosen("movie-from"), /06:00Z/);
+  assert.match(await chosen("movie-to"), /08:00Z/);
+  assert.match(await text("movie-length"), /^3 pictures/);
+}
+
+test("make a movie of the next two hours, by mouse", { timeout: 3 * PICTURE_TIMEOUT_MS }, async () => {
+  await assertTwoHourMovie("mouse", async () => {
+    await changing(() => page.getByTestId("step-back").click(), page);
+    await openPanel(page, "keep");
+    await page.getByTestId("keep-movie").locator("summary").click();
+    await assertTwoHoursAsked();
+    await page.getByTestId("save-movie").click();
+  });
+  await openPanel(page, "keep");
+  await changing(() => page.getByTestId("step-forward").click(), page);
+});
+
+test("make a movie of the next two hours, by keys alone", { timeout: 3 * PICTURE_TIMEOUT_MS }, async () => {
+  await assertTwoHourMovie("keys", async () => {
+    await changing(() => key(","), page);
+    await key("s");
+    await tabTo(page, "keep-movie");
+    await key("Enter");
+    await assertTwoHoursAsked();
+    await tabTo(page, "save-movie");
+    await key("Enter");
+  });
   await key("Escape");
-  await assertSameView(link);
+  await changing(() => key("."), page);
 });
 
 test("a link to a view outlives the session that it was made in", async () => {
