@@ -141,6 +141,28 @@ test("fingers find every button, slider and switch", async () => {
   await page.context().close();
 });
 
+// Words of the renderers, which stand in Look's last section and the list of settings alone.
+const JARGON = /\b(spp|slices?|diffusion|light (model|volume)|half-angle|octaves)\b/i;
+
+test("the tools use no words of the renderers but in Look's last section", async () => {
+  const page = await visit({ viewport: { width: 1280, height: 900 } });
+  for (const tool of TOOLS) {
+    await openTool(page, tool);
+    await unfold(page);
+    if (tool === "look") {
+      const last = page.getByTestId("technique-settings");
+      assert.match(await last.innerText(), JARGON);
+      await last.evaluate((section) => {
+        section.open = false;
+      });
+    }
+    const words = await page.getByTestId("tool-panel").innerText();
+    assert.doesNotMatch(words, JARGON, tool);
+    if (tool === "look") assert.match(words, /(Estimated|Measured) error [\d.]+ % \(/);
+  }
+  await page.context().close();
+});
+
 const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
 // Texts over the picture that leave the window, or lie on one another or under a bar; and bars that touch the window's edge.

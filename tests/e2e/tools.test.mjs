@@ -407,12 +407,39 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
 });
 
 test("a file that is no scene is refused where it was opened", async () => {
-  await page.getByTestId("rail").waitFor();
   await openPanel(page, "keep");
+  await page.getByTestId("keep-scene").locator("summary").click();
   await page.getByTestId("file").setInputFiles({ name: "notes.json", mimeType: "application/json", buffer: Buffer.from("[]") });
-  await page.getByText("notes.json is not opened").waitFor();
-  await page.getByTestId("notices").getByRole("button").click();
+  assert.match(await text("keep-refused"), /^notes.json is not opened: ./i);
+  assert.equal(await page.locator("[data-testid=keep-scene] [data-testid=keep-refused]").count(), 1);
+  assert.equal(await page.getByTestId("notices").innerText(), "");
+  await page.getByTestId("keep-scene").locator("summary").click();
   await page.keyboard.press("Escape");
+  // Dropped on the picture it is refused over the picture.
+  await page.evaluate(() => {
+    const data = new DataTransfer();
+    data.items.add(new File(["[]"], "dropped.json", { type: "application/json" }));
+    window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
+  });
+  await page.getByText("dropped.json is not opened").waitFor();
+  await page.getByTestId("notices").getByRole("button").click();
+});
+
+test("a page without an encoder says at the button that it makes no movie", async () => {
+  const other = await (await browser.newContext({ viewport: VIEWPORT })).newPage();
+  // As on pages by plain HTTP.
+  await other.addInitScript(() => delete globalThis.VideoEncoder);
+  try {
+    await other.goto(server.url);
+    await rested(other);
+    await openPanel(other, "keep");
+    await other.getByTestId("keep-movie").locator("summary").click();
+    assert.match(await other.getByTestId("movie-impossible").innerText(), /only on pages by HTTPS or from localhost/);
+    assert.equal(await other.getByTestId("save-movie").isDisabled(), true);
+    assert.equal(await other.getByTestId("save-picture").isEnabled(), true);
+  } finally {
+    await other.context().close();
+  }
 });
 
 async function openMovieForm() {
@@ -432,31 +459,43 @@ async function fillMovieForm(format) {
   await page.getByTestId("movie-format").selectOption(format);
 }
 
-// Size and number of pictures of a movie.
+// Codec, size and number of pictures of a movie.
 function streamOf(file) {
-  const shown = ["-show_entries", "stream=width,height,nb_read_frames", "-of", "json"];
+  const shown = ["-show_entries", "stream=codec_name,width,height,nb_read_frames", "-of", "json"];
   const probe = execFileSync("ffprobe", ["-v", "error", "-count_frames", "-select_streams", "v:0", ...shown, file], { encoding: "utf8" });
-  const [{ width, height, nb_read_frames: pictures }] = JSON.parse(probe).streams;
-  return { width, height, pictures: Number(pictures) };
+  const [{ codec_name: codec, width, height, nb_read_frames: pictures }] = JSON.parse(probe).streams;
+  return { codec, width, height, pictures: Number(pictures) };
 }
 
-async function assertIsTheMovie(download) {
+async function assertIsTheMovie(download, codec = "vp9") {
   const file = await download.path();
-  assert.deepEqual(streamOf(file), { width: 500, height: 310, pictures: 4 });
+  assert.deepEqual(streamOf(file), { codec, width: 500, height: 310, pictures: 4 });
   await restedAndFits(page);
   assertLastPictureIs(await grabCanvas(page), file);
 }
 
 const rememberedMovie = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
 
+// As the panel has it: without a word an MP4 is H.264.
+async function saidCodec(format) {
+  if (format === "webm") return "vp9";
+  await page.waitForResponse(/movie_file/, { timeout: 2000 }).catch(() => undefined);
+  await page.waitForTimeout(300);
+  const said = page.getByTestId("movie-codec");
+  if ((await said.count()) === 0) return "h264";
+  assert.match(await said.innerText(), /encodes no H.264 of that size: the MP4 holds VP9/);
+  return "vp9";
+}
+
 for (const format of ["webm", "mp4"])
   test(`a movie of all times as ${format}, by a job of the server`, { timeout: 240_000 }, async () => {
     await fillMovieForm(format);
+    const codec = await saidCodec(format);
     const coming = page.waitForEvent("download", { timeout: 200_000 });
     await page.getByTestId("save-movie").click();
     await page.keyboard.press("Escape");
     await page.getByTestId("at-work").waitFor();
-    await assertIsTheMovie(await coming);
+    await assertIsTheMovie(await coming, codec);
   });
 
 test("a reload while a movie is made goes on with it, and the next does not make it again", { timeout: 240_000 }, async () => {
@@ -721,6 +760,38 @@ test("marks are burnt into a picture that is saved, unless they are switched off
   const plain = await markedShare(PNG.sync.read(await savePicture()));
   assert.ok(plain < 0.2, `${plain} of the marks' corners have their colour in a picture without marks`);
   await page.getByTestId("overlay-marks").check();
+  await openTool(page, "marks");
+});
+
+// Of a corner's pixels, the share that is white as letters are.
+function whiteShare({ data, width }, left, top, right, bottom) {
+  let white = 0;
+  for (let y = top; y < bottom; y += 1)
+    for (let x = left; x < right; x += 1) {
+      const at = 4 * (y * width + x);
+      if (Math.min(data[at], data[at + 1], data[at + 2]) > 240) white += 1;
+    }
+  return white / ((right - left) * (bottom - top));
+}
+
+test("title and valid time are burnt into a picture that is saved, unless they are switched off", async () => {
+  await openTool(page, "look");
+  await page.getByTestId("overlay-section").locator("summary").click();
+  const corners = async () => {
+    const picture = PNG.sync.read(await savePicture());
+    const { width, height } = picture;
+    return { title: whiteShare(picture, 0, 0, width >> 1, height >> 4), time: whiteShare(picture, 0, height - (height >> 4), width >> 2, height) };
+  };
+  const both = await corners();
+  await page.getByTestId("overlay-title").uncheck();
+  const untitled = await corners();
+  await page.getByTestId("overlay-time").uncheck();
+  const neither = await corners();
+  console.log("white of the corners of title and time:", both, untitled, neither);
+  assert.ok(both.title > 0.01 && both.time > 0.01, "title and time are in the corners");
+  assert.ok(untitled.title < 0.001 && untitled.time > 0.01, "without a title its corner is free, that of the time is not");
+  assert.ok(neither.title < 0.001 && neither.time < 0.001, "both corners are free");
+  for (const name of ["title", "time"]) await page.getByTestId(`overlay-${name}`).check();
   await openTool(page, "marks");
 });
 

@@ -89,17 +89,10 @@ interface ReportProps {
 }
 
 function Report({ state, report }: ReportProps) {
-  const settings = settingsOf(report.rendering);
-  const name = settings === undefined ? "" : techniqueNameOf(settings);
-  const technique = state.server.value?.techniques.find((each) => each.name === name);
-  const hasSlices = technique?.hasSlices ?? false;
-  const parts = report.measured
-    ? [errorSource(report), `${biasInWords(report)} on the whole`]
-    : [`light model ${percent(report.modelError)}`];
-  if (!report.measured && report.discretisationError !== undefined) {
-    parts.push(`few slices ${percent(report.discretisationError)}`);
-  }
-  const traced = (state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n;
+  const { hasSlices } = drawnBy(state, report);
+  const source = report.measured
+    ? `${errorSource(report)}, ${biasInWords(report)} on the whole`
+    : errorSource(report);
   return (
     <>
       <p
@@ -113,14 +106,7 @@ function Report({ state, report }: ReportProps) {
         data-expected-milliseconds={report.expectedMilliseconds}
       >
         {report.measured ? "Measured" : "Estimated"} error {percent(report.estimatedError)} (
-        {parts.join(", ")}), by{" "}
-        {[nameOfTechnique(name), ...settingsInWords(settings, technique)].join(", ").toLowerCase()}
-        {traced && ", traced light"}
-        {hasSlices && `, ${report.slices} slices`}
-        {settings !== undefined &&
-          isMessage(settings, MetaballsSchema) &&
-          `, ${report.slices} balls`}
-        {report.imageScale !== 1 && ` at ${percent(report.imageScale)} of the size`}
+        {source}){report.imageScale !== 1 && ` at ${percent(report.imageScale)} of the size`}
         {report.expectedMilliseconds !== undefined &&
           `; ${formatNumber(report.expectedMilliseconds)} ms a full frame`}
         .
@@ -131,6 +117,35 @@ function Report({ state, report }: ReportProps) {
         </p>
       )}
     </>
+  );
+}
+
+function drawnBy(state: PageState, report: AccuracyReport) {
+  const settings = settingsOf(report.rendering);
+  const name = settings === undefined ? "" : techniqueNameOf(settings);
+  const technique = state.server.value?.techniques.find((each) => each.name === name);
+  return { settings, name, technique, hasSlices: technique?.hasSlices ?? false };
+}
+
+// How the picture was drawn, in the renderers' words, and what its error is made of.
+export function DrawnBy({ state }: { state: PageState }) {
+  const report = state.frame.value?.accuracy;
+  if (report === undefined) return null;
+  const { settings, name, technique, hasSlices } = drawnBy(state, report);
+  const words = [nameOfTechnique(name), ...settingsInWords(settings, technique)];
+  if ((state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n) words.push("traced light");
+  if (hasSlices) words.push(`${report.slices} slices`);
+  if (settings !== undefined && isMessage(settings, MetaballsSchema))
+    words.push(`${report.slices} balls`);
+  const parts: string[] = [];
+  if (!report.measured) parts.push(`light model ${percent(report.modelError)}`);
+  if (!report.measured && report.discretisationError !== undefined)
+    parts.push(`few slices ${percent(report.discretisationError)}`);
+  return (
+    <p class="quiet" data-testid="drawn-by">
+      Drawn by {words.join(", ").toLowerCase()}
+      {parts.length > 0 && `; error of the ${parts.join(", of ")}`}.
+    </p>
   );
 }
 

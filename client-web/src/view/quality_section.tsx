@@ -3,13 +3,18 @@ import { nameOfPreset } from "../core/names";
 import { withPreset } from "../core/scene";
 import type { PageState } from "../core/state";
 import { Preset } from "../gen/thunderhead/v1/scene_pb";
+import { DrawnBy } from "./accuracy_section";
 import { Section, Segments } from "./controls";
 import { TechniqueSettings } from "./technique_settings";
 
 const QUALITIES = [
   [Preset.FAST, nameOfPreset(Preset.FAST), "Fewer samples and no fine detail."],
   [Preset.BALANCED, nameOfPreset(Preset.BALANCED), "Fine detail; traced light while it rests."],
-  [Preset.TRUE, nameOfPreset(Preset.TRUE), "As Balanced; files wait for traced light."],
+  [
+    Preset.TRUE,
+    nameOfPreset(Preset.TRUE),
+    "Four times the samples of Balanced; files wait for traced light.",
+  ],
 ] as const;
 
 export function QualityControls({ state }: { state: PageState }) {
@@ -32,6 +37,7 @@ export function QualityControls({ state }: { state: PageState }) {
 export function TechniqueSection({ state }: { state: PageState }) {
   return (
     <Section title="Technique, and the papers' modes" testId="technique-settings">
+      <DrawnBy state={state} />
       <TechniqueSettings state={state} />
     </Section>
   );

@@ -66,7 +66,7 @@ function RefinementBrief({ refinement }: { refinement: Refinement }) {
       data-relative-error={relativeError}
       title="Samples a pixel, and the standard error of a pixel over the mean radiance"
     >
-      {samplesPerPixel} spp
+      {samplesPerPixel} samples a pixel
       {relativeError !== undefined && ` ± ${formatNumber(100 * relativeError)} %`}
     </span>
   );

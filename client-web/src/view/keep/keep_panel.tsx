@@ -1,5 +1,6 @@
 // Keeps what is shown: as a picture, a scene, a link or a movie; and takes it back.
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { PictureSize } from "../../core/camera";
 import { clampToLimits } from "../../core/limits";
 import { timeInWords } from "../../core/moment";
 import { type MovieDraft, pictureCount } from "../../core/movie_plan";
@@ -10,7 +11,8 @@ import { Icon } from "../icons";
 import { OnlyHere } from "../only_here";
 import type { Page } from "../page";
 import { Popover } from "../popover";
-import { workInWords } from "./keeper";
+import { encodesVideo, NO_VIDEO_ENCODER } from "./encoder";
+import { type Refusal, workInWords } from "./keeper";
 
 const SIZES = [
   ["window", "As the window"],
@@ -60,6 +62,17 @@ export function Keep({ page }: { page: Page }) {
       <Movie page={page} />
       <SceneAndLink page={page} />
     </Popover>
+  );
+}
+
+// Why what was asked for in this section is not done.
+function Refused({ page, asked }: { page: Page; asked: Refusal["asked"] }) {
+  const refusal = page.keeper.refusal.value;
+  if (refusal?.asked !== asked) return null;
+  return (
+    <p class="unmet" role="alert" data-testid="keep-refused">
+      {refusal.why}
+    </p>
   );
 }
 
@@ -122,6 +135,7 @@ function Picture({ page }: { page: Page }) {
       >
         Save the picture
       </button>
+      <Refused page={page} asked="Picture" />
     </Section>
   );
 }
@@ -200,6 +214,7 @@ function Movie({ page }: { page: Page }) {
         ]}
         onChange={(format) => change({ format })}
       />
+      {draft.format === "mp4" && encodesVideo() && <Mp4Codec page={page} {...chosen.size()} />}
       <p class="quiet" data-testid="movie-length">
         {lengthInWords(pictureCount(draft, page.views.at(times)), draft.picturesPerSecond)}
       </p>
@@ -207,12 +222,39 @@ function Movie({ page }: { page: Page }) {
         type="button"
         class="primary"
         data-testid="save-movie"
-        disabled={page.keeper.work.value !== undefined || (draft.alongViews && views < 2)}
+        disabled={
+          !encodesVideo() || page.keeper.work.value !== undefined || (draft.alongViews && views < 2)
+        }
         onClick={() => void page.keeper.saveMovie({ ...draft, ...chosen.size() })}
       >
         Make the movie
       </button>
+      {!encodesVideo() && (
+        <p class="unmet" data-testid="movie-impossible">
+          Not possible here: {NO_VIDEO_ENCODER}.
+        </p>
+      )}
+      <Refused page={page} asked="Movie" />
     </Section>
+  );
+}
+
+function Mp4Codec({ page, widthPx, heightPx }: { page: Page } & PictureSize) {
+  const [lacksH264, setLacksH264] = useState(false);
+  useEffect(() => {
+    let wanted = true;
+    void page.keeper
+      .lacksH264({ widthPx, heightPx })
+      .then((lacks) => wanted && setLacksH264(lacks));
+    return () => {
+      wanted = false;
+    };
+  }, [page, widthPx, heightPx]);
+  if (!lacksH264) return null;
+  return (
+    <p class="quiet" role="status" data-testid="movie-codec">
+      This browser encodes no H.264 of that size: the MP4 holds VP9, which some players do not open.
+    </p>
   );
 }
 
@@ -236,6 +278,7 @@ function SceneAndLink({ page }: { page: Page }) {
           Copy a link to this view
         </button>
       </div>
+      <Refused page={page} asked="File" />
       <OnlyHere host={page.addresses.loopbackHost} />
       <input
         ref={file}

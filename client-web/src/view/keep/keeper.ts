@@ -47,6 +47,14 @@ export function workInWords({ what, share }: Work): string {
   return `${what}: ${Math.round(100 * share)} %`;
 }
 
+// What was asked for in the panel and refused.
+export interface Refusal {
+  readonly asked: Asked;
+  readonly why: string;
+}
+
+type Asked = "Picture" | "Movie" | "File";
+
 function movieFile() {
   return import("./movie_file").catch(() => {
     throw new Error(couldNotBeLoaded("The part of the page that writes movies"));
@@ -64,6 +72,8 @@ export class Keeper {
   #outlivesPage = false;
   // The file being made; undefined if none is.
   readonly work = signal<Work | undefined>(undefined);
+  // The last one, until something is asked for again.
+  readonly refusal = signal<Refusal | undefined>(undefined);
 
   constructor(
     transport: Transport,
@@ -133,6 +143,7 @@ export class Keeper {
 
   // Opens a picture or a scene that was saved before.
   async open(file: File): Promise<void> {
+    this.#allow("file");
     try {
       const scene = sceneOfFile(new Uint8Array(await file.arrayBuffer()));
       const block = this.#state.session.editBlock.peek();
@@ -142,7 +153,17 @@ export class Keeper {
       this.#state.restore(scene);
       this.#notes.say("file", `The view of ${file.name}`);
     } catch (error) {
-      this.#notes.problem("file", `${file.name} is not opened: ${(error as Error).message}`);
+      this.#refuse("file", "File", `${file.name} is not opened: ${(error as Error).message}`);
+    }
+  }
+
+  // True if this browser puts another codec than H.264, which every player knows, into an MP4.
+  async lacksH264(size: PictureSize): Promise<boolean> {
+    try {
+      return (await (await movieFile()).codecOf({ ...size, format: "mp4" })) !== "avc";
+    } catch {
+      // Making the movie says why.
+      return false;
     }
   }
 
@@ -152,7 +173,7 @@ export class Keeper {
     return this.#make("Movie", async (abort, progress) => {
       const scenes = movieScenes(this.sceneShown(), draft, this.#steps.views());
       // Before the server draws pictures that this browser cannot make a movie of.
-      await (await movieFile()).assertWritable(draft);
+      await (await movieFile()).codecOf(draft);
       const jobId = await this.#calls.beginJob(scenes, `movie of ${stormId}`, abort);
       if (jobId === undefined) {
         const pictures = this.#calls.pictures(scenes, abort);
@@ -215,27 +236,38 @@ export class Keeper {
   }
 
   async #make(
-    what: string,
+    what: "Picture" | "Movie",
     make: (abort: AbortSignal, progress: (share: number) => void) => Promise<void>,
   ): Promise<void> {
     if (this.#working !== undefined) return;
     const working = new AbortController();
     this.#working = working;
     this.work.value = { what, share: 0 };
+    this.#allow("keep");
     try {
       await make(working.signal, (share) => {
         this.work.value = { what, share };
       });
-      this.#state.dismiss("keep");
     } catch (error) {
       if (working.signal.aborted) return;
       const why = error instanceof ConnectError ? error.rawMessage : (error as Error).message;
-      this.#notes.problem("keep", `${what} not saved: ${why}`);
+      this.#refuse("keep", what, `${what} not saved: ${why}`);
     } finally {
       this.#working = undefined;
       this.#outlivesPage = false;
       this.work.value = undefined;
     }
+  }
+
+  // Says it in the panel, or where that is closed, as after a long movie or when a file was dropped on the page, over the picture.
+  #refuse(subject: string, asked: Asked, why: string): void {
+    if (this.#state.popover.peek() === "keep") this.refusal.value = { asked, why };
+    else this.#notes.problem(subject, why);
+  }
+
+  #allow(subject: string): void {
+    this.refusal.value = undefined;
+    this.#state.dismiss(subject);
   }
 
   // The scene, with the own view's camera while this page looks around.

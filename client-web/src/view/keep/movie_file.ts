@@ -9,7 +9,9 @@ import {
   type VideoCodec,
   WebMOutputFormat,
 } from "mediabunny";
+import type { PictureSize } from "../../core/camera";
 import type { MovieDraft } from "../../core/movie_plan";
+import { encodesVideo, NO_VIDEO_ENCODER } from "./encoder";
 
 export interface MovieFile {
   add(picture: OffscreenCanvas): Promise<void>;
@@ -22,18 +24,20 @@ const CODECS: Readonly<Record<MovieDraft["format"], readonly VideoCodec[]>> = {
   mp4: ["avc", "vp9"],
 };
 
-// Encoders want even sides.
-const sidesOf = ({ widthPx, heightPx }: MovieDraft) => [widthPx & ~1, heightPx & ~1] as const;
+type FileForm = Pick<MovieDraft, "format"> & PictureSize;
 
-// Throws an Error for people if this browser encodes no such video.
-export async function assertWritable(draft: MovieDraft): Promise<void> {
-  await encodable(draft.format, ...sidesOf(draft));
+// Encoders want even sides.
+const sidesOf = ({ widthPx, heightPx }: PictureSize) => [widthPx & ~1, heightPx & ~1] as const;
+
+// The codec of that movie's file. Throws an Error for people if this browser encodes no such video.
+export function codecOf({ format, ...size }: FileForm): Promise<VideoCodec> {
+  return encodable(format, ...sidesOf(size));
 }
 
-// Throws as assertWritable does.
+// Throws as codecOf does.
 export async function startMovie(draft: MovieDraft): Promise<MovieFile> {
   const [width, height] = sidesOf(draft);
-  const codec = await encodable(draft.format, width, height);
+  const codec = await codecOf(draft);
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext("2d", { alpha: false });
   if (context === null) throw new Error("this browser draws no pictures");
@@ -65,8 +69,7 @@ async function encodable(
   width: number,
   height: number,
 ): Promise<VideoCodec> {
-  if (!("VideoEncoder" in globalThis))
-    throw new Error("the browser encodes video only on pages by HTTPS or from localhost");
+  if (!encodesVideo()) throw new Error(NO_VIDEO_ENCODER);
   for (const codec of CODECS[format])
     if (await canEncodeVideo(codec, { width, height })) return codec;
   throw new Error(`this browser encodes no ${format === "webm" ? "WebM" : "MP4"} of that size`);
