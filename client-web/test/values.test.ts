@@ -36,6 +36,7 @@ import {
   formatQuantity,
   formatValidTime,
 } from "../src/core/units";
+import { describePose } from "../src/core/words";
 import { AccuracyReportSchema } from "../src/gen/thunderhead/v1/frame_pb";
 import {
   DirectionalLightSchema,
@@ -262,4 +263,18 @@ describe("the sun's clock", () => {
     expect(clocked.sun?.clock?.latitudeDeg).toBe(12);
     expect(withStorm(clocked, "b", 0).sun?.clock).toBeUndefined();
   });
+});
+
+it("says where a spotter stands", () => {
+  const pose = {
+    kind: "spotter",
+    azimuthDeg: 315,
+    elevationDeg: 5,
+    focalLengthMm: 24,
+    eyeHeightM: 1.7,
+  } as const;
+  expect(describePose({ ...pose, placeM: [14_142, -14_142] })).toBe(
+    "Looks to NW (315°), 5° up, through a lens of 24 mm, from 20 km SE of the middle",
+  );
+  expect(describePose({ ...pose, placeM: [10, -20] })).toMatch(/ from the middle$/);
 });

@@ -100,6 +100,12 @@ for (const [name, options] of [
       for (const each of await findings(page)) found.push(`${panel}: ${each}`);
       await page.keyboard.press("Escape");
     }
+    await openPanel(page, "compare");
+    await page.getByTestId("compare-time").selectOption("0");
+    await page.keyboard.press("Escape");
+    await page.getByTestId("compared-canvas").waitFor();
+    await rested(page);
+    for (const each of await findings(page)) found.push(`a comparison: ${each}`);
     assert.deepEqual(found, []);
     await page.context().close();
   });
@@ -222,6 +228,23 @@ test("a panel of the bar leaves the time line free on a desktop", async () => {
     assert.ok(box.y + box.height <= line.y, `${panel} ends at ${box.y + box.height}, the time line begins at ${line.y}`);
     await page.keyboard.press("Escape");
   }
+  await page.context().close();
+});
+
+test("fields and cores are a line each on a desktop, and all five fields are seen without scrolling", async () => {
+  const page = await visit({ viewport: { width: 1920, height: 1080 } });
+  await openTool(page, "fields");
+  const isCut = await page.getByTestId("tool-panel").evaluate((panel) => panel.scrollHeight > panel.clientHeight + 1);
+  assert.equal(isCut, false, "fields are cut");
+  for (const name of ["cloud", "rain", "ice", "snow", "graupel"]) {
+    const parts = ["visible", "scale", "scale-number"].map((part) => page.getByTestId(`field-${name}-${part}`).boundingBox());
+    const middles = (await Promise.all(parts)).map(({ y, height }) => y + height / 2);
+    assert.ok(Math.max(...middles) - Math.min(...middles) < 6, `switch and amount of ${name} are at ${middles}`);
+  }
+  await openTool(page, "probe");
+  await page.getByTestId("core-graupel").waitFor();
+  const heights = await page.locator(".cores button").evaluateAll((buttons) => buttons.map(({ offsetHeight }) => offsetHeight));
+  assert.ok(Math.max(...heights) < 40, `the cores' buttons are ${heights} pixels high`);
   await page.context().close();
 });
 

@@ -465,14 +465,14 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await unfoldSettings();
   assert.doesNotMatch(await page.getByTestId("not-shown").innerText(), /lights/);
   await lights();
-  assert.match(await page.getByTestId("lights-shown").innerText(), / Shown by this technique \(Metaballs\)/);
+  assert.match(await page.getByTestId("lights-shown").innerText(), / Shown by the technique under Look/);
   await unfoldSettings();
   await changing(() => choice.selectOption({ label: "Light volume" }));
   assert.match(await page.getByTestId("not-shown").innerText(), /lights besides the sun/);
   await lights();
   assert.match(
     await page.getByTestId("lights-shown").innerText(),
-    /Not shown by this technique \(Light volume\).*Metaballs.*Monte Carlo/,
+    /Not shown by the technique under Look, but by: .*Metaballs.*Monte Carlo/,
   );
   await unfoldSettings();
   // The server filled in the settings that metaballs do not have.

@@ -124,6 +124,8 @@ test("what changed between the last two runs, by mouse", async () => {
   await dragBetween(page, { x: x + width / 2, y: y + height / 2 }, { x: x + 0.3 * width, y: y + height / 2 });
   const edge = await edgePercent();
   assert.ok(edge > 25 && edge < 35, `after a drag to 30 % the edge is at ${edge} %`);
+  const nameOfA = await page.getByTestId("name-a").boundingBox();
+  assert.ok(nameOfA.x + nameOfA.width <= (edge / 100) * VIEWPORT.width, "the edge cuts A's name");
   await screenshot("questions-runs", page);
   await openPanel(page, "compare");
   await page.getByTestId("compare-end").click();
@@ -330,6 +332,9 @@ test("a run with a place: local time, borders on the map, latitude and longitude
     assert.ok(high > 0.5, `the border is as high as ${high} of the map`);
     await screenshot("questions-place", opened);
     assert.match(await opened.getByTestId("top-time").innerText(), /08:00Z/);
+    // Its one time is where the slider's thumb is.
+    const [ticks, tick] = await Promise.all([".ticks >> nth=0", ".tick"].map((each) => opened.locator(each).boundingBox()));
+    assert.ok(Math.abs(tick.x + tick.width / 2 - ticks.x) < 2, `the tick is at ${tick.x}, the line begins at ${ticks.x}`);
     assert.match(await opened.getByTestId("local-time").innerText(), /10:00/);
     await openTool(opened, undefined);
     for (const width of [1240, 900]) {

@@ -197,7 +197,8 @@ test("turning the head moves the degrees on the horizon", async () => {
     for (let i = 0; i < 10; i += 1) await key("ArrowRight");
   }, page);
   assert.notDeepEqual(await degreesOnHorizon(), before);
-  assert.match(await page.getByTestId("storm-canvas").getAttribute("aria-label"), /Looks to NNW \(345°\)/);
+  const words = await page.getByTestId("storm-canvas").getAttribute("aria-label");
+  assert.match(words, /^supercell .*, day 1 01:20Z\. Looks to NNW \(345°\).* from [\d.]+ km [NESW]+ of the middle\. The sun is in W, 2\d° high$/);
 });
 
 test("a click on the map stands there, a drag from there looks, a double click turns around that place", async () => {
@@ -214,6 +215,8 @@ test("a click on the map stands there, a drag from there looks, a double click t
   const camera = await page.getByTestId("map-camera").boundingBox();
   const [aside, down] = [camera.x + camera.width / 2 - (x + 0.3 * width), camera.y + camera.height / 2 - (y + 0.75 * height)];
   assert.ok(Math.hypot(aside, down) < 8, `the camera is ${aside}, ${down} pixels from where the click was`);
+  const scale = await page.getByTestId("map-scale").boundingBox();
+  assert.ok(scale.x > x + width / 2, "the scale bar makes way for the camera");
   // A drag looks to where it ends: to the west.
   const stands = { x: x + 0.3 * width, y: y + 0.75 * height };
   await changing(() => dragBetween(page, stands, { x: stands.x - 0.2 * width, y: stands.y }), page);

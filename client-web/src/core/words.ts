@@ -1,5 +1,6 @@
 // A view in words: where the camera is, where the sun stands.
 import { type Pose, wrapDegrees } from "./camera";
+import { azimuthTo } from "./map_frame";
 import { compassPoint, type SunDirection } from "./sun";
 import { formatLength, formatNumber } from "./units";
 
@@ -13,13 +14,25 @@ export function describePose(pose: Pose | undefined): string {
     case "spotter":
       return (
         `Looks to ${compassPoint(pose.azimuthDeg)} (${wholeDegrees(pose.azimuthDeg)}°), ` +
-        `${Math.round(pose.elevationDeg)}° up, through a lens of ${formatNumber(pose.focalLengthMm)} mm`
+        `${Math.round(pose.elevationDeg)}° up, through a lens of ${formatNumber(pose.focalLengthMm)} mm, ` +
+        `from ${placeInDomain(pose.placeM)}`
       );
     case "topDown":
       return `${formatLength(pose.widthM, "distance")} from left to right, north up`;
     default:
       return "Waiting for the first picture …";
   }
+}
+
+// From here on a direction says more than that it is near.
+const NEAR_MIDDLE_M = 100;
+
+// "20 km SE of the middle", which is the origin of the world.
+function placeInDomain(placeM: readonly [number, number]): string {
+  const distanceM = Math.hypot(...placeM);
+  if (distanceM < NEAR_MIDDLE_M) return "the middle";
+  const direction = compassPoint(azimuthTo([0, 0], placeM));
+  return `${formatLength(distanceM, "distance")} ${direction} of the middle`;
 }
 
 export function describeSun({ azimuthDeg, elevationDeg }: SunDirection): string {

@@ -21,6 +21,8 @@ interface SliderProps {
   readonly testId: string;
   // True if a change costs seconds: reported when the slider is released or rests, not at each step.
   readonly afterRest?: boolean;
+  // On one line, beside what names it on the screen.
+  readonly inLine?: boolean;
   readonly onChange: (value: number) => void;
 }
 
@@ -60,7 +62,7 @@ export function useTyped(value: string, tell: (input: HTMLInputElement) => boole
 
 // A number as a slider and as text, with its unit.
 export function Slider(props: SliderProps) {
-  const { label, limits, initial, giveBack, testId, afterRest, onChange } = props;
+  const { label, limits, initial, giveBack, testId, afterRest, inLine, onChange } = props;
   const { held, hold, release } = useHeld(onChange);
   const value = held ?? props.value;
   const id = useId();
@@ -82,8 +84,10 @@ export function Slider(props: SliderProps) {
     return true;
   });
   return (
-    <div class="slider">
-      <label for={id}>{label}</label>
+    <div class={inLine ? "slider in-line" : "slider"}>
+      <label for={id} class={inLine ? "visually-hidden" : undefined}>
+        {label}
+      </label>
       <span class="slider-value">
         {changed && (
           <button

@@ -86,31 +86,35 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
             }
           />
         )}
+        <Slider
+          label={`${name}: amount`}
+          limits={LIMITS.fieldScale}
+          value={shown.scale}
+          initial={defaults?.scale}
+          testId={`field-${id}-scale`}
+          afterRest={fitsAnew(state)}
+          inLine
+          onChange={(scale) => edit({ scale })}
+        />
       </div>
       {field.units !== EXTINCTION_UNITS && (
         <p class="quiet" data-testid={`field-${id}-size`}>
           {sizeInWords(field, shown)}
         </p>
       )}
-      <Slider
-        label="Amount"
-        limits={LIMITS.fieldScale}
-        value={shown.scale}
-        initial={defaults?.scale}
-        testId={`field-${id}-scale`}
-        afterRest={fitsAnew(state)}
-        onChange={(scale) => edit({ scale })}
-      />
       <details class="folded">
-        <summary>Particles</summary>
+        <summary>
+          More<span class="visually-hidden"> about {name}</span>
+        </summary>
+        <h3>Particles</h3>
         <ParticleSettings state={state} field={field} />
+        {state.detailShown.value && (
+          <>
+            <h3>Detail</h3>
+            <DetailSettings state={state} field={field} />
+          </>
+        )}
       </details>
-      {state.detailShown.value && (
-        <details class="folded">
-          <summary>Detail</summary>
-          <DetailSettings state={state} field={field} />
-        </details>
-      )}
     </fieldset>
   );
 }

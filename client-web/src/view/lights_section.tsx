@@ -42,11 +42,10 @@ export function LightsSection({ state }: { state: PageState }) {
 function whereShown(state: PageState): string {
   const drawn = state.drawnTechnique.value;
   if (drawn === undefined) return "";
-  const name = nameOfTechnique(drawn.name);
-  if (drawn.showsLights) return `Shown by this technique (${name}).`;
+  if (drawn.showsLights) return "Shown by the technique under Look.";
   const able = (state.server.value?.techniques ?? []).filter(({ showsLights }) => showsLights);
   const names = able.map((technique) => nameOfTechnique(technique.name)).join(", ");
-  return `Not shown by this technique (${name}), but by: ${names}.`;
+  return `Not shown by the technique under Look, but by: ${names}.`;
 }
 
 function setLights(state: PageState, lights: readonly DirectionalLight[]): void {

@@ -129,7 +129,7 @@ function Steps({ page, times, index, fixed }: StepsProps) {
           <span
             key={each.index}
             class="tick"
-            style={{ left: `${last > 0 ? (100 * at) / last : 50}%` }}
+            style={{ left: `${last > 0 ? (100 * at) / last : 0}%` }}
           >
             {(at % every === 0 || at === last) && (at === last || last - at >= every) && (
               <span class="tick-label">{clockOf(each)}</span>

@@ -29,13 +29,13 @@ export function CompareView({ page }: { page: Page }) {
         role="img"
         aria-label={`To compare: ${names.b}`}
       />
-      {/* Each name in its half. */}
-      <div class="half" style={{ clipPath: `inset(0 calc(100% - ${edge}) 0 0)` }}>
+      {/* Each name in its half, and no wider than what is left of that. */}
+      <div class="half" style={{ clipPath: `inset(0 calc(100% - ${edge}) 0 0)`, "--edge": edge }}>
         <p class="compared-name a" data-testid="name-a">
           A · {names.a}
         </p>
       </div>
-      <div class="half" style={{ clipPath: `inset(0 0 0 ${edge})` }}>
+      <div class="half" style={{ clipPath: `inset(0 0 0 ${edge})`, "--edge": edge }}>
         <p class="compared-name b" data-testid="name-b">
           B · {names.b}
           <Missing page={page} />

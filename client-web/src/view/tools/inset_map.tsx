@@ -1,7 +1,7 @@
 // The inset map: the storm's column water path, coasts and borders, the camera with its angle of view, the sun. A click stands
 // there, a drag from there looks, a double click turns around that place.
 import { useEffect, useRef, useState } from "preact/hooks";
-import type { TopDownPose } from "../../core/camera";
+import type { Pose, TopDownPose } from "../../core/camera";
 import { type Extent, extentOf, placeOnMap, standOf, worldOfMap } from "../../core/map_frame";
 import type { PageState } from "../../core/state";
 import { formatLength, roundLength } from "../../core/units";
@@ -63,7 +63,7 @@ export function InsetMap({ state, steps }: { state: PageState; steps: MapSteps }
         <text class="map-north" x={SIZE - 4} y={8}>
           N
         </text>
-        <ScaleBar extent={extent} />
+        <ScaleBar extent={extent} cameraM={cameraPlace(state.viewPose.value)} />
       </svg>
     </div>
   );
@@ -335,11 +335,23 @@ function Cross({ right, down }: { right: number; down: number }) {
   return <path class="map-cross" d={`M${x - 4} ${y}h8M${x} ${y - 4}v8`} />;
 }
 
-function ScaleBar({ extent }: { extent: Extent }) {
+function cameraPlace(pose: Pose | undefined): readonly [number, number] | undefined {
+  return pose?.kind === "topDown" ? pose.centerM : standOf(pose)?.placeM;
+}
+
+interface ScaleBarProps {
+  readonly extent: Extent;
+  readonly cameraM: readonly [number, number] | undefined;
+}
+
+// In the lower left corner, or in the lower right one while the camera is at the left.
+function ScaleBar({ extent, cameraM }: ScaleBarProps) {
   const width = extent.eastM - extent.westM;
   const lengthM = roundLength(width / 4);
+  const cameraLeft = cameraM !== undefined && placeOnMap(extent, cameraM).right < 0.5;
+  const shift = cameraLeft ? SIZE - 8 - (SIZE * lengthM) / width : 0;
   return (
-    <g class="map-scale">
+    <g class="map-scale" transform={`translate(${shift} 0)`} data-testid="map-scale">
       <line x1={4} y1={96} x2={4 + (SIZE * lengthM) / width} y2={96} />
       <text x={4} y={93.5}>
         {formatLength(lengthM, "distance")}

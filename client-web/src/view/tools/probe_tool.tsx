@@ -76,8 +76,8 @@ function Found({ state, last }: { state: PageState; last: Probed }) {
         <caption class="visually-hidden">The largest value of each field along the ray</caption>
         <thead>
           <tr>
-            <th scope="col">Most on the ray</th>
-            <th scope="col">Value</th>
+            <th scope="col">Field</th>
+            <th scope="col">Most</th>
             <th scope="col">Above sea</th>
           </tr>
         </thead>
@@ -160,7 +160,7 @@ function Cores({ page }: { page: Page }) {
   if (cores.length === 0) return null;
   return (
     <section aria-label="Cores" class="cores" data-testid="cores">
-      <h3>Strongest in the storm</h3>
+      <h3>Strongest in the storm, and its height above sea</h3>
       <ul>
         {cores.map((core) => (
           <Core key={core.variable} page={page} core={core} old={map?.timeIndex !== time} />
@@ -195,7 +195,7 @@ function Core({ page, core, old }: CoreProps) {
       >
         <span class="key-swatch" style={{ background: page.state.colorOf(core.hydrometeor) }} />
         {name} {formatNumber(core.value * factor)} {symbol},{" "}
-        {formatLength(position?.zM ?? 0, "height")} above sea
+        {formatLength(position?.zM ?? 0, "height")}
       </button>
     </li>
   );

@@ -10,7 +10,8 @@ import { withPart } from "../part";
 const HEIGHT_PX = 170;
 
 function valueInWords(value: number | null, units: string): string {
-  return value === null ? "–" : `${formatNumber(value)} ${readable(units).symbol}`;
+  // Nothing to say until the pointer is on the chart.
+  return value === null ? "" : `${formatNumber(value)} ${readable(units).symbol}`;
 }
 
 function unitOfFields(fields: readonly FieldAlongRay[]): string {
@@ -64,7 +65,7 @@ export function RayChart({ state, found }: { state: PageState; found: ProbeRayRe
             series: [
               {
                 label: "away",
-                value: (_, away) => (away === null ? "–" : `${formatNumber(away)} ${unit.symbol}`),
+                value: (_, away) => (away === null ? "" : `${formatNumber(away)} ${unit.symbol}`),
               },
               ...fields.map(({ hydrometeor, units }) => ({
                 label: nameOfHydrometeor(hydrometeor),
