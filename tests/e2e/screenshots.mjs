@@ -1,8 +1,8 @@
-// Takes the screenshots of docs/page/: every tool and panel at three sizes of window, to be looked at.
+// Takes the screenshots of docs/page/: every tool, panel and kind of picture at three sizes of window, to be looked at.
 //   node screenshots.mjs [folder] [tool ...]
 import { mkdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
-import { launchBrowser, openPanel, openTool, rested } from "./driver.mjs";
+import { launchBrowser, openPanel, openTool, restedAndFits } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 const SIZES = [
@@ -12,11 +12,36 @@ const SIZES = [
 ];
 const TOOLS = ["none", "map", "time", "light", "look", "fields", "probe", "marks"];
 const PANELS = ["storms", "share", "people", "keep", "compare", "help", "drawer"];
+// Shown last, as each changes the scene.
+const PICTURES = {
+  spotter: (page) => cameraOf(page, "From the ground"),
+  above: (page) => cameraOf(page, "From above"),
+  "false-colours": async (page) => {
+    await cameraOf(page, "Around");
+    await openTool(page, "look");
+    await page.getByTestId("colours-false colours").check({ force: true });
+  },
+  comparison: async (page) => {
+    await openTool(page, "look");
+    await page.getByTestId("colours-photograph").check({ force: true });
+    await openTool(page, undefined);
+    await openPanel(page, "compare");
+    await page.getByTestId("compare-time").selectOption("0");
+    await page.keyboard.press("Escape");
+    await page.getByTestId("compared-canvas").waitFor();
+    await page.waitForTimeout(5000);
+  },
+};
 const folder = process.argv[2] ?? fileURLToPath(new URL("../../docs/page/", import.meta.url));
 const only = process.argv.slice(3);
 // Of the windows' widths; all of them, if it is not set.
 const onlyWidth = Number(process.env.THUNDERHEAD_WIDTH ?? 0);
 const wanted = (name) => only.length === 0 || only.includes(name);
+
+async function cameraOf(page, kind) {
+  await openTool(page, "map");
+  await page.getByTestId("camera-kind").getByText(kind).click();
+}
 
 // A tool is looked at with what it is for in it.
 async function prepare(page, tool) {
@@ -49,10 +74,14 @@ try {
     page.on("pageerror", (error) => console.log(`${width}: ${error}`));
     page.on("console", (message) => message.type() === "error" && console.log(message.text()));
     await page.goto(server.url);
-    await rested(page);
+    await restedAndFits(page);
     // The documentation's are small; others are for a closer look.
     const file = process.argv[2] === undefined ? { type: "jpeg", quality: 80 } : { type: "png" };
-    const shoot = (name) => page.screenshot({ path: `${folder}/${name}-${width}.${file.type}`, ...file });
+    const shoot = async (name) => {
+      await restedAndFits(page);
+      await page.waitForTimeout(500);
+      await page.screenshot({ path: `${folder}/${name}-${width}.${file.type}`, ...file });
+    };
     for (const name of TOOLS.filter(wanted)) {
       await openTool(page, name === "none" ? undefined : name);
       await prepare(page, name);
@@ -64,6 +93,11 @@ try {
       await page.waitForTimeout(300);
       await shoot(name);
       await page.keyboard.press("Escape");
+    }
+    for (const [name, show] of Object.entries(PICTURES).filter(([each]) => wanted(each))) {
+      await show(page);
+      await openTool(page, undefined);
+      await shoot(name);
     }
     await context.close();
   }

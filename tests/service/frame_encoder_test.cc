@@ -189,7 +189,7 @@ TEST_F(FrameEncoderTest, VideoWithoutRoomInTheBudgetIsJpeg) {
   auto taken = *memory_->Reserve(base::MemoryUse::kFields, std::size_t{8} << 20, "fields");
   Encode(1);
   EXPECT_EQ(TakeAll(savers).size(), 1U);
-  EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair("jpeg of tier 0", 1)));
+  EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair(StartsWith("jpeg of tier"), 1)));
   taken = {};
   Encode(2);
   EXPECT_EQ(TakeAll(savers).size(), 1U);
