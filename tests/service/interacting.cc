@@ -110,9 +110,10 @@ void Interacting::Run() {
   end_ = end;
 }
 
-bool Interacting::Await(const std::function<bool(const Messages&)>& wanted) {
+bool Interacting::Await(const std::function<bool(const Messages&)>& wanted,
+                        std::chrono::seconds patience) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, kPatience, [&] { return wanted(messages_); });
+  return changed_.wait_for(lock, patience, [&] { return wanted(messages_); });
 }
 
 v1::InteractResponse Interacting::AwaitNewest(v1::InteractResponse::MessageCase part) {

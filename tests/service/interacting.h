@@ -44,8 +44,9 @@ class Interacting {
   std::uint64_t Send(v1::InteractRequest request);
 
   using Messages = std::vector<v1::InteractResponse>;
-  // Waits until `wanted` is true for the messages so far, for at most kPatience.
-  bool Await(const std::function<bool(const Messages&)>& wanted);
+  // Waits until `wanted` is true for the messages so far, for at most `patience`.
+  bool Await(const std::function<bool(const Messages&)>& wanted,
+             std::chrono::seconds patience = kPatience);
   // Waits for a message with that part, and returns the newest such.
   v1::InteractResponse AwaitNewest(v1::InteractResponse::MessageCase part);
   // The answer to the request, SceneTaken or Refused.

@@ -98,11 +98,13 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
     }
     viewers.push_back(std::make_unique<Interacting>(*program.stub(), created.session_id()));
     if (i > 0) continue;
-    ASSERT_TRUE(viewers[0]->Await([](const Interacting::Messages& messages) {
-      return std::ranges::any_of(messages, [](const Response& message) {
-        return message.frame().modelled().traced_paths() > 0;
-      });
-    }));
+    ASSERT_TRUE(viewers[0]->Await(
+        [](const Interacting::Messages& messages) {
+          return std::ranges::any_of(messages, [](const Response& message) {
+            return message.frame().modelled().traced_paths() > 0;
+          });
+        },
+        kPatience));
     shown_mib = StatusMib(program.process(), "VmHWM");
   }
   // Whoever is refused meanwhile is told why, and has its turn.
