@@ -71,7 +71,7 @@ async function fill(page) {
   await unfold(page);
   await page.getByTestId("add-light").click();
   await openTool(page, "look");
-  await page.getByTestId("colours-false colours").check({ force: true });
+  await page.getByTestId("colours").getByText("False colours").click();
   await openTool(page, "probe");
   await page.getByTestId("probe-middle").click();
   await page.getByTestId("probe-place").first().waitFor();

@@ -19,11 +19,11 @@ const PICTURES = {
   "false-colours": async (page) => {
     await cameraOf(page, "Around");
     await openTool(page, "look");
-    await page.getByTestId("colours-false colours").check({ force: true });
+    await page.getByTestId("colours").getByText("False colours").click();
   },
   comparison: async (page) => {
     await openTool(page, "look");
-    await page.getByTestId("colours-photograph").check({ force: true });
+    await page.getByTestId("colours").getByText("Photograph").click();
     await openTool(page, undefined);
     await openPanel(page, "compare");
     await page.getByTestId("compare-time").selectOption("0");
