@@ -40,7 +40,7 @@ const wanted = (name) => only.length === 0 || only.includes(name);
 
 async function cameraOf(page, kind) {
   await openTool(page, "map");
-  await page.getByTestId("camera-kind").getByText(kind).click();
+  await page.getByTestId("camera-kind").getByText(kind, { exact: true }).click();
 }
 
 // A tool is looked at with what it is for in it.
