@@ -1,4 +1,4 @@
-// Whether who steered when the connection was lost steers again, decided by each presence after joining again. The server may
+// The way back to control for somebody who steered when the connection was lost: each presence after joining again decides. The server may
 // not know yet that the old connection is lost, and then sees it steer for some seconds.
 import { type Presence, Role } from "../gen/thunderhead/v1/interact_pb";
 

@@ -47,7 +47,7 @@ export function workInWords({ what, share }: Work): string {
   return `${what}: ${Math.round(100 * share)} %`;
 }
 
-// What was asked for in the panel and refused.
+// A request made in the panel that was refused.
 export interface Refusal {
   readonly asked: Asked;
   readonly why: string;
