@@ -1,5 +1,7 @@
 #include "service/delivery_deadline.h"
 
+#include <chrono>
+
 namespace thunderhead::service {
 
 DeliveryDeadline::~DeliveryDeadline() {
@@ -15,18 +17,19 @@ void DeliveryDeadline::Taken() {
   alarm_.reset();
 }
 
-void DeliveryDeadline::Begin(std::chrono::milliseconds time) {
+void DeliveryDeadline::Begin(std::size_t bytes) {
   int write = 0;
   {
     const std::lock_guard lock(call_->mutex);
     write = ++call_->writes;
   }
   alarm_.emplace();
-  alarm_->Set(std::chrono::system_clock::now() + time, [call = call_, write](bool is_over) {
-    if (!is_over) return;
-    const std::lock_guard lock(call->mutex);
-    if (call->context != nullptr && call->writes == write) call->context->TryCancel();
-  });
+  alarm_->Set(std::chrono::system_clock::now() + DeliveryTime(limits_, bytes),
+              [call = call_, write](bool is_over) {
+                if (!is_over) return;
+                const std::lock_guard lock(call->mutex);
+                if (call->context != nullptr && call->writes == write) call->context->TryCancel();
+              });
 }
 
 }  // namespace thunderhead::service

@@ -5,24 +5,27 @@
 #include <grpcpp/alarm.h>
 #include <grpcpp/server_context.h>
 
-#include <chrono>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <optional>
+
+#include "service/limits.h"
 
 namespace thunderhead::service {
 
 class DeliveryDeadline {
  public:
-  explicit DeliveryDeadline(grpc::CallbackServerContext* context)
-      : call_(std::make_shared<Call>(context)) {}
+  // `limits` must outlive it.
+  DeliveryDeadline(grpc::CallbackServerContext* context, const Limits& limits)
+      : limits_(limits), call_(std::make_shared<Call>(context)) {}
   DeliveryDeadline(const DeliveryDeadline&) = delete;
   DeliveryDeadline& operator=(const DeliveryDeadline&) = delete;
   // The call has ended: to be destroyed before OnDone returns.
   ~DeliveryDeadline();
 
-  // The client has so long from now on for what is written next, until Taken().
-  void Begin(std::chrono::milliseconds time);
+  // The client has the time of so many bytes from now on for what is written next, until Taken().
+  void Begin(std::size_t bytes);
   void Taken();
 
  private:
@@ -36,6 +39,7 @@ class DeliveryDeadline {
     int writes = 0;                        // that have begun or ended
   };
 
+  const Limits& limits_;
   const std::shared_ptr<Call> call_;
   std::optional<grpc::Alarm> alarm_;
 };

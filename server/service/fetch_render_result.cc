@@ -33,19 +33,18 @@ class ResultStream final : public ResultReactor {
                jobs::ResultPlace place, std::uint64_t offset)
       : jobs_(jobs),
         reading_(reading),
-        limits_(limits),
         caller_(std::move(caller)),
         picture_(std::move(picture)),
         place_(std::move(place)),
         offset_(offset),
-        delivery_(context) {}
+        delivery_(context, limits) {}
 
   void Next() {
     reading_.Submit(caller_->identity().name, [this](const absl::Status& status) {
       const absl::Status read =
           status.ok() ? base::OrOutOfMemory([this] { return Read(); }) : status;
       if (!read.ok()) return End(ToGrpcStatus(read));
-      delivery_.Begin(DeliveryTime(limits_, response_.chunk().size()));
+      delivery_.Begin(response_.chunk().size());
       StartWrite(&response_);
     });
   }
@@ -62,7 +61,7 @@ class ResultStream final : public ResultReactor {
 
  private:
   void End(const grpc::Status& status) {
-    delivery_.Begin(DeliveryTime(limits_, 0));
+    delivery_.Begin(0);
     Finish(status);
   }
 
@@ -91,7 +90,6 @@ class ResultStream final : public ResultReactor {
 
   jobs::Jobs& jobs_;
   base::Executor& reading_;
-  const Limits& limits_;
   const CallerRef caller_;  // has its place while the stream lives
   const jobs::PicturePlace picture_;
   const jobs::ResultPlace place_;

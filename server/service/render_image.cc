@@ -18,9 +18,8 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
   PictureReactor(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
                  const v1::RenderImageRequest& request, v1::RenderImageResponse& response)
       : caller_(std::move(caller)),
-        limits_(engine.limits),
         response_(response),
-        delivery_(context),
+        delivery_(context, engine.limits),
         job_(engine, request, response, *this, Awaited::kByACall, caller_->identity().name) {}
 
   void Begin() { job_.Begin(); }
@@ -30,12 +29,11 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
  private:
   void Ended(const absl::Status& status) override {
     caller_->Report("RenderImage", status);
-    delivery_.Begin(DeliveryTime(limits_, response_.image().size()));
+    delivery_.Begin(response_.image().size());
     Finish(ToGrpcStatus(status));
   }
 
   const CallerRef caller_;
-  const Limits& limits_;
   const v1::RenderImageResponse& response_;
   DeliveryDeadline delivery_;
   PictureJob job_;
@@ -49,9 +47,8 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   PictureStream(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
                 const v1::RenderImageRequest& request)
       : caller_(std::move(caller)),
-        limits_(engine.limits),
         in_chunks_(request.in_chunks()),
-        delivery_(context),
+        delivery_(context, engine.limits),
         job_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall,
              caller_->identity().name) {}
 
@@ -91,7 +88,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     if (progress.estimated_error.has_value()) {
       message.set_estimated_error(static_cast<float>(*progress.estimated_error));
     }
-    delivery_.Begin(DeliveryTime(limits_, 0));
+    delivery_.Begin(0);
     StartWrite(&progress_);
   }
 
@@ -108,7 +105,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   // Called when no write is pending: again for each chunk.
   void WriteEnd() {
     if (!end_->ok()) {
-      delivery_.Begin(DeliveryTime(limits_, 0));
+      delivery_.Begin(0);
       return Finish(*end_);
     }
     std::string& image = *image_.mutable_image()->mutable_image();
@@ -116,16 +113,15 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
       writing_ = true;
       progress_.set_chunk(image.substr(sent_bytes_, kChunkBytes));
       sent_bytes_ += progress_.chunk().size();
-      delivery_.Begin(DeliveryTime(limits_, progress_.chunk().size()));
+      delivery_.Begin(progress_.chunk().size());
       return StartWrite(&progress_);
     }
     if (in_chunks_) image.clear();
-    delivery_.Begin(DeliveryTime(limits_, image.size()));
+    delivery_.Begin(image.size());
     StartWriteAndFinish(&image_, grpc::WriteOptions(), *end_);
   }
 
   const CallerRef caller_;
-  const Limits& limits_;
   const bool in_chunks_;
   v1::RenderImageEvent image_;
   v1::RenderImageEvent progress_;  // or a chunk; gRPC reads it while `writing_`

@@ -34,10 +34,9 @@ class JobStream final : public JobReactor,
   JobStream(jobs::Jobs& jobs, const Limits& limits, grpc::CallbackServerContext* context,
             CallerRef caller, std::string id)
       : jobs_(jobs),
-        limits_(limits),
         caller_(std::move(caller)),
         id_(std::move(id)),
-        delivery_(context) {}
+        delivery_(std::in_place, context, limits) {}
 
   static JobReactor* Start(jobs::Jobs& jobs, const Limits& limits,
                            grpc::CallbackServerContext* context, CallerRef caller,
@@ -60,7 +59,7 @@ class JobStream final : public JobReactor,
       finished_ = end.has_value();
       if (!writing_ && !finished_) return;
     }
-    delivery_->Begin(DeliveryTime(limits_, end.has_value() ? 0 : response_.ByteSizeLong()));
+    delivery_->Begin(end.has_value() ? 0 : response_.ByteSizeLong());
     if (end.has_value()) return Finish(*end);
     StartWrite(&response_);
   }
@@ -109,7 +108,6 @@ class JobStream final : public JobReactor,
   }
 
   jobs::Jobs& jobs_;
-  const Limits& limits_;
   const CallerRef caller_;  // has its place while the stream lives
   const std::string id_;
   std::shared_ptr<JobStream> held_by_grpc_;
