@@ -119,13 +119,14 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
   const auto& people = ui.state.presence.people();
   const auto asking = std::count_if(people.begin(), people.end(),
                                     [](const v1::Person& each) { return each.asks_control(); });
+  const v1::AccuracyReport& accuracy = ui.frame.accuracy();
   // The viewers' key, for others to join by; never the presenter's.
   file_.Write(
       absl::StrFormat(
           R"({"t_s":%.1f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
           R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
           R"("camera":"%s","azimuth_deg":%.2f,"x_m":%.1f,"y_m":%.1f,"sun_azimuth_deg":%.2f,"sun_elevation_deg":%.2f,)"
-          R"("refined":%s,"marks":%d,"pointers":%d,"view":%d,)",
+          R"("refined":%s,"error":%.4f,"error_measured":%s,"marks":%d,"pointers":%d,"view":%d,)",
           std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
           JsonString(ui.state.reason),
           JsonString(ui.state.problem ? ui.state.problem->message() : ""),
@@ -135,7 +136,8 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
           ui.state.viewer_key, ui.state.scene.storm_id(), ui.time_index(), ui.state.scene_revision,
           ui.frame.scene_revision(), camera.kind, camera.azimuth_deg, camera.x_m, camera.y_m,
           ui.state.shown_sun.azimuth_deg(), ui.state.shown_sun.elevation_deg(),
-          ui.frame.refined() ? "true" : "false", ui.state.marks.marks_size(),
+          ui.frame.refined() ? "true" : "false", accuracy.estimated_error(),
+          accuracy.measured() ? "true" : "false", ui.state.marks.marks_size(),
           ui.state.pointers.pointers_size(), view) +
       absl::StrFormat(
           R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"

@@ -31,9 +31,9 @@ export function accentIn(pixels, { x, y, width, height }) {
   return { x: mean(0), y: mean(1), right: Math.max(...found.map(([column]) => column)) };
 }
 
-export async function eventually(what, holds) {
-  const deadline = Date.now() + 15_000;
-  while (!holds()) {
+export async function eventually(what, holds, { seconds = 15 } = {}) {
+  const deadline = Date.now() + 1000 * seconds;
+  while (!(await holds())) {
     assert.ok(Date.now() < deadline, what);
     await sleep(100);
   }

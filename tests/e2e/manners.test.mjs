@@ -171,9 +171,13 @@ test("the tools use no words of the renderers but in Look's last section", async
 
 const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
+// The page lays out what a tool leaves of the window in the frame that is painted next.
+const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
 // Texts over the picture that leave the window, or lie on one another or under a bar; and bars that touch the window's edge.
-const unreadable = (page) =>
-  page.evaluate(() => {
+async function unreadable(page) {
+  await painted(page);
+  return page.evaluate(() => {
     const boxes = (selector) =>
       [...document.querySelectorAll(selector)]
         .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect() }))
@@ -189,6 +193,7 @@ const unreadable = (page) =>
     ]);
     return [...atEdge.map(({ name }) => `${name} touches the window's edge`), ...ofTexts];
   });
+}
 
 for (const [name, options] of [
   ["a phone", PHONE],
