@@ -67,21 +67,25 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   const PricedSetting& full_row = *NearestRow(*table, full);
   const bool is_full =
       quality == FrameQuality{} && row->setting.million_paths == full_row.setting.million_paths;
-  const double error = is_full ? report.estimated_error : full_row.relative_rmse;
+  const double error =
+      is_full || evidence.is_last ? report.estimated_error : full_row.relative_rmse;
   report.unmet = WhyUnmet(scene, {full, expected_ms, error});
   return report;
 }
 
-std::int64_t Estimator::PathsFor(const scene::Scene& scene) const {
+std::int64_t Estimator::PathsFor(const scene::Scene& scene, const MeasuredErrors& errors) const {
   const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
   const auto& table = TableFor(tables_, scene);
   if (limit == nullptr || !table.ok()) return kImagePaths;
   std::int64_t fewest = kTracedPaths;
   for (const PricedSetting& row : table->rows) {
     const std::int64_t paths = std::llround(1e6 * row.setting.million_paths);
-    if (row.relative_rmse > limit->relative_rmse || paths >= fewest) continue;
+    const double factor = errors.FactorOf(row.setting);
+    if (factor * row.relative_rmse > limit->relative_rmse || paths >= fewest) continue;
     const auto report = Report(scene, {}, {.traced_paths = paths});
-    if (report.has_value() && report->estimated_error <= limit->relative_rmse) fewest = paths;
+    if (report.has_value() && factor * report->estimated_error <= limit->relative_rmse) {
+      fewest = paths;
+    }
   }
   return fewest;
 }

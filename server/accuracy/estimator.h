@@ -11,6 +11,7 @@
 #include "accuracy/accuracy_report.h"
 #include "accuracy/frame_quality.h"
 #include "accuracy/machine_costs.h"
+#include "accuracy/measured_errors.h"
 #include "accuracy/offer_tables.h"
 #include "scene/scene.h"
 
@@ -21,6 +22,7 @@ struct Evidence {
   std::int64_t traced_paths = 0;               // that corrected its light
   std::optional<double> discretisation_error;  // by DiscretisationError
   std::optional<MeasuredError> measured;       // of the whole picture
+  bool is_last = false;                        // no better picture of the scene follows
 };
 
 // Relative RMSE between a picture with half the slices and the full one, four values a pixel of
@@ -40,8 +42,9 @@ class Estimator {
                                        const Evidence& evidence) const;
 
   // The paths that a picture of `scene` (decided) outside any session waits for, if it waits: the
-  // fewest with which it keeps within the error that it asks for.
-  std::int64_t PathsFor(const scene::Scene& scene) const;
+  // fewest with which it keeps within the error that it asks for, by the tables and what measuring
+  // its pictures has told of them.
+  std::int64_t PathsFor(const scene::Scene& scene, const MeasuredErrors& errors = {}) const;
 
  private:
   const OfferTables& tables_;

@@ -108,25 +108,29 @@ scene::Technique WithTasteOf(const scene::Technique& asked, scene::Technique tec
   return technique;
 }
 
-std::vector<Offer> Offers::OffersFor(const PricedSettings& table, const scene::Scene& scene) const {
+std::vector<Offer> Offers::OffersFor(const PricedSettings& table, const scene::Scene& scene,
+                                     const MeasuredErrors& measured) const {
   std::vector<Offer> offers;
   const bool limits_time = std::holds_alternative<scene::MaxMilliseconds>(scene.accuracy);
   for (const PricedSetting& row : table.rows) {
     const bool traced = row.setting.million_paths > 0.0;
     if (traced && limits_time) continue;
     const double ms = costs_.SettingMs(table, row, scene);
-    offers.push_back({row.setting, traced ? kTracingIsDearer * ms : ms, row.relative_rmse});
+    offers.push_back({row.setting, traced ? kTracingIsDearer * ms : ms,
+                      row.relative_rmse * measured.FactorOf(row.setting)});
   }
   return offers;
 }
 
 absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
-                                            const std::optional<Setting>& current) const {
+                                            const std::optional<Setting>& current,
+                                            const MeasuredErrors& measured) const {
   if (std::holds_alternative<std::monostate>(scene.accuracy)) return scene;
   if (scene::IsTraced(scene.rendering.technique)) return scene;
   const auto& table = TableFor(tables_, scene);
   if (!table.ok()) return table.status();
-  const Setting setting = BestOffer(OffersFor(*table, scene), scene.accuracy, current).setting;
+  const std::vector<Offer> offers = OffersFor(*table, scene, measured);
+  const Setting setting = BestOffer(offers, scene.accuracy, current).setting;
   scene::Scene decided = scene;
   decided.rendering.technique = WithTasteOf(scene.rendering.technique, setting.technique);
   decided.rendering.image_scale = setting.image_scale;
@@ -135,6 +139,19 @@ absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
                                                           ? scene::TracedLight::kAwaited
                                                           : scene::TracedLight::kOff);
   return decided;
+}
+
+bool Offers::Refutes(const scene::Scene& scene, const Setting& drawn, const MeasuredError& error,
+                     MeasuredErrors* measured) const {
+  const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy);
+  const auto& table = TableFor(tables_, scene);
+  if (limit == nullptr || !table.ok() || error.relative_rmse.low <= limit->relative_rmse) {
+    return false;
+  }
+  const PricedSetting* const row = NearestRow(*table, drawn);
+  if (row == nullptr) return false;
+  measured->Observe(drawn, row->relative_rmse, error.relative_rmse.value);
+  return true;
 }
 
 }  // namespace thunderhead::accuracy

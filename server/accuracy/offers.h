@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "accuracy/accuracy_report.h"
 #include "accuracy/machine_costs.h"
+#include "accuracy/measured_errors.h"
 #include "accuracy/offer_tables.h"
 #include "accuracy/setting.h"
 #include "scene/scene.h"
@@ -43,12 +44,20 @@ class Offers {
   Offers(const OfferTables& tables, const MachineCosts& costs) : tables_(tables), costs_(costs) {}
 
   // The scene with the setting that reaches what it asks for, or as it is if it asks for nothing.
-  // `current` is the setting that its view is drawn with so far. Fails where there is no table.
+  // `current` is the setting that its view is drawn with so far, `measured` what measuring it has
+  // told. Fails where there is no table.
   absl::StatusOr<scene::Scene> Decide(const scene::Scene& scene,
-                                      const std::optional<Setting>& current) const;
+                                      const std::optional<Setting>& current,
+                                      const MeasuredErrors& measured = {}) const;
+
+  // True if the picture of `scene`, drawn with that setting, surely has more error than it asks
+  // for. `measured` knows it then.
+  bool Refutes(const scene::Scene& scene, const Setting& drawn, const MeasuredError& error,
+               MeasuredErrors* measured) const;
 
  private:
-  std::vector<Offer> OffersFor(const PricedSettings& table, const scene::Scene& scene) const;
+  std::vector<Offer> OffersFor(const PricedSettings& table, const scene::Scene& scene,
+                               const MeasuredErrors& measured) const;
 
   const OfferTables& tables_;
   const MachineCosts& costs_;

@@ -8,15 +8,21 @@ namespace {
 
 // Costs are learnt from drawn frames; after this many decisions they are known, or do not converge.
 constexpr int kMaxDecidedAgain = 3;
+// Several that miss the limit by nearly the same are not drawn in turns.
+constexpr int kMaxRefuted = 8;
 
 }  // namespace
 
 absl::StatusOr<std::optional<NewestScene>> DecidedSetting::Decide(const NewestScene& asked) {
   if (revision_ != asked.revision) {
-    auto scene = offers_.Decide(*asked.scene, SettingKeptFor(*asked.scene));
+    const bool continues = ContinuesWith(*asked.scene);
+    if (!continues) measured_ = {};
+    const auto current = continues ? std::optional(accuracy::SettingOf(*scene_)) : std::nullopt;
+    auto scene = offers_.Decide(*asked.scene, current, measured_);
     revision_ = asked.revision;
     scene_ = nullptr;
     decided_again_ = 0;
+    refuted_ = 0;
     checked_ = false;
     discretisation_error_.reset();
     settled_ = std::holds_alternative<std::monostate>(asked.scene->accuracy);
@@ -27,13 +33,11 @@ absl::StatusOr<std::optional<NewestScene>> DecidedSetting::Decide(const NewestSc
   return std::optional(NewestScene{asked.revision, scene_, asked.changed_at, asked.usual_pause});
 }
 
-// The previous scene's setting, if `asked` has the same accuracy request and kind of camera.
-std::optional<accuracy::Setting> DecidedSetting::SettingKeptFor(const scene::Scene& asked) const {
-  if (scene_ == nullptr) return std::nullopt;
-  const bool alike =
-      scene_->accuracy == asked.accuracy && scene_->camera.index() == asked.camera.index();
-  if (!alike) return std::nullopt;
-  return accuracy::SettingOf(*scene_);
+// True if `asked` wants the same accuracy as the previous scene, of the same storm by the same kind
+// of camera.
+bool DecidedSetting::ContinuesWith(const scene::Scene& asked) const {
+  return scene_ != nullptr && scene_->accuracy == asked.accuracy &&
+         scene_->storm_id == asked.storm_id && scene_->camera.index() == asked.camera.index();
 }
 
 bool DecidedSetting::NeedsCheck() const {
@@ -41,16 +45,31 @@ bool DecidedSetting::NeedsCheck() const {
 }
 
 bool DecidedSetting::DecideAgain(const NewestScene& asked) {
-  const accuracy::Setting current = accuracy::SettingOf(*scene_);
-  auto again = offers_.Decide(*asked.scene, current);
-  const bool better = again.ok() && accuracy::SettingOf(*again) != current;
-  if (!better || decided_again_ >= kMaxDecidedAgain) {
+  if (decided_again_ >= kMaxDecidedAgain || !DecideAnew(asked)) {
     settled_ = true;
     return false;
   }
+  ++decided_again_;
+  return true;
+}
+
+bool DecidedSetting::DecideAnew(const NewestScene& asked) {
+  const accuracy::Setting current = accuracy::SettingOf(*scene_);
+  auto again = offers_.Decide(*asked.scene, current, measured_);
+  if (!again.ok() || accuracy::SettingOf(*again) == current) return false;
   scene_ = std::make_shared<const scene::Scene>(*std::move(again));
   checked_ = false;
-  ++decided_again_;
+  discretisation_error_.reset();
+  return true;
+}
+
+bool DecidedSetting::Measured(const accuracy::MeasuredError& error, const NewestScene& asked) {
+  if (scene_ == nullptr || refuted_ >= kMaxRefuted) return false;
+  if (!offers_.Refutes(*scene_, accuracy::SettingOf(*scene_), error, &measured_) ||
+      !DecideAnew(asked))
+    return false;
+  settled_ = false;
+  ++refuted_;
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "absl/status/status.h"
+#include "accuracy/measured_errors.h"
 #include "accuracy/offers.h"
 #include "scene/scene.h"
 #include "session/sessions.h"
@@ -32,16 +33,25 @@ class DecidedSetting {
   // Decides again. True if another setting is better now, which happens at most a few times.
   bool DecideAgain(const NewestScene& asked);
 
+  // The whole picture was measured, its light traced to the end if it is traced. True if it surely
+  // has more error than the scene asks for and another setting is decided on; what was measured
+  // counts for later scenes as well that ask for the same of the same storm.
+  bool Measured(const accuracy::MeasuredError& error, const NewestScene& asked);
+
   // True if the setting is final for this revision.
   bool settled() const { return settled_; }
 
  private:
-  std::optional<accuracy::Setting> SettingKeptFor(const scene::Scene& asked) const;
+  bool ContinuesWith(const scene::Scene& asked) const;
+  // True if another setting is better now, which the scene has then.
+  bool DecideAnew(const NewestScene& asked);
 
   const accuracy::Offers& offers_;
   std::optional<std::uint64_t> revision_;
   std::shared_ptr<const scene::Scene> scene_;  // null if that failed
+  accuracy::MeasuredErrors measured_;
   int decided_again_ = 0;
+  int refuted_ = 0;
   bool checked_ = false;
   std::optional<double> discretisation_error_;
   bool settled_ = false;

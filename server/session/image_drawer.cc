@@ -18,6 +18,8 @@ namespace {
 constexpr double kQuick_ms = 5e3;
 // Pictures that hold their fields while their light is traced.
 constexpr std::ptrdiff_t kMaxTraced = 8;
+// Settings that a picture is given up for, as they miss the error that it asks for.
+constexpr int kMaxRefuted = 8;
 // The time that a picture may take, over the longest that is predicted: predictions are not exact.
 constexpr double kPatience = 2.0;
 
@@ -75,7 +77,8 @@ void ImageDrawer::Begin(Lane& lane) {
   if (!lane.IsIdle()) return;
   // Those that hold their fields come first.
   const auto ready = std::ranges::find_if(begun_, [&](const Begun& image) {
-    return image.phase == Phase::kToDraw && Suits(lane, image.quick);
+    const bool waits = image.phase == Phase::kToDraw || image.phase == Phase::kToRead;
+    return waits && Suits(lane, image.quick);
   });
   if (ready != begun_.end()) return WorkIn(lane, *ready);
   const auto traced =
@@ -96,6 +99,7 @@ void ImageDrawer::Begin(Lane& lane) {
 void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
   image.lane = &lane;
   if (image.phase == Phase::kToDraw) image.phase = Phase::kDrawing;
+  if (image.phase == Phase::kToRead) image.phase = Phase::kReading;
   const bool draws = image.phase == Phase::kDrawing || !IsTraced(image.job);
   // `begun_` keeps it until the lane is idle.
   lane.Begin(
@@ -173,7 +177,7 @@ bool ImageDrawer::Ends(Begun& image) {
 
 void ImageDrawer::Trace(Begun& image) {
   image.phase = Phase::kTracing;
-  image.wanted_paths = source_.Estimator().PathsFor(*image.job.decided);
+  image.wanted_paths = source_.Estimator().PathsFor(*image.job.decided, image.measured);
   tracer_.Want(image.name, {std::make_shared<const scene::Scene>(*image.job.decided), image.fields,
                             image.wanted_paths, true});
 }
@@ -200,10 +204,38 @@ void ImageDrawer::TakeStep(Begun& image, const TracedStep& step) {
     if (step.light->steps == 0 || step.light->HasTraced(image.wanted_paths)) Measure(image);
   } else if (step.error.has_value()) {
     image.error = step.error->error;
-    if (step.error->HasTraced(image.job.error_seconds)) {
-      image.phase = Phase::kToDraw;
-    }
+    if (!step.error->HasTraced(image.job.error_seconds)) return;
+    image.phase = IsRefuted(image) ? Phase::kToRead : Phase::kToDraw;
   }
+}
+
+bool ImageDrawer::IsRefuted(Begun& image) {
+  ImageJob& job = image.job;
+  const accuracy::Offers& offers = source_.Offers();
+  const bool lit = AwaitsLight(*job.decided);
+  accuracy::Setting drawn = accuracy::SettingOf(*job.decided);
+  if (lit) drawn.million_paths = 1e-6 * static_cast<double>(image.wanted_paths);
+  if (!image.error.has_value() || image.refuted >= kMaxRefuted ||
+      !offers.Refutes(*job.decided, drawn, *image.error, &image.measured)) {
+    return false;
+  }
+  scene::Scene asked = job.scene;
+  asked.camera = job.decided->camera;
+  auto again = offers.Decide(asked, accuracy::SettingOf(*job.decided), image.measured);
+  if (!again.ok()) return false;
+  const bool other = accuracy::SettingOf(*again) != accuracy::SettingOf(*job.decided);
+  const bool more_paths =
+      lit && source_.Estimator().PathsFor(*again, image.measured) > image.wanted_paths;
+  const double predicted_ms =
+      source_.Costs().FrameMs("", *again, FrameQuality{}, scene::Stage::kStorm);
+  if ((!other && !more_paths) || 1e-3 * predicted_ms > limits_.max_predicted_s) return false;
+  job.decided = *std::move(again);
+  job.predicted_ms = predicted_ms;
+  image.quick = predicted_ms <= kQuick_ms;
+  image.error.reset();
+  ++image.refuted;
+  tracer_.Stop(image.name);
+  return true;
 }
 
 bool ImageDrawer::EndsTracing(Begun& image) {
@@ -230,8 +262,8 @@ void ImageDrawer::Report(const Begun& image, const accuracy::LightProgress& prog
 }
 
 absl::StatusOr<DisplayFrame> ImageDrawer::Drawn(Begun& image) {
-  source_.Learn("images", "", *image.job.decided, FrameQuality{}, {.measured = image.error},
-                &*image.frame);
+  source_.Learn("images", "", *image.job.decided, FrameQuality{},
+                {.measured = image.error, .is_last = true}, &*image.frame);
   double drawn_ms = 0.0;
   for (const StageTime& stage : image.frame->stages) drawn_ms += stage.milliseconds;
   queue_.Drew(image.job, drawn_ms);

@@ -14,6 +14,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "accuracy/measured_errors.h"
 #include "base/stopwatch.h"
 #include "session/image_queue.h"
 #include "session/lane.h"
@@ -46,7 +47,7 @@ class ImageDrawer {
   void EndAll(const absl::Status& why);
 
  private:
-  enum class Phase { kReading, kTracing, kMeasuring, kToDraw, kDrawing };
+  enum class Phase { kReading, kTracing, kMeasuring, kToRead, kToDraw, kDrawing };
 
   // A picture that was begun.
   struct Begun {
@@ -59,6 +60,8 @@ class ImageDrawer {
     std::vector<StageTime> stages;  // before drawing
     std::int64_t wanted_paths = 0;
     std::optional<accuracy::MeasuredError> error;
+    accuracy::MeasuredErrors measured;
+    int refuted = 0;   // settings
     int attempts = 0;  // to draw it
     base::Stopwatch since_begun;
     // By the lane.
@@ -83,6 +86,8 @@ class ImageDrawer {
   void Measure(Begun& image);
   bool EndsTracing(Begun& image);
   void TakeStep(Begun& image, const TracedStep& step);
+  // True if the picture has too much error for its scene, and begins anew with another setting.
+  bool IsRefuted(Begun& image);
   void Report(const Begun& image, const accuracy::LightProgress& progress) const;
   absl::StatusOr<DisplayFrame> Drawn(Begun& image);
 

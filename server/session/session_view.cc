@@ -85,14 +85,28 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
     if (setting_.NeedsCheck() && planner_.DrawsWhole(*now.shown.scene)) {
       return CheckSlices{now.shown};
     }
-    if (setting_.DecideAgain(now.newest)) {
-      planner_.Again();
-      state_ = State::kRefining;
-      return WaitUntil{now.time};  // with a new decision
-    }
+    if (setting_.DecideAgain(now.newest)) return DrawAnew(now);
   }
   state_ = State::kTracingLight;
   return std::nullopt;
+}
+
+SessionWork SessionView::DrawAnew(const Now& now) {
+  planner_.Again();
+  state_ = State::kRefining;
+  return WaitUntil{now.time};  // with a new decision
+}
+
+bool SessionView::IsRefuted(const Now& now) {
+  if (!error_.error().has_value() || now.shown.revision != now.newest.revision) return false;
+  // Light that is being traced lowers the error.
+  const bool traced =
+      scene::TracedLightOf(now.shown.scene->rendering.technique) != scene::TracedLight::kOff;
+  if (traced && !(light_.ended() && error_.ended())) return false;
+  if (!setting_.Measured(*error_.error(), now.newest)) return false;
+  light_ = LightTracing();
+  error_ = ErrorMeasuring();
+  return true;
 }
 
 std::optional<SessionWork> SessionView::Trace(const Now& now) {
@@ -102,6 +116,7 @@ std::optional<SessionWork> SessionView::Trace(const Now& now) {
     if (now.time < settled_at) return WaitUntil{settled_at};
     light_.BeginFor(now.shown.revision, now.time);
     error_.BeginFor(now.shown.revision);
+    if (IsRefuted(now)) return DrawAnew(now);
     if (light_.due() || error_.due()) return ShowLight{now.shown};
     const bool light =
         scene::TracedLightOf(technique) != scene::TracedLight::kOff && !light_.ended();

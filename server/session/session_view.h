@@ -138,6 +138,10 @@ class SessionView {
   std::optional<SessionWork> Check(const Now& now);
   std::optional<SessionWork> Trace(const Now& now);
   std::optional<SessionWork> Settle(const Now& now);
+  // True if the picture has too much error for the scene, and another setting is decided on.
+  bool IsRefuted(const Now& now);
+  // With the setting that is decided on anew for the same scene.
+  SessionWork DrawAnew(const Now& now);
 
   const PlannerTargets targets_;
   State state_ = State::kWaitingForFields;

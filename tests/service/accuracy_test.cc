@@ -211,6 +211,43 @@ TEST_F(AccuracyTest, APicturesErrorIsMeasuredForAsLongAsItAsks) {
             grpc::StatusCode::INVALID_ARGUMENT);
 }
 
+TEST_F(AccuracyTest, ASettingThatIsMeasuredToMissTheLimitIsReplaced) {
+  service_.machine->measured_error = 0.5;
+  service_.machine->slices_of_half_error = 100;
+  const std::string id = service_.Open(WithMaxError(0.35F));
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(AwaitChecked(watcher, 1, 50));
+  ASSERT_TRUE(watcher.Await([](const Messages& messages) {
+    const v1::AccuracyReport& report = messages.back().frame().accuracy();
+    return report.measured() && report.slices() == 100;
+  }));
+  EXPECT_EQ(watcher.NewestFrame().accuracy().estimated_error(), 0.25F);
+  EXPECT_FALSE(watcher.NewestFrame().accuracy().has_unmet());
+  // What was measured counts for the next view of the same storm, from its first full frame on.
+  v1::Scene turned = WithMaxError(0.35F);
+  turned.mutable_camera()->mutable_orbit()->set_azimuth_deg(77.0F);
+  const std::uint64_t revision = service_.Update(id, turned);
+  ASSERT_TRUE(watcher.Await([&](const Messages& messages) {
+    const v1::Frame& frame = messages.back().frame();
+    return frame.scene_revision() == revision && frame.refined();
+  }));
+  EXPECT_EQ(watcher.NewestFrame().accuracy().slices(), 100U);
+}
+
+TEST_F(AccuracyTest, APictureThatIsMeasuredToMissTheLimitIsDrawnBetter) {
+  service_.machine->measured_error = 0.5;
+  service_.machine->slices_of_half_error = 100;
+  v1::RenderImageRequest request;
+  *request.mutable_scene() = WithMaxError(0.35F);
+  request.set_error_seconds(0.5F);
+  v1::RenderImageResponse response;
+  ASSERT_TRUE(Call(service_.stub(), &Stub::RenderImage, request, &response).ok());
+  EXPECT_EQ(response.modelled().slices(), 100U);
+  EXPECT_TRUE(response.accuracy().measured());
+  EXPECT_EQ(response.accuracy().estimated_error(), 0.25F);
+  EXPECT_FALSE(response.accuracy().has_unmet());
+}
+
 TEST_F(AccuracyTest, PicturesAskToo) {
   v1::RenderImageRequest request;
   *request.mutable_scene() = WithMaxError(0.35F);

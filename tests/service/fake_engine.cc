@@ -179,10 +179,12 @@ class FakeFrameSource final : public session::FrameSource {
   }
 
   absl::StatusOr<accuracy::ErrorProgress> MeasureError(
-      const scene::Scene& /*scene*/,
+      const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     THUNDERHEAD_CHECK(fields != nullptr, "measured without fields");
-    const double error = machine_->measured_error;
+    const int fine = machine_->slices_of_half_error;
+    const double error =
+        machine_->measured_error * (fine > 0 && SlicesOf(scene) >= fine ? 0.5 : 1.0);
     if (error <= 0.0) return accuracy::ErrorProgress{.ended = true};
     const int steps = ++machine_->measured_steps;
     accuracy::ErrorProgress progress{.traced_s = 0.1 * steps, .ended = steps >= 10};

@@ -118,6 +118,8 @@ struct FakeMachine {
   // Of pictures, from the second step on; each step takes a tenth of a second of tracing. 0: none
   // can be measured.
   std::atomic<double> measured_error{0.0};
+  // Pictures with at least so many slices have half of it, if that is set.
+  std::atomic<int> slices_of_half_error{0};
   std::atomic<int> measured_steps{0};
   Gate tracing;
 

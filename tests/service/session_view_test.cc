@@ -377,6 +377,56 @@ TEST_F(SessionViewTest, TheErrorIsMeasuredAtRestAndToldAsItGetsClearer) {
   EXPECT_FALSE(view_.evidence().measured.has_value()) << "of another picture";
 }
 
+// 64 slices are in a table with 0.3, 128 with 0.2.
+class RefutedSettingTest : public SessionViewTest {
+ protected:
+  void Ask(double max_error) {
+    scene_.accuracy = scene::MaxError{max_error};
+    Change();
+    ComeToRest();
+    ASSERT_TRUE(NextIs<CheckSlices>(milliseconds(600)));
+    view_.Checked(0.01);
+    ASSERT_TRUE(NextIs<TraceLight>(milliseconds(600)));
+  }
+  std::optional<int> Slices() const {
+    return scene::SlicesOf(decided_->scene->rendering.technique);
+  }
+  void Measure(double low, double value, double high) {
+    view_.ErrorMeasured(Measured(low, value, high), kStart + milliseconds(900));
+  }
+};
+
+TEST_F(RefutedSettingTest, AnotherIsDrawnOnceTheErrorIsSurelyAboveTheLimit) {
+  Ask(0.35);
+  EXPECT_EQ(Slices(), 64);
+  Measure(0.30, 0.40, 0.50);
+  ASSERT_TRUE(NextIs<ShowLight>(milliseconds(900))) << "it may be within the limit";
+  view_.LightShown(kStart + milliseconds(900));
+  Measure(0.38, 0.45, 0.50);
+  const SessionWork again = Next(milliseconds(950));
+  EXPECT_EQ(std::get<WaitUntil>(again).time, kStart + milliseconds(950));
+  EXPECT_EQ(view_.state(), State::kRefining);
+  EXPECT_FALSE(view_.evidence().measured.has_value()) << "of the other setting's picture";
+  ComeToRest();
+  EXPECT_EQ(Slices(), 128);
+  Change();
+  ASSERT_TRUE(DrawNext(milliseconds(0)));
+  EXPECT_EQ(Slices(), 128) << "the same storm, asked for the same error";
+  scene_.accuracy = scene::MaxError{0.36};
+  Change();
+  ASSERT_TRUE(DrawNext(milliseconds(0)));
+  EXPECT_EQ(Slices(), 64) << "asked for another";
+}
+
+TEST_F(RefutedSettingTest, WhereNoneIsBetterThePictureStays) {
+  Ask(0.25);
+  EXPECT_EQ(Slices(), 128);
+  Measure(0.38, 0.45, 0.50);
+  EXPECT_TRUE(NextIs<ShowLight>(milliseconds(900)));
+  EXPECT_EQ(view_.evidence().measured->relative_rmse.value, 0.45);
+  EXPECT_EQ(Slices(), 128);
+}
+
 TEST_F(SessionViewTest, TheReferenceIsShownAndNothingDrawn) {
   scene_.rendering.technique = scene::Reference{};
   Change();

@@ -190,6 +190,46 @@ TEST_F(OffersTest, ReportsWhatItBelieves) {
   EXPECT_THAT(report.unmet->message, HasSubstr("the nearest is 0.5"));
 }
 
+TEST_F(OffersTest, MeasuredErrorsCountForTheSameLightAndGuessOthers) {
+  MeasuredErrors measured;
+  EXPECT_EQ(measured.FactorOf(Slices(64)), 1.0);
+  measured.Observe(Slices(64), 0.30, 0.45);
+  EXPECT_DOUBLE_EQ(measured.FactorOf(Slices(32)), 1.5);
+  Setting traced = Slices(32);
+  traced.million_paths = 1.0;
+  EXPECT_EQ(measured.FactorOf(traced), 1.0) << "which mends what is wrong about the light";
+  measured.Observe(traced, 0.02, 0.16);
+  EXPECT_DOUBLE_EQ(measured.FactorOf(traced), 8.0);
+  measured.Observe(Slices(128), 0.10, 0.40);
+  EXPECT_DOUBLE_EQ(measured.FactorOf(Slices(64)), 4.0);
+  const Setting half_angle = Slices(32, test_support::kHalfAngle);
+  EXPECT_DOUBLE_EQ(measured.FactorOf(half_angle), 4.0) << "as the other, until it is measured";
+  measured.Observe(half_angle, 0.30, 0.30);
+  EXPECT_DOUBLE_EQ(measured.FactorOf(half_angle), 1.0);
+  const Setting third{
+      InMode(scene::HalfAngle{}, test_support::kLowAlbedo, scene::Transport::kConsistent)};
+  EXPECT_DOUBLE_EQ(measured.FactorOf(third), 2.0) << "their mean";
+}
+
+TEST_F(OffersTest, AMeasuredErrorAboveTheLimitRefutesTheTable) {
+  const auto refuted = [](double low, double value) {
+    return MeasuredError{.relative_rmse = {value, low, 2.0 * value - low}};
+  };
+  scene_.accuracy = MaxError{0.35};
+  const scene::Scene decided = *desk_.Decide(scene_);
+  ASSERT_EQ(scene::CountOf(decided.rendering.technique), 64);
+  MeasuredErrors measured;
+  const Setting drawn = SettingOf(decided);
+  EXPECT_FALSE(desk_.offers.Refutes(decided, drawn, refuted(0.34, 0.40), &measured))
+      << "not surely";
+  EXPECT_TRUE(desk_.offers.Refutes(decided, drawn, refuted(0.36, 0.45), &measured));
+  const scene::Scene again = *desk_.offers.Decide(scene_, drawn, measured);
+  EXPECT_EQ(scene::CountOf(again.rendering.technique), 128) << "0.2 times 1.5 is within it";
+  scene_.accuracy = MaxMilliseconds{10.0};
+  EXPECT_FALSE(desk_.offers.Refutes(*desk_.Decide(scene_), drawn, refuted(0.9, 1.0), &measured))
+      << "no error was asked for";
+}
+
 TEST_F(OffersTest, SaysWhatIsOutOfReachAndWhatIsNearest) {
   scene_.accuracy = MaxError{0.05};
   scene::Scene decided = *desk_.Decide(scene_);
@@ -283,6 +323,14 @@ TEST_F(TracedOffersTest, APictureWaitsForTheFewestPathsThatItsErrorNeeds) {
   EXPECT_EQ(paths_for(MaxError{0.06}), 1'000'000);
   EXPECT_EQ(paths_for(MaxError{0.01}), kTracedPaths) << "out of reach";
   EXPECT_EQ(paths_for(std::monostate()), kImagePaths);
+  // Measured with 100 000 paths, it has one and a half times the error of the table.
+  scene_.accuracy = MaxError{0.09};
+  Setting drawn = SettingOf(*desk_.Decide(scene_));
+  drawn.million_paths = 0.1;
+  MeasuredErrors measured;
+  const MeasuredError error{.relative_rmse = {0.12, 0.11, 0.13}};
+  ASSERT_TRUE(desk_.offers.Refutes(scene_, drawn, error, &measured));
+  EXPECT_EQ(desk_.estimator.PathsFor(*desk_.Decide(scene_), measured), 1'000'000);
 }
 
 TEST_F(TracedOffersTest, FramesOfTracedLightTeachTheirSettingsTime) {
