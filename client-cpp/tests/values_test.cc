@@ -187,6 +187,9 @@ TEST_F(SessionStateTest, WhoAsksSteersOnlyWhileControlIsFree) {
   state.presence.set_presenter_away(true);
   EXPECT_FALSE(state.SteersWhoAsks()) << "an absent presenter keeps control";
   state.presence.set_presenter_away(false);
+  state.presence.mutable_awaited()->set_viewer_id(5);
+  EXPECT_FALSE(state.SteersWhoAsks()) << "nor is control free that waits for its holder";
+  state.presence.clear_awaited();
   state.presence.set_steering_viewer_id(3);
   EXPECT_FALSE(state.SteersWhoAsks());
   state.presence.set_steering_viewer_id(0);

@@ -36,8 +36,9 @@ bool SessionState::AsksControl() const {
 }
 
 bool SessionState::SteersWhoAsks() const {
-  // A presenter who is away keeps control, though nobody steers.
-  const bool free = presence.steering_viewer_id() == 0 && !presence.presenter_away();
+  // Control that is kept for one who is away is not free, though nobody steers.
+  const bool free =
+      presence.steering_viewer_id() == 0 && !presence.presenter_away() && !presence.has_awaited();
   return free && presence.rules().viewers_may_steer() && !presence.rules().control_locked();
 }
 

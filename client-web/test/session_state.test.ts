@@ -105,14 +105,16 @@ describe("a session's state", () => {
 
   it("knows when who asks gets control at once", () => {
     const viewer = joined(2n, Role.VIEWER);
-    const steers = (steeringId: bigint, rules: object, presenterAway = false) => {
+    const steers = (steeringId: bigint, rules: object, more: object = {}) => {
       const told = presence([TEACHER, person(2n)], steeringId, rules);
-      viewer.takePresence({ ...told, presenterAway });
+      viewer.takePresence({ ...told, ...more });
       return viewer.steersWhoAsks.value;
     };
     expect(steers(0n, { viewersMaySteer: true })).toBe(true);
     expect(steers(1n, { viewersMaySteer: true })).toBe(false);
-    expect(steers(0n, { viewersMaySteer: true }, true)).toBe(false);
+    expect(steers(0n, { viewersMaySteer: true }, { presenterAway: true })).toBe(false);
+    expect(steers(0n, { viewersMaySteer: true }, { awaited: person(3n) })).toBe(false);
+    expect(viewer.editBlock.value).toBe("Control waits for Viewer 3 to come back.");
     expect(steers(0n, { viewersMaySteer: false })).toBe(false);
     expect(steers(0n, { viewersMaySteer: true, controlLocked: true })).toBe(false);
   });

@@ -27,20 +27,24 @@ constexpr int kParticipantKeyWords = 4;  // of 8 hexadecimal digits
 // Clients add a random share of their own, so that they do not come back all at once.
 constexpr std::chrono::milliseconds kComeBackAfter{1000};
 
+void SetPerson(const session::Person& person, v1::Person& message) {
+  message.set_viewer_id(person.id);
+  message.set_name(person.name);
+  message.set_role(RoleMessage(person.role));
+  message.set_follows(person.follows);
+  message.set_hidden(person.hidden);
+  message.set_asks_control(person.asks);
+}
+
 std::string PresenceOf(const session::Roster& roster) {
   v1::InteractResponse response;
   v1::Presence& presence = *response.mutable_presence();
-  for (const session::Person& person : roster.people()) {
-    v1::Person& message = *presence.add_people();
-    message.set_viewer_id(person.id);
-    message.set_name(person.name);
-    message.set_role(RoleMessage(person.role));
-    message.set_follows(person.follows);
-    message.set_hidden(person.hidden);
-    message.set_asks_control(person.asks);
-  }
+  for (const session::Person& person : roster.people()) SetPerson(person, *presence.add_people());
   presence.set_steering_viewer_id(roster.steering());
   presence.set_presenter_away(roster.presenter_away());
+  if (const session::Person* const awaited = roster.awaited(); awaited != nullptr) {
+    SetPerson(*awaited, *presence.mutable_awaited());
+  }
   ToMessage(roster.rules(), *presence.mutable_rules());
   return response.SerializeAsString();
 }

@@ -10,6 +10,7 @@
 #include "base/out_of_memory.h"
 #include "base/status.h"
 #include "google/protobuf/util/field_mask_util.h"
+#include "service/messages/camera_messages.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"
 
@@ -60,42 +61,65 @@ absl::StatusOr<v1::Scene> Merged(v1::Scene scene, const SceneChange& change) {
   return scene;
 }
 
+absl::StatusOr<ReadScene> Read(std::uint64_t revision, const std::string& serialized) {
+  ReadScene read{.revision = revision};
+  if (!read.scene.ParseFromString(serialized)) {
+    return absl::InternalError("the session's scene cannot be read back");
+  }
+  return read;
+}
+
+// Also one that waits for its storm.
+absl::StatusOr<ReadScene> NewestTakenOf(session::Session& session) {
+  const std::optional<session::SerializedScene> newest = session.NewestTaken();
+  if (!newest.has_value()) return absl::InternalError("the session has no scene yet");
+  return Read(newest->revision, newest->scene);
+}
+
 struct Changed {
   std::uint64_t revision = 0;
   std::shared_ptr<v1::Scene> scene;
 };
 
-absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const SceneChange& change) {
+absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const SceneChange& change,
+                             std::function<bool()> still_counts) {
   Changed changed{0, std::make_shared<v1::Scene>(change.scene)};
   std::optional<std::uint64_t> expected = change.expected_revision;
   if (change.update_mask.paths_size() > 0) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckMask(change.update_mask));
-    THUNDERHEAD_ASSIGN_OR_RETURN(ReadScene newest, NewestSceneOf(session));
     // The fields that are not named must not be older than the newest.
+    THUNDERHEAD_ASSIGN_OR_RETURN(ReadScene newest, NewestTakenOf(session));
     if (!expected.has_value()) expected = newest.revision;
     THUNDERHEAD_ASSIGN_OR_RETURN(*changed.scene, Merged(std::move(newest.scene), change));
   }
   THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine.store, engine.loop.Techniques(), *changed.scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine.limits, *changed.scene));
   // Taken before the scene is framed, which may wait for a read, so that the last update wins.
+  session::IncompleteUpdate update{.still_counts = std::move(still_counts)};
+  if (NeedsFraming(*changed.scene)) update.serialized = changed.scene->SerializeAsString();
   if (!expected.has_value()) {
-    changed.revision = session.TakeRevision();
+    changed.revision = session.TakeRevision(std::move(update));
   } else {
-    THUNDERHEAD_ASSIGN_OR_RETURN(changed.revision, session.TakeRevisionAfter(*expected));
+    THUNDERHEAD_ASSIGN_OR_RETURN(changed.revision,
+                                 session.TakeRevisionAfter(*expected, std::move(update)));
   }
   return changed;
+}
+
+// Whoever sent the update lost control and has it again, but another change was made meanwhile.
+absl::Status Overruled() {
+  return base::WithDetails(
+      absl::AbortedError("somebody else steered while the storm of this update was read, and "
+                         "changed the scene; make the change to the newest scene"),
+      {.reason = "REVISION_CHANGED"});
 }
 
 }  // namespace
 
 absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session) {
   const std::optional<session::NewestScene> newest = session.Newest();
-  ReadScene read;
-  if (!newest.has_value() || !read.scene.ParseFromString(*newest->serialized)) {
-    return absl::InternalError("the session's scene cannot be read back");
-  }
-  read.revision = newest->revision;
-  return read;
+  if (!newest.has_value()) return absl::InternalError("the session has no scene yet");
+  return Read(newest->revision, *newest->serialized);
 }
 
 void ChangeScene(Engine& engine, const std::string& owner,
@@ -103,7 +127,7 @@ void ChangeScene(Engine& engine, const std::string& owner,
                  std::function<absl::Status()> may,
                  std::function<void(const absl::StatusOr<std::uint64_t>&)> done) {
   if (const absl::Status allowed = may(); !allowed.ok()) return done(allowed);
-  const auto changed = Take(engine, *session, change);
+  const auto changed = Take(engine, *session, change, [may] { return may().ok(); });
   if (!changed.ok()) return done(changed.status());
   const std::uint64_t revision = changed->revision;
   const std::shared_ptr<v1::Scene> scene = changed->scene;
@@ -112,8 +136,9 @@ void ChangeScene(Engine& engine, const std::string& owner,
              done = std::move(done)](const absl::Status& framed) {
               const absl::Status shown = !framed.ok() ? framed : base::OrOutOfMemory([&] {
                 THUNDERHEAD_RETURN_IF_ERROR(may());
-                session->Show(revision, ToScene(*scene), scene->SerializeAsString());
-                return absl::OkStatus();
+                return session->Show(revision, ToScene(*scene), scene->SerializeAsString())
+                           ? absl::OkStatus()
+                           : Overruled();
               });
               if (shown.ok()) return done(revision);
               session->Drop(revision);

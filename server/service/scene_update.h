@@ -34,8 +34,9 @@ absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session);
 
 // Completes the changed scene and shows it, then calls `done` with its revision: at once, or on
 // another thread if the storm must be read to place the camera. `may` says whether who asks may
-// change the scene, and is called first and, as control may pass on during the read, before the
-// scene is shown. The change's limits were checked. `owner` is the identity that asks.
+// change the scene. It is called first; as control may pass on during the read, before the scene is
+// shown; and when another change comes meanwhile, which this one does not stand in the way of once
+// it may not be made any more. The change's limits were checked. `owner` is the identity that asks.
 // INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the scene is at another revision.
 void ChangeScene(Engine& engine, const std::string& owner,
                  const std::shared_ptr<session::Session>& session, const SceneChange& change,

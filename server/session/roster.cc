@@ -51,7 +51,7 @@ std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string ke
     asked_and_left_.erase(asked);
   }
   const bool is_awaited =
-      awaited_.has_value() && awaited_->key == person.key && awaited_->role == role;
+      awaited_.has_value() && awaited_->left.key == person.key && awaited_->left.role == role;
   const bool is_kept = away_since_.has_value();
   const bool is_given = person.asks && GivesToWhoAsks();
   if (is_awaited || is_given || (is_kept && role == Role::kPresenter)) Give(person);
@@ -75,7 +75,7 @@ void Roster::Leave(std::uint64_t id, Time now) {
   if (heir != nullptr) return Give(*heir);
   if (left.key.empty()) return GiveBack(now);
   steering_ = 0;
-  awaited_ = {left.role, left.key, now};
+  awaited_ = {left, now};
 }
 
 void Roster::Heard(std::uint64_t id) {
@@ -89,7 +89,7 @@ void Roster::Checked(std::uint64_t id, std::uint64_t doubts, Time now) {
 
 bool Roster::presenter_away() const {
   if (away_since_.has_value()) return true;
-  return awaited_.has_value() && awaited_->role == Role::kPresenter &&
+  return awaited_.has_value() && awaited_->left.role == Role::kPresenter &&
          std::ranges::find(people_, Role::kPresenter, &Person::role) == people_.end();
 }
 

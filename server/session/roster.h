@@ -138,6 +138,8 @@ class Roster {
   // 0: nobody.
   std::uint64_t steering() const { return steering_; }
   bool presenter_away() const;
+  // The one for whom control waits, as they left; null: nobody.
+  const Person* awaited() const { return awaited_.has_value() ? &awaited_->left : nullptr; }
   bool control_is_free() const {
     return steering_ == 0 && !away_since_.has_value() && !awaited_.has_value();
   }
@@ -147,8 +149,7 @@ class Roster {
  private:
   // The one who steered and has lost the connection.
   struct Awaited {
-    Role role = Role::kViewer;
-    std::string key;
+    Person left;
     Time left_at;
   };
   // A request for control by one who has left.

@@ -54,16 +54,30 @@ Session::Session(std::string id, SessionKeys keys, const Rules& rules, Board boa
       hub_(signals.on_work, signals.on_due),
       audience_(format, rules, std::move(board), Clock::now(), signals.on_due, timeouts) {}
 
-std::uint64_t Session::TakeRevision() {
+std::uint64_t Session::TakeRevision(IncompleteUpdate update) {
   const std::lock_guard lock(mutex_);
-  taken_revisions_.insert(++revision_count_);
+  taken_.emplace(++revision_count_, std::move(update));
   return revision_count_;
 }
 
-absl::StatusOr<std::uint64_t> Session::TakeRevisionAfter(std::uint64_t expected) {
+void Session::DropOverruled() {
+  std::map<std::uint64_t, IncompleteUpdate> taken;
+  {
+    const std::lock_guard lock(mutex_);
+    taken = taken_;
+  }
+  // Asks the roster, which has a lock of its own.
+  for (const auto& [revision, update] : taken) {
+    if (update.still_counts != nullptr && !update.still_counts()) Drop(revision);
+  }
+}
+
+absl::StatusOr<std::uint64_t> Session::TakeRevisionAfter(std::uint64_t expected,
+                                                         IncompleteUpdate update) {
+  DropOverruled();
   const std::lock_guard lock(mutex_);
   std::uint64_t newest = newest_.has_value() ? newest_->revision : 0;
-  if (!taken_revisions_.empty()) newest = std::max(newest, *taken_revisions_.rbegin());
+  if (!taken_.empty()) newest = std::max(newest, taken_.rbegin()->first);
   if (newest != expected) {
     return base::WithDetails(
         absl::AbortedError(absl::StrCat("the scene is at revision ", newest, ", not ", expected,
@@ -71,22 +85,35 @@ absl::StatusOr<std::uint64_t> Session::TakeRevisionAfter(std::uint64_t expected)
                                         "newest scene")),
         {.reason = "REVISION_CHANGED", .metadata = {{"revision", absl::StrCat(newest)}}});
   }
-  taken_revisions_.insert(++revision_count_);
+  taken_.emplace(++revision_count_, std::move(update));
   return revision_count_;
+}
+
+std::optional<SerializedScene> Session::NewestTaken() {
+  DropOverruled();
+  const std::lock_guard lock(mutex_);
+  if (!taken_.empty() && !taken_.rbegin()->second.serialized.empty()) {
+    const auto& [revision, update] = *taken_.rbegin();
+    if (!newest_.has_value() || revision > newest_->revision) {
+      return SerializedScene{revision, update.serialized};
+    }
+  }
+  if (!newest_.has_value()) return std::nullopt;
+  return SerializedScene{newest_->revision, *newest_->serialized};
 }
 
 void Session::Drop(std::uint64_t revision) {
   const std::lock_guard lock(mutex_);
-  taken_revisions_.erase(revision);
+  taken_.erase(revision);
 }
 
-void Session::Show(std::uint64_t revision, scene::Scene scene, std::string serialized) {
+bool Session::Show(std::uint64_t revision, scene::Scene scene, std::string serialized) {
   std::vector<std::shared_ptr<OwnView>> views;
   NewestScene newest;
   {
     const std::lock_guard lock(mutex_);
-    taken_revisions_.erase(revision);
-    if (newest_.has_value() && newest_->revision > revision) return;
+    if (taken_.erase(revision) == 0) return false;
+    if (newest_.has_value() && newest_->revision > revision) return true;
     const Clock::time_point now = Clock::now();
     newest_ = {.revision = revision,
                .scene = std::make_shared<const scene::Scene>(std::move(scene)),
@@ -102,19 +129,18 @@ void Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
   }
   audience_.SceneChanged(newest.revision, Clock::now());
   signals_.on_work();
+  return true;
 }
 
 void Session::ShowRestored(const SessionRecord& record, scene::Scene scene,
                            std::string serialized) {
   if (record.control_is_free) audience_.RestoreFreeControl();
-  std::uint64_t revision = 0;
   {
     const std::lock_guard lock(mutex_);
-    revision_count_ = record.scene_revision + kUnsavedRevisions;
-    revision = revision_count_;
+    revision_count_ = record.scene_revision + kUnsavedRevisions - 1;
     last_used_ = Clock::now();
   }
-  Show(revision, std::move(scene), std::move(serialized));
+  Show(TakeRevision(), std::move(scene), std::move(serialized));
 }
 
 void Session::Close(const absl::Status& why) {

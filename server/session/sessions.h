@@ -11,7 +11,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,6 +57,17 @@ struct SessionSignals {
 
 class OwnView;
 
+// An update whose scene is not complete yet.
+struct IncompleteUpdate {
+  std::function<bool()> still_counts = {};  // its sender may have lost control; absent: it does
+  std::string serialized = {};              // the scene as far as it is known; may be left out
+};
+
+struct SerializedScene {
+  std::uint64_t revision = 0;
+  std::string scene;
+};
+
 class Session {
  public:
   // `signals` are called from any thread.
@@ -78,15 +88,19 @@ class Session {
 
   // A new revision, larger than all before. Taken when an update arrives, before its scene is
   // complete, so that the update that arrived last wins. Show or Drop comes after it.
-  std::uint64_t TakeRevision();
+  std::uint64_t TakeRevision(IncompleteUpdate update = {});
   // The same for a change to the revision `expected`. ABORTED if there has been another since, or
-  // one is on its way.
-  absl::StatusOr<std::uint64_t> TakeRevisionAfter(std::uint64_t expected);
-  // The revision was taken for a scene that cannot be shown.
+  // one is on its way. Those on their way that count no more are dropped.
+  absl::StatusOr<std::uint64_t> TakeRevisionAfter(std::uint64_t expected,
+                                                  IncompleteUpdate update = {});
+  // The revision was taken for a scene that is not to be shown.
   void Drop(std::uint64_t revision);
-  // Replaces the newest scene unless that has a newer revision.
-  void Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "");
+  // Replaces the newest scene unless that has a newer revision. False if the revision was dropped:
+  // changes were made without it.
+  bool Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "");
   std::optional<NewestScene> Newest() const;
+  // The scene of the newest update that counts, complete or not; none before the first.
+  std::optional<SerializedScene> NewestTaken();
 
   // The scene of a record, with a larger revision than any client has seen.
   void ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized);
@@ -108,6 +122,9 @@ class Session {
  private:
   friend class OwnView;
 
+  // Drops those on their way that count no more.
+  void DropOverruled();
+
   const std::string id_;
   const SessionKeys keys_;
   const std::string owner_;
@@ -117,7 +134,7 @@ class Session {
   Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;
-  std::set<std::uint64_t> taken_revisions_;  // neither shown nor dropped
+  std::map<std::uint64_t, IncompleteUpdate> taken_;  // by revision; neither shown nor dropped
   std::optional<NewestScene> newest_;
   ChangeRhythm rhythm_;
   Clock::time_point last_used_ = Clock::now();

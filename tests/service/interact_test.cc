@@ -34,6 +34,15 @@ v1::InteractRequest SunTo(float azimuth_deg) {
   return request;
 }
 
+// The storm must be read to place its camera.
+v1::InteractRequest SlowSunTo(float azimuth_deg) {
+  v1::InteractRequest request = SunTo(azimuth_deg);
+  v1::Scene& scene = *request.mutable_update_scene()->mutable_scene();
+  scene.set_time_index(2);
+  scene.mutable_camera()->mutable_spotter();
+  return request;
+}
+
 v1::InteractRequest Asks() {
   v1::InteractRequest request;
   request.mutable_ask_control();
@@ -499,23 +508,73 @@ TEST(InteractTest, AnUpdateIsNotShownAfterControlWasTaken) {
   group.presenter->Send(Gives(group.ana->viewer_id()));
   ASSERT_TRUE(Class::SteersFor(*group.ben, group.ana->viewer_id()));
   group.service.store->reading.Close();
-  v1::InteractRequest slow = SunTo(90.0F);
-  slow.mutable_update_scene()->mutable_scene()->set_time_index(2);
-  slow.mutable_update_scene()->mutable_scene()->mutable_camera()->mutable_spotter();
-  const std::uint64_t waits = group.ana->Send(slow);
+  const std::uint64_t waits = group.ana->Send(SlowSunTo(90.0F));
   ASSERT_TRUE(group.service.store->reading.AwaitWaiting(1));
   group.presenter->Send(Takes());
   ASSERT_TRUE(Class::SteersFor(*group.ben, group.presenter->viewer_id()));
+  // It is not waited for by whoever steers now, and knows only the scene that was shown.
+  v1::InteractRequest next = SunTo(120.0F);
+  next.mutable_update_scene()->set_expected_revision(1);
+  const Response taken = group.presenter->Answer(group.presenter->Send(next));
+  ASSERT_TRUE(taken.has_scene_taken()) << taken.ShortDebugString();
+  EXPECT_EQ(group.ben->AwaitScene(taken.scene_taken().scene_revision()).sun().azimuth_deg(),
+            120.0F);
   group.service.store->reading.Open();
   const Response refused = group.ana->Answer(waits);
   EXPECT_EQ(refused.refused().status().code(), grpc::StatusCode::PERMISSION_DENIED);
   EXPECT_EQ(ReasonOf(refused.refused().status()), "NOT_STEERING");
-  const std::uint64_t revision =
-      group.presenter->Answer(group.presenter->Send(SunTo(120.0F))).scene_taken().scene_revision();
-  EXPECT_EQ(group.ben->AwaitScene(revision).sun().azimuth_deg(), 120.0F);
   for (const Response& message : group.ben->All()) {
     EXPECT_NE(message.scene().scene().sun().azimuth_deg(), 90.0F);
   }
+}
+
+// Nor is it shown over what was changed meanwhile, though its sender steers again by then.
+TEST(InteractTest, AnUpdateThatWasOverruledIsRefusedToWhoSteersAgain) {
+  Class group;
+  group.presenter->Send(Gives(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ben, group.ana->viewer_id()));
+  group.service.store->reading.Close();
+  const std::uint64_t waits = group.ana->Send(SlowSunTo(90.0F));
+  ASSERT_TRUE(group.service.store->reading.AwaitWaiting(1));
+  group.presenter->Send(Takes());
+  ASSERT_TRUE(Class::SteersFor(*group.ben, group.presenter->viewer_id()));
+  v1::InteractRequest next = SunTo(120.0F);
+  next.mutable_update_scene()->set_expected_revision(1);
+  ASSERT_TRUE(group.presenter->Answer(group.presenter->Send(next)).has_scene_taken());
+  group.presenter->Send(Gives(group.ana->viewer_id()));
+  ASSERT_TRUE(Class::SteersFor(*group.ben, group.ana->viewer_id()));
+  group.service.store->reading.Open();
+  const Response refused = group.ana->Answer(waits);
+  EXPECT_EQ(refused.refused().status().code(), grpc::StatusCode::ABORTED);
+  EXPECT_EQ(ReasonOf(refused.refused().status()), "REVISION_CHANGED");
+}
+
+// The fields that the second leaves alone are the first's, which is not shown yet.
+TEST(InteractTest, AChangeOfSomeFieldsIsTakenWhileTheSceneBeforeItWaitsForItsStorm) {
+  Class group;
+  group.service.store->reading.Close();
+  const std::uint64_t waits = group.presenter->Send(SlowSunTo(90.0F));
+  ASSERT_TRUE(group.service.store->reading.AwaitWaiting(1));
+  v1::InteractRequest exposes;
+  exposes.mutable_update_scene()->mutable_scene()->mutable_display()->set_exposure_ev(0.5F);
+  exposes.mutable_update_scene()->mutable_update_mask()->add_paths("display.exposure_ev");
+  const std::uint64_t follows = group.presenter->Send(exposes);
+  // Requests are read in their order.
+  v1::InteractRequest rename;
+  rename.mutable_set_name()->set_name("Read");
+  group.presenter->Send(rename);
+  ASSERT_TRUE(group.ben->AwaitPresence([](const v1::Presence& presence) {
+    return std::ranges::any_of(presence.people(),
+                               [](const v1::Person& person) { return person.name() == "Read"; });
+  }));
+  group.service.store->reading.Open();
+  ASSERT_TRUE(group.presenter->Answer(waits).has_scene_taken());
+  const Response taken = group.presenter->Answer(follows);
+  ASSERT_TRUE(taken.has_scene_taken()) << taken.ShortDebugString();
+  const v1::Scene scene = group.ben->AwaitScene(taken.scene_taken().scene_revision());
+  EXPECT_EQ(scene.sun().azimuth_deg(), 90.0F);
+  EXPECT_EQ(scene.time_index(), 2U);
+  EXPECT_EQ(scene.display().exposure_ev(), 0.5F);
 }
 
 TEST(InteractTest, ARefusedSceneDoesNotBlockTheNextChange) {
@@ -888,8 +947,11 @@ TEST(InteractTest, WhoReconnectsSteersAgain) {
   const std::string key = group.presenter->participant_key();
   group.presenter->Cancel();
   ASSERT_TRUE(Class::SteersFor(*group.ana, 0)) << "not the other presenter";
+  EXPECT_EQ(group.ana->AwaitNewest(Response::kPresence).presence().awaited().viewer_id(),
+            group.presenter->viewer_id());
   Interacting back(group.service.stub(), group.created.session_id(), {.participant_key = key});
   EXPECT_TRUE(Class::SteersFor(*group.ana, back.viewer_id()));
+  EXPECT_FALSE(group.ana->AwaitNewest(Response::kPresence).presence().has_awaited());
   EXPECT_EQ(back.AnswerCode(back.Send(SunTo(120.0F))), grpc::StatusCode::OK);
 }
 

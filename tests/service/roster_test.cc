@@ -311,9 +311,12 @@ TEST(RosterTest, APresenterNeedNotWaitForOneWhoHasLostTheConnection) {
 TEST(RosterTest, AViewerWhoSteersAndReconnectsSteersAgain) {
   ClassWithKeys group;
   ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  EXPECT_EQ(group.roster.awaited(), nullptr);
   group.roster.Leave(group.ana, kOpenedAt);
   EXPECT_EQ(group.roster.steering(), 0U);
   EXPECT_FALSE(group.roster.control_is_free());
+  ASSERT_NE(group.roster.awaited(), nullptr);
+  EXPECT_EQ(group.roster.awaited()->name, "Ana");
   const std::uint64_t ben = group.roster.Join(Role::kViewer, "Ben", kOpenedAt, "ben");
   ASSERT_TRUE(group.roster.AskControl(ben, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), 0U);
@@ -322,9 +325,11 @@ TEST(RosterTest, AViewerWhoSteersAndReconnectsSteersAgain) {
   EXPECT_EQ(group.roster.steering(), 0U);
   const std::uint64_t back = group.AnaAgain(kOpenedAt + seconds(5));
   EXPECT_EQ(group.roster.steering(), back);
+  EXPECT_EQ(group.roster.awaited(), nullptr);
   group.roster.Leave(back, kOpenedAt + seconds(6));
   group.roster.Advance(kOpenedAt + seconds(6) + kTimeouts.come_back);
   EXPECT_EQ(group.roster.steering(), group.presenter) << "the first who is there";
+  EXPECT_EQ(group.roster.awaited(), nullptr) << "not any more";
 }
 
 TEST(RosterTest, ControlOfAViewerWhoStaysAwayIsKeptForAPresenterWhoIsAwayToo) {

@@ -16,7 +16,9 @@ namespace {
 std::string WhoSteers(const client::SessionState& state) {
   if (state.Steers()) return "You steer";
   const v1::Person* const steerer = state.Steerer();
-  return steerer == nullptr ? "Nobody steers" : absl::StrCat(state.NameOf(*steerer), " steers");
+  if (steerer != nullptr) return absl::StrCat(state.NameOf(*steerer), " steers");
+  if (!state.presence.has_awaited()) return "Nobody steers";
+  return absl::StrCat("Waiting for ", state.NameOf(state.presence.awaited()), " to come back");
 }
 
 void DisabledButton(const char* label, const char* reason = nullptr) {

@@ -42,6 +42,8 @@ export class SessionState {
   readonly steeringId = signal(0n);
   readonly rules = signal<SessionRules>(create(SessionRulesSchema));
   readonly presenterAway = signal(false);
+  // The one who steered and is gone, for whom control waits some seconds.
+  readonly awaited = signal<Person | undefined>(undefined);
   readonly pointers = signal<readonly Pointer[]>([]);
   readonly marks = signal<readonly Mark[]>([]);
   readonly pendingMarks = signal<readonly PendingMark[]>([]);
@@ -60,7 +62,8 @@ export class SessionState {
   // Nobody steers, and whoever asks gets control at once.
   readonly steersWhoAsks = computed(() => {
     const { viewersMaySteer, controlLocked } = this.rules.value;
-    const free = this.steeringId.value === 0n && !this.presenterAway.value;
+    const kept = this.presenterAway.value || this.awaited.value !== undefined;
+    const free = this.steeringId.value === 0n && !kept;
     return free && viewersMaySteer === true && controlLocked !== true;
   });
   // True for the people who answer those who ask.
@@ -91,6 +94,8 @@ export class SessionState {
     if (this.person(this.me.value.viewerId) === undefined) return "Joining the session …";
     const steerer = this.steerer.value;
     if (steerer !== undefined) return `${this.nameOf(steerer)} steers.`;
+    const awaited = this.awaited.value;
+    if (awaited !== undefined) return `Control waits for ${this.nameOf(awaited)} to come back.`;
     if (this.presenterAway.value) return "The presenter is away, and keeps control.";
     return "Nobody steers.";
   });
@@ -133,6 +138,7 @@ export class SessionState {
       this.people.value = presence.people;
       this.steeringId.value = presence.steeringViewerId;
       this.presenterAway.value = presence.presenterAway;
+      this.awaited.value = presence.awaited;
       if (presence.rules !== undefined) this.rules.value = presence.rules;
     });
   }
@@ -156,6 +162,7 @@ export class SessionState {
       this.me.value = undefined;
       this.people.value = [];
       this.steeringId.value = 0n;
+      this.awaited.value = undefined;
       this.pointers.value = [];
       this.pendingMarks.value = [];
       this.lookingAround.value = false;

@@ -34,7 +34,7 @@ function Control({ page }: { page: Page }) {
   // One button whatever it does, so that it keeps the keyboard's focus.
   return (
     <>
-      <span class="who-steers" data-testid="who-steers">
+      <span class="who-steers" title={whyWaiting(session)} data-testid="who-steers">
         {whoSteers(session)}
       </span>
       <button
@@ -100,7 +100,20 @@ function controlStep({ state: { session }, actions }: Page): ControlStep {
 function whoSteers(session: SessionState): string {
   if (session.steering.value) return "You steer";
   const steerer = session.steerer.value;
-  return steerer === undefined ? "Nobody steers" : `${session.nameOf(steerer)} steers`;
+  if (steerer !== undefined) return `${session.nameOf(steerer)} steers`;
+  const awaited = session.awaited.value;
+  return awaited === undefined
+    ? "Nobody steers"
+    : `Waiting for ${session.nameOf(awaited)} to come back`;
+}
+
+// What becomes of control meanwhile.
+function whyWaiting(session: SessionState): string | undefined {
+  if (session.awaited.value === undefined) return undefined;
+  const who = "Whoever steered and has left or lost the connection has some seconds to come back.";
+  return session.presenting.value
+    ? `${who} Then control is the presenter's; you need not wait to take it`
+    : `${who} Then control is the presenter's`;
 }
 
 function lookingAround(others: number): string {
