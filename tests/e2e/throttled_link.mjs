@@ -1,4 +1,5 @@
-// A link of limited speed and some length before a server, that can also be cut or fall silent: a TCP proxy. Chromium's own emulation leaves WebSockets alone.
+// A link of limited speed and some length before a server, that can also be cut, fall silent or lose its connections without a
+// word: a TCP proxy. Chromium's own emulation leaves WebSockets alone.
 import { createServer, connect } from "node:net";
 
 const SLICE_BYTES = 1460;
@@ -9,7 +10,7 @@ const SILENCE_MS = 20;
 
 // One direction: bytes leave at the link's speed and arrive after half its round trip. Like a router it holds little, so a
 // sender is held back once that is full.
-function carry(from, to, bytesPerMs, delayMs, link) {
+function carry(from, to, bytesPerMs, delayMs, link, pair) {
   const BUFFER_BYTES = 16 * 1024;
   let freeAt = 0;
   let held = 0;
@@ -18,7 +19,7 @@ function carry(from, to, bytesPerMs, delayMs, link) {
   const arrive = () => {
     if (link.silent) return setTimeout(arrive, SILENCE_MS);
     const slice = onTheirWay.shift();
-    if (to.writable) to.write(slice);
+    if (to.writable && !pair.lost) to.write(slice);
   };
   from.on("data", (data) => {
     for (let at = 0; at < data.length; at += SLICE_BYTES) {
@@ -34,14 +35,22 @@ function carry(from, to, bytesPerMs, delayMs, link) {
     }
     if (held >= BUFFER_BYTES) from.pause();
   });
-  from.on("end", () => setTimeout(() => to.end(), Math.max(0, freeAt - performance.now()) + delayMs + END_MS));
-  from.on("error", () => to.destroy());
+  const end = () => {
+    if (!pair.lost) to.end();
+  };
+  from.on("end", () => setTimeout(end, Math.max(0, freeAt - performance.now()) + delayMs + END_MS));
+  from.on("error", () => {
+    if (!pair.lost) to.destroy();
+  });
 }
 
 // Returns its port; functions that cut it (connections break, new ones are refused), silence it (connections stay, nothing
-// arrives) and heal it; and the one that closes it.
+// arrives), lose it (the same, but what it carries now never arrives, not even that a connection was closed) and heal it; and
+// the one that closes it.
 export async function throttledLink({ port, kbitPerS, roundTripMs }) {
   const sockets = new Set();
+  // Connections from end to end.
+  const pairs = new Set();
   const link = { cut: false, silent: false };
   const breakAll = () => {
     for (const socket of sockets) socket.destroy();
@@ -49,12 +58,17 @@ export async function throttledLink({ port, kbitPerS, roundTripMs }) {
   const server = createServer({ allowHalfOpen: true, noDelay: true }, (near) => {
     if (link.cut) return near.destroy();
     const far = connect({ port, host: "127.0.0.1", allowHalfOpen: true, noDelay: true });
+    const pair = { lost: false };
+    pairs.add(pair);
     for (const socket of [near, far]) {
       sockets.add(socket);
-      socket.on("close", () => sockets.delete(socket));
+      socket.on("close", () => {
+        sockets.delete(socket);
+        pairs.delete(pair);
+      });
     }
-    carry(near, far, kbitPerS / 8, roundTripMs / 2, link);
-    carry(far, near, kbitPerS / 8, roundTripMs / 2, link);
+    carry(near, far, kbitPerS / 8, roundTripMs / 2, link, pair);
+    carry(far, near, kbitPerS / 8, roundTripMs / 2, link, pair);
   });
   await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
   return {
@@ -65,6 +79,10 @@ export async function throttledLink({ port, kbitPerS, roundTripMs }) {
     },
     silence: () => {
       link.silent = true;
+    },
+    lose: () => {
+      link.silent = true;
+      for (const pair of pairs) pair.lost = true;
     },
     heal: () => {
       link.cut = false;
