@@ -7,6 +7,7 @@ import {
   FIRST_ANNOTATIONS,
   letterPxOf,
   type Shape,
+  type TextShape,
   widthForPx,
 } from "../src/core/annotations";
 import type { OrbitPose, SpotterPose, TopDownPose } from "../src/core/camera";
@@ -106,6 +107,19 @@ test("title, time and legend stand in their corners", () => {
   expect(annotationsOf(PICTURE, none)).toEqual([]);
 });
 
+test("a legend that is longer than the picture is high goes on beside its first column", () => {
+  const legend = ["Cloud", "Rain", "Graupel"].map((name) => ({ name, color: "#112233" }));
+  const shapes = annotationsOf(
+    { ...PICTURE, legend, inset: { left: 0, top: 300, right: 0, bottom: 60 } },
+    { ...FIRST_ANNOTATIONS, title: false, time: false, compass: false },
+  );
+  const [cloud, rain, graupel] = texts(shapes);
+  expect([rain?.x, rain?.y]).toEqual([cloud?.x, (cloud?.y ?? 0) + 15]);
+  expect(rain?.y).toBeLessThanOrEqual(340);
+  expect(graupel?.y).toBe(cloud?.y);
+  expect(graupel?.x).toBeLessThan((cloud?.x ?? 0) - 40);
+});
+
 test("letters in a file are as large as in a window, and no text is longer than the picture", () => {
   expect([letterPxOf(1920, 1080), letterPxOf(1000, 620), letterPxOf(390, 844)]).toEqual([
     24, 14, 13,
@@ -126,6 +140,58 @@ test("degrees stand along the horizon where they are", () => {
   expect(at["020°"]).toBeCloseTo(400 + (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at["340°"]).toBeCloseTo(400 - (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at.S).toBeUndefined();
+});
+
+// As wide as letters of common fonts are.
+function boxOf({ x, y, anchor, text: words }: TextShape, letterPx: number) {
+  const widthPx = 0.6 * letterPx * words.length;
+  const left = { start: x, middle: x - widthPx / 2, end: x - widthPx }[anchor];
+  return { left, right: left + widthPx, top: y - 0.75 * letterPx, bottom: y + 0.2 * letterPx };
+}
+
+test("no text lies on another, wherever the horizon is", () => {
+  let named = 0;
+  for (const [widthPx, heightPx] of [
+    [320, 640],
+    [390, 844],
+    [900, 700],
+    [1920, 1080],
+  ] as const)
+    for (let elevationDeg = -30; elevationDeg <= 30; elevationDeg += 0.25) {
+      const [sine, cosine] = [elevationDeg, 90 - elevationDeg].map((deg) =>
+        Math.sin((deg * Math.PI) / 180),
+      ) as [number, number];
+      const half = (HALF * heightPx) / widthPx;
+      const projection: Projection = {
+        ...NORTH,
+        forward: [0, cosine, sine],
+        up: [0, -half * sine, half * cosine],
+      };
+      const inset = { left: 76, top: 106, right: 0, bottom: 88 };
+      const picture = { ...PICTURE, widthPx, heightPx, inset, letterPx: 13, projection };
+      const shown = texts(annotationsOf(picture, { ...FIRST_ANNOTATIONS, rings: true }));
+      named += shown.filter(({ anchor }) => anchor === "middle").length;
+      for (const [at, one] of shown.entries())
+        for (const other of shown.slice(at + 1)) {
+          const [a, b] = [boxOf(one, 13), boxOf(other, 13)];
+          const apart =
+            a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+          if (!apart)
+            expect.fail(
+              `${one.text} meets ${other.text} at ${widthPx} px, ${elevationDeg} degrees`,
+            );
+        }
+    }
+  // Most degrees are named nevertheless.
+  expect(named / (4 * 241)).toBeGreaterThan(4);
+});
+
+test("degrees stand above a horizon that is too low for them and the time", () => {
+  const low: Projection = { ...NORTH, forward: [0, 0.97, 0.24], up: [0, -0.07, 0.28] };
+  const shapes = annotationsOf({ ...PICTURE, projection: low }, FIRST_ANNOTATIONS);
+  const [line] = shapes.flatMap((shape) => (shape.kind === "line" ? [shape.points] : []));
+  const north = texts(shapes).find(({ text }) => text === "N");
+  expect(north?.y).toBeLessThan(line?.[0]?.[1] ?? 0);
 });
 
 test("the scale bar is as long as it says", () => {
@@ -149,7 +215,14 @@ test("rings of distance are drawn at their distance", () => {
   // The ring of 10 km, straight ahead: 2 m below the eye at 10 km.
   const ahead = lines[0]?.find(([x]) => Math.abs(x - 400) < 1e-3);
   expect(ahead?.[1]).toBeCloseTo(200 + (200 * 2) / 10_000 / (HALF / 2), 3);
-  expect(texts(shapes).map(({ text }) => text)).toContain("50 km");
+  expect(texts(shapes).map(({ text }) => text)).toContain("10 km");
+  const high: Projection = { ...NORTH, eyeM: [0, -80_000, 60_000], forward: [0, 0.8, -0.6] };
+  const seen = annotationsOf(
+    { ...PICTURE, projection: { ...high, up: [0, 0.17, 0.23] } },
+    { ...FIRST_ANNOTATIONS, compass: false, rings: true },
+  );
+  for (const km of [10, 20, 30, 40, 50])
+    expect(texts(seen).map(({ text }) => text)).toContain(`${km} km`);
 });
 
 test("lengths are in metres and kilometres, or in feet and nautical miles", () => {

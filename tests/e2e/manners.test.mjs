@@ -174,24 +174,33 @@ const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile:
 // The page lays out what a tool leaves of the window in the frame that is painted next.
 const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
-// Texts over the picture that leave the window, or lie on one another or under a bar; and bars that touch the window's edge.
+// Waits for so many texts over the picture: while it gets another size, it may have no room for some.
+const written = (page, least) =>
+  page.waitForFunction((count) => document.querySelectorAll("[data-testid=annotations] text").length >= count, least);
+
+// Texts over the picture that leave the window; bars, names of compared pictures among them, that touch the window's edge; and
+// any two of these that lie on one another. Only the list of every setting may cover a bar: it takes a narrow window for itself.
 async function unreadable(page) {
   await painted(page);
   return page.evaluate(() => {
     const boxes = (selector) =>
       [...document.querySelectorAll(selector)]
-        .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect() }))
+        .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect(), covers: element.matches(".drawer") }))
         .filter(({ box }) => box.width > 0);
     const texts = boxes("[data-testid=annotations] text");
-    const bars = boxes(".top-bar, .time-line, .rail, .truth, aside");
-    const over = [...texts, ...bars];
+    const bars = boxes(".top-bar, .time-line, .rail, .truth, aside, .compared-name");
+    const all = [...texts, ...bars];
     const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const mayMeet = (one, other) => bars.includes(one) && bars.includes(other) && (one.covers || other.covers);
     const atEdge = bars.filter(({ box }) => box.left < 1 || box.right > innerWidth - 1 || box.bottom > innerHeight - 1);
-    const ofTexts = texts.flatMap(({ name, box }, at) => [
-      ...(box.left < 0 || box.right > innerWidth || box.bottom > innerHeight ? [`${name} is clipped`] : []),
-      ...over.flatMap((other, place) => (place > at && meet(box, other.box) ? [`${name} meets ${other.name}`] : [])),
-    ]);
-    return [...atEdge.map(({ name }) => `${name} touches the window's edge`), ...ofTexts];
+    const clipped = texts.filter(({ box }) => box.left < 0 || box.right > innerWidth || box.bottom > innerHeight);
+    return [
+      ...atEdge.map(({ name }) => `${name} touches the window's edge`),
+      ...clipped.map(({ name }) => `${name} is clipped`),
+      ...all.flatMap((one, at) =>
+        all.slice(at + 1).flatMap((other) => (meet(one.box, other.box) && !mayMeet(one, other) ? [`${one.name} meets ${other.name}`] : [])),
+      ),
+    ];
   });
 }
 
@@ -209,7 +218,7 @@ for (const [name, options] of [
       await openTool(page, "time");
       await page.getByTestId("units").selectOption(units);
       await openTool(page, undefined);
-      assert.ok((await page.locator("[data-testid=annotations] text").count()) >= 2);
+      await written(page, 2);
       assert.deepEqual(await unreadable(page), []);
     }
     for (const tool of TOOLS) {
@@ -220,6 +229,27 @@ for (const [name, options] of [
     await openPanel(page, "drawer");
     await page.waitForTimeout(300);
     assert.deepEqual(await unreadable(page), [], "with every setting open");
+    await openPanel(page, "drawer");
+    await openTool(page, "map");
+    await page.getByTestId("camera-kind").getByText("From the ground", { exact: true }).click();
+    await page.waitForFunction(() => document.querySelector("[data-testid=storm-canvas]").dataset.camera === "spotter");
+    await openTool(page, undefined);
+    // The time and degrees.
+    await written(page, 4);
+    assert.deepEqual(await unreadable(page), [], "from the ground");
+    // With the most that there may be in the corners.
+    await openTool(page, "look");
+    await page.getByTestId("colours").getByText("False colours").click();
+    await openTool(page, undefined);
+    await page.locator("[data-testid=annotations] rect").first().waitFor();
+    await openPanel(page, "compare");
+    await page.getByTestId("compare-time").selectOption("0");
+    await page.keyboard.press("Escape");
+    await page.getByTestId("compared-canvas").waitFor();
+    for (const tool of [undefined, "look"]) {
+      await openTool(page, tool);
+      assert.deepEqual(await unreadable(page), [], `a comparison, with ${tool ?? "no tool"} open`);
+    }
     await page.context().close();
   });
 

@@ -88,19 +88,43 @@ const FAR_M = 1e7;
 const RING_CORNERS = 96;
 const MAX_RINGS = 5;
 
+// Of a letter's height, its width on the average in a usual font.
+const WIDTH_OF_LETTER = 0.65;
+
+// Names of degrees and rings that would lie on another text are left out.
 export function annotationsOf(picture: Annotated, choice: AnnotationChoice): Shape[] {
-  const { inset, letterPx, heightPx } = picture;
+  const { inset, letterPx } = picture;
   const left = inset.left + letterPx;
   const shapes: Shape[] = [];
   if (choice.title && picture.title !== "")
     shapes.push(text(left, inset.top + 1.6 * letterPx, picture.title, "start", true));
   if (choice.time && picture.time !== "")
-    shapes.push(text(left, heightPx - inset.bottom - 0.8 * letterPx, picture.time, "start", true));
+    shapes.push(text(left, timeLineY(picture), picture.time, "start", true));
   if (choice.legend) shapes.push(...legend(picture));
-  if (choice.rings) shapes.push(...rings(picture));
   if (choice.scale) shapes.push(...scaleBar(picture));
   if (choice.compass) shapes.push(...horizon(picture));
-  return shapes;
+  if (choice.rings) shapes.push(...rings(picture));
+  return shapes.filter((shape, at) => isClear(shape, shapes.slice(0, at), letterPx));
+}
+
+function timeLineY({ heightPx, inset, letterPx }: Annotated): number {
+  return heightPx - inset.bottom - 0.8 * letterPx;
+}
+
+function isClear(shape: Shape, before: readonly Shape[], letterPx: number): boolean {
+  if (shape.kind !== "text") return true;
+  const own = roomOf(shape, letterPx);
+  return before.every((other) => {
+    if (other.kind !== "text") return true;
+    const { left, right, top, bottom } = roomOf(other, letterPx);
+    return own.right <= left || right <= own.left || own.bottom <= top || bottom <= own.top;
+  });
+}
+
+function roomOf({ x, y, anchor, text: { length } }: TextShape, letterPx: number) {
+  const widthPx = WIDTH_OF_LETTER * letterPx * length;
+  const left = { start: x, middle: x - widthPx / 2, end: x - widthPx }[anchor];
+  return { left, right: left + widthPx, top: y - letterPx, bottom: y + 0.25 * letterPx };
 }
 
 function text(
@@ -117,11 +141,16 @@ function at(picture: Annotated, { x, y }: PicturePoint): readonly [number, numbe
   return [((x + 1) / 2) * picture.widthPx, ((1 - y) / 2) * picture.heightPx];
 }
 
-function legend({ legend: entries, inset, letterPx, widthPx }: Annotated): Shape[] {
+// Goes on in another column at the left where a low picture has no room for more rows.
+function legend({ legend: entries, inset, letterPx, widthPx, heightPx }: Annotated): Shape[] {
   const rowPx = 1.5 * letterPx;
-  const right = widthPx - inset.right - letterPx;
-  return entries.flatMap(({ name, color }, row): Shape[] => {
-    const y = inset.top + 1.6 * letterPx + row * rowPx;
+  const roomPx = heightPx - inset.top - inset.bottom - 0.5 * letterPx;
+  const rows = Math.max(1, Math.floor(roomPx / rowPx));
+  const longest = Math.max(...entries.map(({ name }) => name.length));
+  const columnPx = (WIDTH_OF_LETTER * longest + 2.5) * letterPx;
+  return entries.flatMap(({ name, color }, at): Shape[] => {
+    const right = widthPx - inset.right - letterPx - Math.floor(at / rows) * columnPx;
+    const y = inset.top + 1.6 * letterPx + (at % rows) * rowPx;
     return [
       { kind: "swatch", x: right - letterPx, y: y - 0.85 * letterPx, sizePx: letterPx, color },
       text(right - 1.5 * letterPx, y, name, "end"),
@@ -171,7 +200,8 @@ function azimuthName(deg: number): string {
   return deg % 45 === 0 ? compassPoint(deg) : `${String(deg).padStart(3, "0")}°`;
 }
 
-// A line with a tick every few degrees along the horizon, for who stands on the ground.
+// A line with a tick every few degrees along the horizon, for who stands on the ground. The names stand below it, where they leave
+// the valid time its line.
 function horizon(picture: Annotated): Shape[] {
   const { projection, pose, widthPx, heightPx, inset, letterPx } = picture;
   if (pose?.kind !== "spotter") return [];
@@ -179,8 +209,7 @@ function horizon(picture: Annotated): Shape[] {
   const step = tickStepDeg(viewDeg);
   const middle = Math.round(pose.azimuthDeg / step) * step;
   const lowest = heightPx - inset.bottom - 3 * letterPx;
-  const shapes: Shape[] = [];
-  const line: [number, number][] = [];
+  const ticks: { readonly x: number; readonly y: number; readonly name: string }[] = [];
   for (let away = -Math.ceil(viewDeg / step); away <= Math.ceil(viewDeg / step); away += 1) {
     const deg = middle + away * step;
     const place = project(projection, add(projection.eyeM, far(deg)));
@@ -189,19 +218,28 @@ function horizon(picture: Annotated): Shape[] {
     if (x < 0 || x > widthPx) continue;
     // Below the picture's edge, the line stays at the edge.
     const y = Math.min(lowest, Math.max(inset.top + letterPx, natural));
-    line.push([x, y]);
-    const name = azimuthName(wrapDegrees(deg));
-    shapes.push({
-      kind: "line",
-      points: [
-        [x, y - 0.4 * letterPx],
-        [x, y + 0.4 * letterPx],
-      ],
-    });
-    if (x > inset.left + letterPx && x < widthPx - letterPx)
-      shapes.push(text(x, y + 1.6 * letterPx, name, "middle", name.length < 3));
+    ticks.push({ x, y, name: azimuthName(wrapDegrees(deg)) });
   }
-  return [{ kind: "line", points: line }, ...shapes];
+  const lowestY = Math.max(...ticks.map(({ y }) => y));
+  const namesAreBelow = lowestY + 1.6 * letterPx < timeLineY(picture) - 1.3 * letterPx;
+  const awayPx = (namesAreBelow ? 1.6 : -0.8) * letterPx;
+  // Half of a name.
+  const marginPx = 1.5 * letterPx;
+  return [
+    { kind: "line", points: ticks.map(({ x, y }) => [x, y] as const) },
+    ...ticks.flatMap(({ x, y, name }): Shape[] => [
+      {
+        kind: "line",
+        points: [
+          [x, y - 0.4 * letterPx],
+          [x, y + 0.4 * letterPx],
+        ],
+      },
+      ...(x > inset.left + marginPx && x < widthPx - inset.right - marginPx
+        ? [text(x, y + awayPx, name, "middle", name.length < 3)]
+        : []),
+    ]),
+  ];
 }
 
 function far(azimuthDeg: number): Vec3 {

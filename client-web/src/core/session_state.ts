@@ -84,6 +84,14 @@ export class SessionState {
       ).length,
   );
   readonly alone = computed(() => this.people.value.length < 2);
+  // Nothing about who steers need be said.
+  readonly steersAlone = computed(
+    () => this.steering.value && this.presenting.value && this.alone.value,
+  );
+  // There is something to say about who steers, or that this page shows a view of its own.
+  readonly hasBar = computed(
+    () => this.me.value !== undefined && (this.lookingAround.value || !this.steersAlone.value),
+  );
 
   // Why the scene cannot be changed from here; undefined where it can. A scene may be set before the session is there.
   readonly editBlock = computed((): string | undefined => {

@@ -17,32 +17,35 @@ import { effectiveField } from "../core/scene";
 import type { PageState } from "../core/state";
 import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
 
-// The part that the page's own bars cover.
+// The part that the page's own bars cover; at the top also the names of compared pictures.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
+const TOP_WITH_NAMES_PX = 166;
 // With a tool beside the rail, with the drawer at the right.
 const TOOL_LEFT_PX = 374;
 const DRAWER_RIGHT_PX = 344;
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
+const NARROW_TOP_WITH_NAMES_PX = 236;
+const SESSION_BAR_PX = 72;
 const NARROW_PX = 900;
+// Lower ones leave the picture under an open tool.
+const TALL_PX = 600;
 // Between the bars.
 const MIN_ROOM_LETTERS = 4;
 // Of the window's height, at most, by a tool's sheet.
-const SHEET_SHARE = 0.46;
+const SHEET_SHARE = 0.42;
 
-export function Annotations({ state }: { state: PageState }) {
+export function Annotations(props: { state: PageState; comparing: boolean }) {
+  const { state, comparing } = props;
   const box = state.pictureBox.value;
   const content = annotated(labelsOf(state), state.frame.value ?? {}, state.shownTime.value);
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
   // It covers the picture.
   if (narrow && state.drawerOpen.value) return null;
-  const sheetPx = narrow && state.tool.value !== undefined ? SHEET_SHARE * window.innerHeight : 0;
+  const bars = narrow ? narrowBars(state, comparing) : wideBars(state, comparing);
   // Little is left of the picture, such as of a phone's that is held across.
-  const leftPx = window.innerHeight - NARROW_BARS_PX.top - NARROW_BARS_PX.bottom - sheetPx;
+  const leftPx = window.innerHeight - bars.top - bars.bottom;
   if (narrow && leftPx < MIN_ROOM_LETTERS * LETTER_PX) return null;
-  const bars = narrow
-    ? { ...NARROW_BARS_PX, bottom: NARROW_BARS_PX.bottom + sheetPx }
-    : wideBars(state);
   const shapes = annotationsOf(
     {
       ...content,
@@ -70,9 +73,19 @@ export function Annotations({ state }: { state: PageState }) {
   );
 }
 
-function wideBars(state: PageState) {
+function narrowBars({ tool, session }: PageState, comparing: boolean) {
+  const sheetPx = tool.value === undefined ? 0 : SHEET_SHARE * window.innerHeight;
+  // The picture lies between the bars and the sheet.
+  const between = sheetPx > 0 && !comparing && window.innerHeight >= TALL_PX;
+  const barsPx = comparing ? NARROW_TOP_WITH_NAMES_PX : NARROW_BARS_PX.top;
+  const top = barsPx + (session.hasBar.value ? SESSION_BAR_PX : 0);
+  return { ...NARROW_BARS_PX, top: between ? 0 : top, bottom: NARROW_BARS_PX.bottom + sheetPx };
+}
+
+function wideBars(state: PageState, comparing: boolean) {
   return {
     ...BARS_PX,
+    top: comparing ? TOP_WITH_NAMES_PX : BARS_PX.top,
     left: state.tool.value === undefined ? BARS_PX.left : TOOL_LEFT_PX,
     right: state.drawerOpen.value ? DRAWER_RIGHT_PX : BARS_PX.right,
   };

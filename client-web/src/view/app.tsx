@@ -17,6 +17,7 @@ export function App({ page }: { page: Page }) {
   const { state } = page;
   const open = [
     state.tool.value !== undefined && "with-tool-open",
+    state.tool.value === "time" && "with-time-open",
     state.drawerOpen.value && "with-drawer",
     state.popover.value !== undefined && "with-panel",
     page.comparing.choice.value !== undefined && "compares",
@@ -27,7 +28,7 @@ export function App({ page }: { page: Page }) {
       <h1 class="visually-hidden">Thunderhead</h1>
       <StormCanvas page={page} />
       <CompareView page={page} />
-      <Annotations state={state} />
+      <Annotations state={state} comparing={page.comparing.choice.value !== undefined} />
       <Overlay state={state} marking={page.marking} />
       <p id="storm-keys" class="visually-hidden">
         Arrow keys turn it, with shift they move it, plus and minus come nearer and go farther.

@@ -28,8 +28,7 @@ export function SessionBar({ page }: { page: Page }) {
 
 function Control({ page }: { page: Page }) {
   const { session } = page.state;
-  const steers = session.steering.value;
-  if (steers && session.presenting.value && session.alone.value) return null;
+  if (session.steersAlone.value) return null;
   const step = controlStep(page);
   // One button whatever it does, so that it keeps the keyboard's focus.
   return (
