@@ -115,7 +115,7 @@ Operation::~Operation() {
   second_signal_.request_stop();
 }
 
-void Operation::SetServer(service::Server* server, Budget memory, Budget gpu) {
+void Operation::SetServer(service::Server* server, Resources resources) {
   // Before the lock, which it takes.
   telling_ = {};
   if (server != nullptr) {
@@ -130,9 +130,12 @@ void Operation::SetServer(service::Server* server, Budget memory, Budget gpu) {
   }
   const std::lock_guard lock(mutex_);
   server_ = server;
-  memory_ = std::move(memory);
-  gpu_memory_ = std::move(gpu);
+  resources_ = std::move(resources);
   ended_ = server == nullptr;
+}
+
+double Operation::StateHangsFor() {
+  return resources_.state == nullptr ? 0.0 : resources_.state->HangingSeconds();
 }
 
 std::string Operation::MetricsText() {
@@ -165,12 +168,15 @@ std::string Operation::MetricsText() {
     add("lane_stalled_seconds",
         "Since a lane that works drew a piece; 0 where none works or it waits for its turn",
         load.stalled_s);
-    add("jobs_stalled_seconds", "For how long the jobs' thread has been at one thing; 0 at rest",
+    add("jobs_stalled_seconds",
+        "For how long the jobs' thread has been at one thing, or their results' folder has hung",
         load.jobs.stalled_s);
+    add("state_stuck_seconds", "For how long the state folder has not answered; 0 if it does",
+        StateHangsFor());
     add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest", load.turn_s);
   }
-  AddBudget("memory_budget", memory_.get(), gauges);
-  AddBudget("gpu_memory_budget", gpu_memory_.get(), gauges);
+  AddBudget("memory_budget", resources_.memory.get(), gauges);
+  AddBudget("gpu_memory_budget", resources_.gpu_memory.get(), gauges);
   return telemetry::Expose(telemetry::Counted(), gauges);
 }
 
@@ -196,7 +202,14 @@ telemetry::Health Operation::HealthNow() {
     return {.alive = true, .ready = false, .state = "the device was lost; opening it again"};
   }
   if (load.draining) return {.alive = true, .ready = false, .state = "draining"};
-  // A disk of results that hangs is not mended by another process.
+  // Neither a state folder nor a disk of results that hangs is mended by another process.
+  if (const double hangs_s = StateHangsFor(); hangs_s > 0.0) {
+    return {.alive = true,
+            .ready = true,
+            .state = absl::StrFormat("serving; the state folder has not answered for %.0f s, so "
+                                     "neither sessions nor render jobs can be created",
+                                     hangs_s)};
+  }
   if (load.jobs.stalled_s > flags_.stuck_s) {
     return {.alive = true,
             .ready = true,

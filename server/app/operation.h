@@ -2,6 +2,7 @@
 #pragma once
 
 #include <csignal>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -13,6 +14,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/memory_budget.h"
+#include "base/patient_calls.h"
 #include "service/server.h"
 #include "telemetry/operator_port.h"
 #include "telemetry/watchdog.h"
@@ -47,11 +49,17 @@ class Operation {
   Operation(const Operation&) = delete;
   Operation& operator=(const Operation&) = delete;
 
-  using Budget = std::shared_ptr<const base::MemoryBudget>;
+  // What a server uses; each may be null.
+  struct Resources {
+    std::shared_ptr<const base::MemoryBudget> memory;
+    std::shared_ptr<const base::MemoryBudget> gpu_memory;
+    std::shared_ptr<base::PatientCalls> state;  // calls to the state folder
+  };
 
-  // The server, which must outlive what follows until SetServer(nullptr), and what it counts its
-  // memory in. gRPC's health service is told of its health while there is one.
-  void SetServer(service::Server* server, Budget memory = nullptr, Budget gpu = nullptr);
+  // The server, which must outlive what follows until SetServer(nullptr), and its resources.
+  // gRPC's health service is told of its health while there is one.
+  void SetServer(service::Server* server, Resources resources);
+  void SetServer(std::nullptr_t) { SetServer(nullptr, {}); }
 
   // Waits for SIGINT or SIGTERM, which this thread blocks; tells the clients, and returns when the
   // pictures that were begun are delivered, at the latest after the grace. From then on a second
@@ -62,14 +70,15 @@ class Operation {
  private:
   explicit Operation(const OperationFlags& flags) : flags_(flags) {}
 
+  // Needs mutex_.
+  double StateHangsFor();
   std::string MetricsText();
   telemetry::Health HealthNow();
 
   const OperationFlags flags_;
   std::mutex mutex_;
   const service::Server* server_ = nullptr;
-  Budget memory_;
-  Budget gpu_memory_;
+  Resources resources_;
   bool ended_ = false;
   std::unique_ptr<telemetry::OperatorPort> port_;
   std::unique_ptr<telemetry::Watchdog> watchdog_;  // null: no supervisor waits for messages

@@ -127,7 +127,8 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
                                Operation::Start(flags.operation, flags.allowed_hosts));
-  // Reading the storms' headers takes long on some storages, and for ever on one that hangs.
+  // Reading the storms' headers and the state takes long on some storages, and for ever on one that
+  // hangs.
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
@@ -154,7 +155,6 @@ absl::Status Serve(ServeFlags flags) {
       spdlog::warn("skipping {}: {}", file, std::string(added.status().message()));
     }
   }
-  starting = {};
   service::ServerOptions server_options;
   THUNDERHEAD_ASSIGN_OR_RETURN(const State state, OpenState(flags.state));
   server_options.session_store = state.sessions;
@@ -180,6 +180,7 @@ absl::Status Serve(ServeFlags flags) {
       service::Server::Start(server_options, store,
                              session::GlFrameSources(flags.device, {.memory = budgets.memory,
                                                                     .gpu_memory = budgets.gpu})));
+  starting = {};
   gateway::GatewayOptions gateway_options = flags.gateway;
   gateway_options.address = http.host;
   gateway_options.port = http.port;
@@ -202,7 +203,7 @@ absl::Status Serve(ServeFlags flags) {
   std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
             << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
   std::thread warm_up([channel, door] { WarmUp(channel, *door); });
-  operation->SetServer(server.get(), budgets.memory, budgets.gpu);
+  operation->SetServer(server.get(), {budgets.memory, budgets.gpu, state.calls});
   operation->WaitAndDrain(signals, *server, [door] { door->FlushAudit(kLastLines); });
   operation->SetServer(nullptr);
   // First, because its calls to the service must end before the service does.

@@ -1,13 +1,16 @@
 #include "app/state_folder.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/slow_calls.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "store/patient_stores.h"
 #include "store/sqlite_job_store.h"
 #include "store/sqlite_session_store.h"
 #include "store/state_file.h"
@@ -19,6 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr char kNone[] = "none";
 constexpr char kFile[] = "sessions.db";
+// Then the folder's storage hangs. A disk may be busy with others' data for some seconds.
+constexpr std::chrono::seconds kPatience{10};
 
 std::string Variable(const char* name) {
   const char* const value = std::getenv(name);
@@ -52,6 +57,7 @@ absl::StatusOr<State> OpenState(const std::string& folder) {
   if (folder == kNone) return State();
   const bool is_default = folder.empty();
   const std::string path = is_default ? DefaultFolder() : folder;
+  const base::SlowCall slow(path);
   const std::error_code error =
       path.empty() ? std::make_error_code(std::errc::no_such_file_or_directory) : Create(path);
   if (error && is_default) {
@@ -73,9 +79,14 @@ absl::StatusOr<State> OpenState(const std::string& folder) {
                           "cannot keep sessions (another folder: --state FOLDER; "
                           "none: --state none)");
   }
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto sessions, store::SqliteSessionStore::In(*file));
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto jobs, store::SqliteJobStore::In(*file));
   State state;
-  THUNDERHEAD_ASSIGN_OR_RETURN(state.sessions, store::SqliteSessionStore::In(*file));
-  THUNDERHEAD_ASSIGN_OR_RETURN(state.jobs, store::SqliteJobStore::In(*file));
+  state.calls = std::make_shared<base::PatientCalls>(kPatience);
+  state.sessions = store::WithPatience(std::shared_ptr<session::SessionStore>(std::move(sessions)),
+                                       state.calls, path);
+  state.jobs =
+      store::WithPatience(std::shared_ptr<jobs::JobStore>(std::move(jobs)), state.calls, path);
   state.folder = path;
   return state;
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "base/patient_calls.h"
 #include "jobs/job_store.h"
 #include "session/session_store.h"
 
@@ -15,6 +16,8 @@ struct State {
   std::shared_ptr<session::SessionStore> sessions;
   std::shared_ptr<jobs::JobStore> jobs;
   std::string folder;  // empty: none
+  // Tells whether the folder's storage hangs; both stores are UNAVAILABLE then.
+  std::shared_ptr<base::PatientCalls> calls;
 };
 
 // The state in the folder, which is created for this user only; nothing for "none". An empty

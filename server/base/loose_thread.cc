@@ -18,9 +18,11 @@ LooseThread::LooseThread(std::string name, std::function<void()> run) : name_(st
   thread_ = std::thread(std::move(task));
 }
 
-LooseThread::~LooseThread() {
+LooseThread::~LooseThread() { LetGoAfter(kPatience); }
+
+void LooseThread::LetGoAfter(std::chrono::seconds patience) {
   if (!thread_.joinable()) return;
-  if (ended_.wait_for(kPatience) == std::future_status::ready) {
+  if (ended_.wait_for(patience) == std::future_status::ready) {
     thread_.join();
     return;
   }

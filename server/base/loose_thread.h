@@ -22,6 +22,12 @@ class LooseThread {
   // Waits at most that long for it to end; true if it has.
   bool EndsWithin(std::chrono::milliseconds time) const;
 
+  // Throws what it threw, once it has ended.
+  void Rethrow() const { ended_.get(); }
+
+  // It has been waited for already: it is joined if it has ended, and left behind if not.
+  void LetGo() { LetGoAfter(std::chrono::seconds(0)); }
+
   // True if one was left behind in this process: it must end by _exit, as the thread may wake up
   // while what it uses is being destroyed.
   static bool AnyLeftBehind();
@@ -29,8 +35,10 @@ class LooseThread {
  private:
   static constexpr std::chrono::seconds kPatience{5};
 
+  void LetGoAfter(std::chrono::seconds patience);
+
   std::string name_;
-  std::future<void> ended_;
+  std::shared_future<void> ended_;
   std::thread thread_;
 };
 

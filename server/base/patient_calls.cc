@@ -1,5 +1,6 @@
 #include "base/patient_calls.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -13,27 +14,45 @@ constexpr std::chrono::seconds kRetryAfter{10};
 absl::Status NoAnswer(const std::string& storage) {
   return WithDetails(
       absl::DeadlineExceededError(absl::StrCat(storage, ": its storage does not answer")),
-      {.reason = "STORAGE_HANGS", .metadata = {{"file", storage}}, .retry_after = kRetryAfter});
+      {.reason = kStorageHangs, .metadata = {{"file", storage}}, .retry_after = kRetryAfter});
 }
 
 }  // namespace
+
+PatientCalls::~PatientCalls() {
+  for (auto& [storage, call] : hanging_) call.thread.LetGo();
+}
 
 absl::Status PatientCalls::Run(const std::string& storage, const std::function<void()>& call) {
   {
     const std::lock_guard lock(mutex_);
     if (Hangs(storage)) return NoAnswer(storage);
   }
+  const Stopwatch since;
   LooseThread thread(absl::StrCat("a call to ", storage), call);
-  if (thread.EndsWithin(patience_)) return absl::OkStatus();
+  if (thread.EndsWithin(patience_)) {
+    thread.Rethrow();
+    return absl::OkStatus();
+  }
   const std::lock_guard lock(mutex_);
-  hanging_.emplace(storage, std::move(thread));
+  hanging_.emplace(storage, Hanging{std::move(thread), since});
   return NoAnswer(storage);
+}
+
+double PatientCalls::HangingSeconds() {
+  const std::lock_guard lock(mutex_);
+  double longest_ms = 0.0;
+  for (const auto& [storage, call] : hanging_) {
+    if (call.thread.EndsWithin(std::chrono::milliseconds(0))) continue;
+    longest_ms = std::max(longest_ms, call.since.ElapsedMs());
+  }
+  return 1e-3 * longest_ms;
 }
 
 bool PatientCalls::Hangs(const std::string& storage) {
   const auto [begin, end] = hanging_.equal_range(storage);
   for (auto call = begin; call != end;) {
-    if (!call->second.EndsWithin(std::chrono::milliseconds(0))) return true;
+    if (!call->second.thread.EndsWithin(std::chrono::milliseconds(0))) return true;
     call = hanging_.erase(call);
   }
   return false;

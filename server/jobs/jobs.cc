@@ -44,7 +44,8 @@ Problem EndedServer() {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Jobs>> Jobs::Open(const JobsOptions& options) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(ResultFolder results, ResultFolder::Open(options.folder));
+  THUNDERHEAD_ASSIGN_OR_RETURN(ResultFolder results,
+                               ResultFolder::Open(options.folder, options.patience));
   std::unique_ptr<Jobs> jobs(new Jobs(options, std::move(results)));
   THUNDERHEAD_RETURN_IF_ERROR(jobs->Restore());
   jobs->thread_ = std::thread([raw = jobs.get()] { raw->Run(); });
@@ -237,7 +238,8 @@ JobsLoad Jobs::Load() const {
           .paused = board_.Paused(),
           .drawing = counts[static_cast<std::size_t>(PictureState::kDrawing)],
           .result_bytes = board_.ResultBytes(),
-          .stalled_s = busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0,
+          .stalled_s = std::max(busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0,
+                                results_.HangingSeconds()),
           .watchers = watchers_.size()};
 }
 
@@ -370,7 +372,8 @@ void Jobs::EndPicture(const PicturePlace& picture) {
   const absl::Status kept = base::OrOutOfMemory([&]() -> absl::Status {
     THUNDERHEAD_RETURN_IF_ERROR(hand->begun);
     THUNDERHEAD_ASSIGN_OR_RETURN(DrawnPicture drawn, hand->picture->Take());
-    Keep({picture, std::move(drawn), hand->since_begun.ElapsedMs()});
+    Keep({picture, std::make_shared<const DrawnPicture>(std::move(drawn)),
+          hand->since_begun.ElapsedMs()});
     return absl::OkStatus();
   });
   if (!kept.ok()) Refuse(picture, kept);
@@ -399,14 +402,13 @@ void Jobs::WriteAgain(Lock& lock) {
 
 void Jobs::Keep(Unwritten picture) {
   const auto& [job_id, place] = picture.place;
-  const DrawnPicture& drawn = picture.drawn;
+  const DrawnPicture& drawn = *picture.drawn;
   Lock lock(mutex_);
   if (!board_.IsDrawing(picture.place)) return;
   lock.unlock();
   const ResultFile file{picture.place, drawn.extension, pipeline::Sha256(drawn.bytes),
                         drawn.bytes.size()};
-  const absl::Status written =
-      results_.Write(job_id, place, drawn.extension, drawn.bytes, drawn.about);
+  const absl::Status written = results_.Write(job_id, place, picture.drawn);
   lock.lock();
   if (!written.ok() && !std::exchange(cannot_write_, true)) {
     base::LogError(

@@ -5,6 +5,7 @@
 // thread.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +36,8 @@ namespace thunderhead::jobs {
 struct JobsOptions {
   std::shared_ptr<JobStore> store;  // null: jobs end with the server
   std::string folder;               // of results; empty: there are no jobs
+  // How long a call to that folder may take; then its storage hangs.
+  std::chrono::milliseconds patience = std::chrono::seconds(10);
   JobLimits limits;
 };
 
@@ -60,7 +63,8 @@ struct JobsLoad {
   std::size_t paused = 0;   // of those that wait, as results must be fetched first
   std::size_t drawing = 0;
   std::uint64_t result_bytes = 0;
-  double stalled_s = 0.0;  // for how long its thread has been at one thing; 0 at rest
+  // For how long its thread has been at one thing, or the folder of results has hung; else 0.
+  double stalled_s = 0.0;
   std::size_t watchers = 0;
 };
 
@@ -126,7 +130,7 @@ class Jobs {
   // A drawn picture that could not be written yet.
   struct Unwritten {
     PicturePlace place;
-    DrawnPicture drawn;
+    std::shared_ptr<const DrawnPicture> drawn;
     double milliseconds = 0.0;  // since it was begun
   };
 
@@ -156,7 +160,7 @@ class Jobs {
   static void CancelInHand(InHand& hand);
 
   const std::shared_ptr<JobStore> store_;
-  const ResultFolder results_;
+  ResultFolder results_;
   const JobLimits limits_;
   BeginPicture begin_;
 

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/slow_calls.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "jobs/job_record.h"
@@ -33,26 +34,34 @@ bool IsJobId(const std::string& name) {
 
 }  // namespace
 
-absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path) {
+absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
+                                                std::chrono::milliseconds patience) {
+  const base::SlowCall slow(path);
   std::error_code error;
   const bool is_there = fs::is_directory(path, error);
   if (!is_there) {
     fs::create_directories(path, error);
     if (!error) fs::permissions(path, fs::perms::owner_all, error);
   }
-  if (!error) return ResultFolder(path);
+  if (!error) return ResultFolder(path, patience);
   return absl::InvalidArgumentError(absl::StrCat(
       "'", path,
       "' for results of render jobs is not a folder and cannot be created: ", error.message()));
 }
 
 absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
-                                 const std::string& extension, std::string_view bytes,
-                                 std::string_view about) const {
-  std::error_code error;
-  fs::create_directory(fs::path(path_) / job_id, error);
-  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(AboutPathOf(job_id, place), about));
-  return base::WriteWholeFile(PathOf(job_id, place, extension), bytes);
+                                 std::shared_ptr<const DrawnPicture> picture) const {
+  return calls_->Ask(
+      path_,
+      [folder = path_, job = absl::StrCat(path_, "/", job_id),
+       about_path = AboutPathOf(job_id, place), path = PathOf(job_id, place, picture->extension),
+       picture = std::move(picture)]() -> absl::Status {
+        const base::SlowCall slow(folder);
+        std::error_code error;
+        fs::create_directory(job, error);
+        THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(about_path, picture->about));
+        return base::WriteWholeFile(path, picture->bytes);
+      });
 }
 
 std::string ResultFolder::PathOf(const std::string& job_id, std::size_t place,
@@ -65,18 +74,26 @@ std::string ResultFolder::AboutPathOf(const std::string& job_id, std::size_t pla
 }
 
 void ResultFolder::Remove(const std::string& job_id, std::size_t place,
-                          const std::string& extension) const {
-  std::error_code ignored;
-  fs::remove(PathOf(job_id, place, extension), ignored);
-  fs::remove(AboutPathOf(job_id, place), ignored);
+                          const std::string& extension) {
+  RemoveAll({PathOf(job_id, place, extension), AboutPathOf(job_id, place)});
 }
 
-void ResultFolder::Remove(const std::string& job_id) const {
-  std::error_code ignored;
-  fs::remove_all(fs::path(path_) / job_id, ignored);
+void ResultFolder::Remove(const std::string& job_id) {
+  RemoveAll({absl::StrCat(path_, "/", job_id)});
+}
+
+void ResultFolder::RemoveAll(const std::vector<std::string>& paths) {
+  removed_.insert(removed_.end(), paths.begin(), paths.end());
+  const absl::Status removed = calls_->Run(path_, [paths = removed_, folder = path_] {
+    const base::SlowCall slow(folder);
+    std::error_code ignored;
+    for (const std::string& path : paths) fs::remove_all(path, ignored);
+  });
+  if (removed.ok()) removed_.clear();
 }
 
 void ResultFolder::Clean(const std::set<std::string>& known) const {
+  const base::SlowCall slow(path_);
   std::error_code ignored;
   for (const fs::path& job : EntriesOf(path_)) {
     if (!IsJobId(job.filename().string())) continue;

@@ -1,3 +1,4 @@
+#include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
@@ -13,7 +14,10 @@ grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerConte
   caller->Report("CloseSession", status);
   if (!status.ok()) return Answered(context, status);
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });
+  SaveThen(engine, [reactor](const absl::Status& saved) {
+    reactor->Finish(ToGrpcStatus(base::Annotate(
+        saved, "the session is closed, but comes back if the server ends before that is saved")));
+  });
   return reactor;
 }
 

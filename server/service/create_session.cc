@@ -19,8 +19,18 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
   response.set_session_id(session->keys().presenter);
   response.set_viewer_key(session->keys().viewer);
   response.set_scene_revision(revision);
-  telemetry::Counted().sessions_opened.Add();
   return absl::OkStatus();
+}
+
+// After the session was saved, or could not be.
+absl::Status Saved(Engine& engine, const absl::Status& saved, const std::string& presenter_key) {
+  if (saved.ok()) {
+    telemetry::Counted().sessions_opened.Add();
+    return saved;
+  }
+  // Nobody has its keys.
+  (void)engine.sessions.Close(presenter_key);
+  return base::Annotate(saved, "no session can be opened, as it could not be kept");
 }
 
 }  // namespace
@@ -42,9 +52,14 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
       return Open(engine, caller->identity().name, rules, *response);
     })
                                             : framed;
-    caller->Report("CreateSession", opened);
-    if (!opened.ok()) return reactor->Finish(ToGrpcStatus(opened));
-    SaveThen(engine, [reactor] { reactor->Finish(grpc::Status::OK); });
+    const auto finish = [caller, reactor](const absl::Status& outcome) {
+      caller->Report("CreateSession", outcome);
+      reactor->Finish(ToGrpcStatus(outcome));
+    };
+    if (!opened.ok()) return finish(opened);
+    SaveThen(engine, [=, &engine](const absl::Status& saved) {
+      finish(Saved(engine, saved, response->session_id()));
+    });
   });
   return reactor;
 }

@@ -10,8 +10,8 @@
 
 namespace thunderhead::service {
 
-void SaveThen(Engine& engine, std::function<void()> done) {
-  if (engine.keeper == nullptr) return done();
+void SaveThen(Engine& engine, session::SessionKeeper::Done done) {
+  if (engine.keeper == nullptr) return done(absl::OkStatus());
   engine.keeper->SaveThen(std::move(done));
 }
 

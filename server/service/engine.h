@@ -38,8 +38,8 @@ struct Engine {
 };
 
 // Calls `done` when what has been done to sessions outlives the server: at once if they end with
-// it, else on another thread.
-void SaveThen(Engine& engine, std::function<void()> done);
+// it, else on another thread, as SessionKeeper::SaveThen.
+void SaveThen(Engine& engine, session::SessionKeeper::Done done);
 
 // The storm's fields at that time. An error names `path`, the request's field with the storm's id.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(

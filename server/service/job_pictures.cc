@@ -34,11 +34,11 @@ class StormFiles {
   explicit StormFiles(const JobFiles& files) : stamp_(files.stamp), calls_(files.patience) {}
 
   absl::StatusOr<std::optional<base::FileStamp>> StampOf(const std::string& path) {
-    const auto stamp = std::make_shared<std::optional<base::FileStamp>>();
     const std::string folder = std::filesystem::path(path).parent_path();
-    THUNDERHEAD_RETURN_IF_ERROR(
-        calls_.Run(folder, [stamp, path, look = stamp_] { *stamp = look(path); }));
-    return *stamp;
+    return calls_.Ask(folder,
+                      [path, look = stamp_]() -> absl::StatusOr<std::optional<base::FileStamp>> {
+                        return look(path);
+                      });
   }
 
  private:

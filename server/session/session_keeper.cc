@@ -3,11 +3,20 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/log.h"
+#include "base/patient_calls.h"
 #include "base/status.h"
 #include "telemetry/metrics.h"
 
 namespace thunderhead::session {
+namespace {
+
+bool Hangs(const absl::Status& outcome) {
+  return base::DetailsOf(outcome).reason == base::kStorageHangs;
+}
+
+}  // namespace
 
 absl::StatusOr<std::unique_ptr<SessionKeeper>> SessionKeeper::Start(SessionStore& store,
                                                                     Sessions& sessions,
@@ -28,7 +37,7 @@ SessionKeeper::~SessionKeeper() {
   thread_.join();
 }
 
-void SessionKeeper::SaveThen(std::function<void()> done) {
+void SessionKeeper::SaveThen(Done done) {
   {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(std::move(done));
@@ -101,8 +110,9 @@ void SessionKeeper::Run() {
     last = stopping_;
     const auto waiting = std::exchange(waiting_, {});
     lock.unlock();
-    Log(SaveChanges());
-    for (const auto& done : waiting) done();
+    const absl::Status outcome = SaveChanges();
+    Log(outcome);
+    for (const Done& done : waiting) done(Hangs(outcome) ? outcome : absl::OkStatus());
     lock.lock();
   }
 }

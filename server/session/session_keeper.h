@@ -44,9 +44,11 @@ class SessionKeeper {
   SessionKeeper(const SessionKeeper&) = delete;
   SessionKeeper& operator=(const SessionKeeper&) = delete;
 
-  // Calls `done` on the keeper's thread when the store has all that is the case now, or the error
-  // was logged.
-  void SaveThen(std::function<void()> done);
+  // Calls `done` on the keeper's thread when the store has all that is the case now; with OK also
+  // where that failed, as on a full disk, as it is tried again; with UNAVAILABLE where its storage
+  // hangs.
+  using Done = std::function<void(const absl::Status&)>;
+  void SaveThen(Done done);
 
  private:
   // A session, and what the store has of it.
@@ -68,7 +70,7 @@ class SessionKeeper {
   absl::Status last_outcome_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::function<void()>> waiting_;
+  std::vector<Done> waiting_;
   bool stopping_ = false;
   std::thread thread_;
 };

@@ -76,9 +76,8 @@ class Watcher {
 };
 
 // Calls one rpc with a deadline: Call(stub, &Stub::ListStorms, request, &response).
-template <typename Method, typename Request, typename Response>
-grpc::Status Call(v1::ThunderheadService::Stub& stub, Method method, const Request& request,
-                  Response* response) {
+template <typename Stub, typename Method, typename Request, typename Response>
+grpc::Status Call(Stub& stub, Method method, const Request& request, Response* response) {
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + kPatience);
   return (stub.*method)(&context, request, response);

@@ -18,6 +18,7 @@
 #include "tests/service/running_program.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
+#include "thunderhead/v1/job.grpc.pb.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using std::chrono::steady_clock;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
@@ -62,12 +64,12 @@ class HungStorageTest : public ::testing::Test {
 #endif
   }
 
-  void Start(const std::vector<std::string>& data) {
+  void Start(const std::vector<std::string>& data, const std::string& state = "none") {
     setenv("LD_PRELOAD", HANGING_STORAGE, 1);
     std::vector<std::string> arguments{
         "serve",       "--device",        "software",    "--http",
         "127.0.0.1:0", "--grpc",          "127.0.0.1:0", "--metrics",
-        "127.0.0.1:0", "--state",         "none",        "--rescan-seconds",
+        "127.0.0.1:0", "--state",         state,         "--rescan-seconds",
         "0",           "--read-deadline", "1",           "--drain-seconds",
         "2",           "--data"};
     arguments.insert(arguments.end(), data.begin(), data.end());
@@ -98,8 +100,9 @@ class HungStorageTest : public ::testing::Test {
     const std::string grpc = Await(out_, "is ready at .*\\(gRPC ([0-9.:]+)\\)", kStartPatience);
     ASSERT_NE(grpc, "") << Contents(err_);
     http_port_ = PortIn(Await(out_, "is ready at http://[0-9.]+:([0-9]+)/", kStartPatience));
-    stub_ = v1::ThunderheadService::NewStub(
-        grpc::CreateChannel(grpc, grpc::InsecureChannelCredentials()));
+    const auto channel = grpc::CreateChannel(grpc, grpc::InsecureChannelCredentials());
+    stub_ = v1::ThunderheadService::NewStub(channel);
+    jobs_stub_ = v1::RenderJobService::NewStub(channel);
   }
   void AwaitOperatorsPort() {
     operators_port_ = PortIn(Await(err_, "operators at http://[0-9.]+:([0-9]+)/", kStartPatience));
@@ -111,6 +114,9 @@ class HungStorageTest : public ::testing::Test {
   }
   static int CodeOf(std::uint16_t port, const std::string& path) {
     return gateway::test::RawClient(port).Ask("GET", path).result_int();
+  }
+  static std::string BodyOf(std::uint16_t port, const std::string& path) {
+    return gateway::test::RawClient(port).Ask("GET", path).body();
   }
 
   grpc::Status Draw(const std::string& storm) {
@@ -136,6 +142,7 @@ class HungStorageTest : public ::testing::Test {
   std::uint16_t http_port_ = 0;
   std::uint16_t operators_port_ = 0;
   std::unique_ptr<Stub> stub_;
+  std::unique_ptr<v1::RenderJobService::Stub> jobs_stub_;
   std::unique_ptr<RunningProgram> program_;
 };
 
@@ -196,6 +203,65 @@ TEST_F(HungStorageTest, AStartThatHangsSaysWhereAndEndsWhenItIsTold) {
       Await(err_, "(storm\\.nc): has not answered for 1[0-9]\\.[0-9] s; its storage", seconds(60)),
       "storm.nc")
       << Contents(err_);
+  EXPECT_EQ(CodeAfterSigterm(seconds(10)), 0) << Contents(err_);
+}
+
+TEST_F(HungStorageTest, AStateFolderThatHangsHoldsUpNothingElse) {
+  const std::string state = folder_.File("state");
+  WriteStorm(folder_.File("anvil.nc"));
+  Start({folder_.File("anvil.nc")}, state);
+  AwaitReady();
+  AwaitOperatorsPort();
+  ASSERT_FALSE(HasFatalFailure());
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = SceneOf("anvil");
+  v1::CreateSessionResponse created;
+  ASSERT_TRUE(Call(*stub_, &Stub::CreateSession, request, &created).ok());
+  v1::CreateSessionResponse other;
+  ASSERT_TRUE(Call(*stub_, &Stub::CreateSession, request, &other).ok());
+  HangAt(state);
+
+  const auto refused = [&](const grpc::Status& status) {
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
+    EXPECT_THAT(status.error_message(), HasSubstr("the state folder " + state));
+    EXPECT_EQ(ReasonOf(status), "STORAGE_HANGS");
+  };
+  v1::CreateSessionResponse third;
+  refused(Call(*stub_, &Stub::CreateSession, request, &third));
+  v1::CloseSessionRequest close;
+  close.set_session_id(other.session_id());
+  v1::CloseSessionResponse closed;
+  refused(Call(*stub_, &Stub::CloseSession, close, &closed));
+  v1::CreateRenderJobRequest job;
+  *job.add_pictures()->mutable_scene() = SceneOf("anvil");
+  v1::CreateRenderJobResponse begun;
+  refused(Call(*jobs_stub_, &v1::RenderJobService::Stub::CreateRenderJob, job, &begun));
+
+  EXPECT_TRUE(Draw("anvil").ok());
+  {
+    Interacting viewer(*stub_, created.viewer_key());
+    EXPECT_TRUE(viewer.AwaitFrame(created.scene_revision()));
+  }
+  EXPECT_EQ(CodeOf(operators_port_, "/healthz"), 200);
+  EXPECT_THAT(BodyOf(operators_port_, "/readyz"), HasSubstr("the state folder has not answered"));
+  EXPECT_THAT(BodyOf(operators_port_, "/metrics"),
+              ContainsRegex("\nthunderhead_state_stuck_seconds [1-9]"));
+  EXPECT_THAT(Contents(err_), ContainsRegex("cannot save sessions.*" + state));
+  // The grace is 2 s, and so long do streams have to end by themselves.
+  EXPECT_EQ(CodeAfterSigterm(seconds(10)), 0) << Contents(err_);
+}
+
+TEST_F(HungStorageTest, AStateFolderThatHangsFromTheStartSaysSoAndTheProgramEndsWhenItIsTold) {
+  const std::string state = folder_.File("state");
+  WriteStorm(folder_.File("anvil.nc"));
+  HangAt(state);
+  Start({folder_.File("anvil.nc")}, state);
+  AwaitOperatorsPort();
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_NE(Await(err_, "(state): has not answered for 1[0-9]\\.[0-9] s; its storage", seconds(60)),
+            "")
+      << Contents(err_);
+  EXPECT_EQ(CodeOf(operators_port_, "/readyz"), 503);
   EXPECT_EQ(CodeAfterSigterm(seconds(10)), 0) << Contents(err_);
 }
 

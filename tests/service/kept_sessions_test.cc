@@ -4,9 +4,11 @@
 #include <memory>
 #include <mutex>
 
+#include "base/patient_calls.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "service/stored_scene.h"
+#include "store/patient_stores.h"
 #include "telemetry/metrics.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
@@ -423,6 +425,31 @@ TEST_F(KeptSessionsTest, AStoreThatFailsIsLoggedOnceAndTriedAgain) {
   EXPECT_GE(telemetry::Counted().session_save_failures.Value(), failures + 2);
   store_->FailWith(absl::OkStatus());
   EXPECT_TRUE(store_->Await([](const auto& records) { return records.size() == 1; }));
+}
+
+TEST_F(KeptSessionsTest, AStoreThatHangsRefusesWhatItWouldHaveToKeep) {
+  options_.session_store = store::WithPatience(
+      store_, std::make_shared<base::PatientCalls>(std::chrono::milliseconds(200)), "/state");
+  Start();
+  const auto stays = Create();
+  const auto goes = Create();
+  store_->saving.Close();
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = SmallScene();
+  v1::CreateSessionResponse response;
+  const grpc::Status refused = Call(service_->stub(), &Stub::CreateSession, request, &response);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::UNAVAILABLE) << refused.error_message();
+  EXPECT_THAT(refused.error_message(), HasSubstr("the state folder /state does not answer"));
+  EXPECT_EQ(ReasonOf(refused), "STORAGE_HANGS");
+  EXPECT_EQ(service_->server().Load().sessions, 2) << "nobody could enter it";
+  const grpc::Status closed = Close(goes.session_id());
+  EXPECT_EQ(closed.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_THAT(closed.error_message(), HasSubstr("the session is closed, but comes back"));
+  EXPECT_EQ(CodeOf(goes.session_id()), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(CodeOf(stays.session_id()), grpc::StatusCode::OK);
+  store_->saving.Open();
+  EXPECT_TRUE(store_->Await([](const auto& records) { return records.size() == 1; }));
+  Create();
 }
 
 TEST(SessionRecordTest, AWatchedSessionIsInUse) {

@@ -1,6 +1,8 @@
 #include "jobs/jobs.h"
 
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <atomic>
@@ -17,6 +19,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/file_descriptor.h"
+#include "base/stopwatch.h"
 #include "gtest/gtest.h"
 #include "tests/support/temporary_folder.h"
 
@@ -209,6 +213,7 @@ class UnwrittenPictures : public ::testing::Test {
   void Open() {
     JobsOptions options;
     options.folder = results_;
+    options.patience = patience_;
     auto jobs = Jobs::Open(options);
     ASSERT_TRUE(jobs.ok()) << jobs.status();
     jobs_ = *std::move(jobs);
@@ -256,6 +261,7 @@ class UnwrittenPictures : public ::testing::Test {
   std::atomic<int> cannot_take_{0};
   std::atomic<bool> may_take_{true};
   std::atomic<int> begun_{0};
+  std::chrono::milliseconds patience_ = std::chrono::seconds(60);
   std::unique_ptr<Jobs> jobs_;
 };
 
@@ -300,6 +306,51 @@ TEST_F(UnwrittenPictures, OfOneJobWhoseFolderIsSomebodyElsesHoldUpNoOtherJob) {
   Create(3);
   EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 15; }));
   EXPECT_EQ(jobs_->Load().waiting, 1U);
+}
+
+TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
+  patience_ = std::chrono::milliseconds(200);
+  Open();
+  may_take_ = false;
+  const std::string id = Create(1);
+  ASSERT_TRUE(Await([this] { return begun_ > 0; }));
+  // A pipe that nobody reads hangs as it is opened, once.
+  const std::string pipe = results_ + "/" + id + "/000000.about.partial";
+  std::filesystem::create_directory(results_ + "/" + id);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  may_take_ = true;
+  may_take_.notify_all();
+  ASSERT_TRUE(Await([this] { return jobs_->Load().stalled_s > 0.3; }));
+  EXPECT_FALSE(Create(1).empty()) << "the job's record is another matter";
+  std::promise<bool> forgotten;
+  jobs_->Cancel(id, {.name = "night"}, true,
+                [&](const absl::StatusOr<JobView>& view) { forgotten.set_value(view.ok()); });
+  EXPECT_TRUE(forgotten.get_future().get());
+  EXPECT_TRUE(std::filesystem::exists(results_ + "/" + id));
+  // The folder answers again, and what could not be removed is removed with the next.
+  const base::FileDescriptor reader(open(pipe.c_str(), O_RDWR | O_NONBLOCK));
+  EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 5; }));
+  const std::string last = Create(1);
+  jobs_->Cancel(last, {.name = "night"}, true, [](const absl::StatusOr<JobView>&) {});
+  EXPECT_TRUE(Await([&] { return !std::filesystem::exists(results_ + "/" + id); }));
+}
+
+TEST_F(UnwrittenPictures, OfAFolderThatHangsAreLeftBehindAtTheEnd) {
+  patience_ = std::chrono::milliseconds(200);
+  Open();
+  may_take_ = false;
+  const std::string id = Create(1);
+  ASSERT_TRUE(Await([this] { return begun_ > 0; }));
+  const std::string pipe = results_ + "/" + id + "/000000.about.partial";
+  std::filesystem::create_directory(results_ + "/" + id);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  may_take_ = true;
+  may_take_.notify_all();
+  ASSERT_TRUE(Await([this] { return jobs_->Load().stalled_s > 0.3; }));
+  const base::Stopwatch ending;
+  jobs_.reset();
+  EXPECT_LT(ending.ElapsedMs(), 5000.0);
+  const base::FileDescriptor reader(open(pipe.c_str(), O_RDWR | O_NONBLOCK));
 }
 
 }  // namespace

@@ -1,0 +1,134 @@
+// A state file whose storage hangs: callers are answered in time, and so is its end.
+#include "store/patient_stores.h"
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "base/error_details.h"
+#include "base/stopwatch.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace thunderhead::testing {
+namespace {
+
+using jobs::JobRecord;
+using session::SessionRecord;
+using ::testing::HasSubstr;
+
+constexpr std::chrono::milliseconds kPatience{200};
+
+// A storage that can hang.
+class Storage {
+ public:
+  void Hang() { hangs_ = true; }
+  void Answer() {
+    hangs_ = false;
+    hangs_.notify_all();
+  }
+  absl::Status Use() {
+    hangs_.wait(true);
+    ++uses;
+    return absl::OkStatus();
+  }
+
+  std::atomic<int> uses{0};
+
+ private:
+  std::atomic<bool> hangs_{false};
+};
+
+class Sessions final : public session::SessionStore {
+ public:
+  explicit Sessions(std::shared_ptr<Storage> storage) : storage_(std::move(storage)) {}
+  // A database writes as it is closed.
+  ~Sessions() override { (void)storage_->Use(); }
+  absl::Status Save(const std::vector<SessionRecord>&) override { return storage_->Use(); }
+  absl::Status Remove(const std::vector<std::string>&) override { return storage_->Use(); }
+  absl::StatusOr<std::vector<SessionRecord>> Load() override {
+    return std::vector<SessionRecord>();
+  }
+
+ private:
+  const std::shared_ptr<Storage> storage_;
+};
+
+class Jobs final : public jobs::JobStore {
+ public:
+  absl::Status Add(const JobRecord& job) override {
+    return job.id == "wrong" ? absl::InvalidArgumentError(job.id) : absl::OkStatus();
+  }
+  absl::Status Save(const std::vector<jobs::JobChange>&) override { return absl::OkStatus(); }
+  absl::Status Remove(const std::vector<std::string>&) override { return absl::OkStatus(); }
+  absl::StatusOr<std::vector<JobRecord>> Load() override { return std::vector<JobRecord>(); }
+};
+
+class PatientStoresTest : public ::testing::Test {
+ protected:
+  static void ExpectHangs(const absl::Status& status) {
+    EXPECT_TRUE(absl::IsUnavailable(status)) << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("the state folder /var/lib/storms"));
+    EXPECT_EQ(base::DetailsOf(status).reason, "STORAGE_HANGS");
+    EXPECT_TRUE(base::DetailsOf(status).retry_after.has_value());
+  }
+
+  const std::shared_ptr<Storage> storage_ = std::make_shared<Storage>();
+  const std::shared_ptr<base::PatientCalls> calls_ =
+      std::make_shared<base::PatientCalls>(kPatience);
+  std::shared_ptr<session::SessionStore> sessions_ =
+      store::WithPatience(std::make_shared<Sessions>(storage_), calls_, "/var/lib/storms");
+  std::shared_ptr<jobs::JobStore> jobs_ =
+      store::WithPatience(std::make_shared<Jobs>(), calls_, "/var/lib/storms");
+};
+
+TEST_F(PatientStoresTest, GiveWhatTheStoresGive) {
+  EXPECT_TRUE(sessions_->Save({}).ok());
+  EXPECT_TRUE(jobs_->Add({}).ok());
+  JobRecord wrong;
+  wrong.id = "wrong";
+  EXPECT_TRUE(absl::IsInvalidArgument(jobs_->Add(wrong)));
+  EXPECT_TRUE(sessions_->Load().ok());
+  sessions_.reset();
+  EXPECT_EQ(storage_->uses, 2) << "it is closed";
+}
+
+TEST_F(PatientStoresTest, AreUnavailableWhileTheStorageHangs) {
+  storage_->Hang();
+  ExpectHangs(sessions_->Save({}));
+  const base::Stopwatch known;
+  for (int i = 0; i < 20; ++i) ExpectHangs(sessions_->Remove({}));
+  // Of the same file, though it would answer.
+  ExpectHangs(jobs_->Add({}));
+  EXPECT_LT(known.ElapsedMs(), 2000.0);
+  EXPECT_EQ(storage_->uses, 0);
+  storage_->Answer();
+  for (int i = 0; i < 1000 && !sessions_->Save({}).ok(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_TRUE(sessions_->Remove({}).ok());
+  EXPECT_TRUE(jobs_->Add({}).ok());
+}
+
+TEST_F(PatientStoresTest, EndWhileTheStorageHangs) {
+  storage_->Hang();
+  const base::Stopwatch ending;
+  ExpectHangs(sessions_->Save({}));
+  sessions_.reset();
+  jobs_.reset();
+  EXPECT_LT(ending.ElapsedMs(), 3000.0);
+  EXPECT_EQ(storage_->uses, 0) << "it stays open";
+  storage_->Answer();
+}
+
+TEST_F(PatientStoresTest, EndWhereTheStorageHangsAsItIsClosed) {
+  storage_->Hang();
+  const base::Stopwatch ending;
+  sessions_.reset();
+  EXPECT_LT(ending.ElapsedMs(), 3000.0);
+  EXPECT_GT(calls_->HangingSeconds(), 0.0);
+  storage_->Answer();
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
