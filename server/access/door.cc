@@ -47,6 +47,11 @@ void Caller::ReportRefusal(std::string_view act, const absl::Status& outcome) co
   }
 }
 
+absl::StatusOr<std::shared_ptr<const void>> Caller::TakeAnswer() const {
+  if (quotas_ == nullptr) return std::shared_ptr<const void>();
+  return quotas_->TakeAnswer(identity_.name);
+}
+
 absl::Status Caller::StillKnown(std::chrono::steady_clock::time_point now) const {
   // Null for this process itself.
   if (authenticator_ == nullptr) return absl::OkStatus();
@@ -75,6 +80,7 @@ absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller)
   if (!MayCall(identity.role, method)) return NotForRole(method, identity);
   if (caller.authenticator_ == nullptr || identity.name.empty()) return absl::OkStatus();
   THUNDERHEAD_RETURN_IF_ERROR(quotas_.TakeRequest(identity.name, std::chrono::steady_clock::now()));
+  caller.quotas_ = &quotas_;
   if (kind == CallKind::kUnary) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(caller.place_, quotas_.TakeStream(identity.name));
   return absl::OkStatus();

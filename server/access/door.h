@@ -28,6 +28,9 @@ class Caller {
   // wrong key gets. Other outcomes are not written. `act` is by default the rpc.
   void ReportRefusal(const absl::Status& outcome) const { ReportRefusal(method_, outcome); }
   void ReportRefusal(std::string_view act, const absl::Status& outcome) const;
+  // The place of an answer of theirs that is ready, until they have taken it; null for this process
+  // itself.
+  absl::StatusOr<std::shared_ptr<const void>> TakeAnswer() const;
   // UNAUTHENTICATED once the token has expired or was taken away; looks once a second at most.
   absl::Status StillKnown(
       std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) const;
@@ -40,6 +43,7 @@ class Caller {
   std::string method_;  // the rpc
   Authenticator* authenticator_ = nullptr;
   Audit* audit_ = nullptr;
+  Quotas* quotas_ = nullptr;  // null: they have none
   std::shared_ptr<const void> place_;
   mutable std::atomic<std::chrono::steady_clock::time_point> known_at_ = {};
 };

@@ -24,6 +24,16 @@ absl::Status TooManyStreams(std::size_t maximum, const char* whose) {
        .retry_after = kStreamRetry});
 }
 
+absl::Status TooManyAnswers(std::size_t maximum, const char* whose) {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(absl::StrCat(whose, " ", maximum,
+                                                " answers that were not taken yet, which is the "
+                                                "maximum; take one, or try again later")),
+      {.reason = "ANSWERS_NOT_TAKEN",
+       .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", "answers"}},
+       .retry_after = kStreamRetry});
+}
+
 double Seconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration<double>(time).count();
 }
@@ -72,24 +82,32 @@ absl::Status Quotas::TakeRequest(const std::string& identity, Time now) {
 }
 
 absl::StatusOr<std::shared_ptr<const void>> Quotas::TakeStream(const std::string& identity) {
-  const std::lock_guard lock(mutex_);
-  if (streams_ >= limits_.max_streams) {
-    return TooManyStreams(limits_.max_streams, "the server has");
-  }
-  std::size_t& own = streams_by_identity_[identity];
-  if (own >= limits_.max_streams_per_identity) {
-    return TooManyStreams(limits_.max_streams_per_identity, "you have");
-  }
-  ++own;
-  ++streams_;
-  return std::shared_ptr<const void>(this, [this, identity](const void*) { GiveBack(identity); });
+  return Take(identity, streams_, TooManyStreams);
 }
 
-void Quotas::GiveBack(const std::string& identity) {
+absl::StatusOr<std::shared_ptr<const void>> Quotas::TakeAnswer(const std::string& identity) {
+  return Take(identity, answers_, TooManyAnswers);
+}
+
+absl::StatusOr<std::shared_ptr<const void>> Quotas::Take(const std::string& identity, Count& count,
+                                                         TooMany too_many) {
   const std::lock_guard lock(mutex_);
-  --streams_;
-  const auto own = streams_by_identity_.find(identity);
-  if (--own->second == 0) streams_by_identity_.erase(own);
+  if (count.all >= limits_.max_streams) return too_many(limits_.max_streams, "the server has");
+  std::size_t& own = count.by_identity[identity];
+  if (own >= limits_.max_streams_per_identity) {
+    return too_many(limits_.max_streams_per_identity, "you have");
+  }
+  ++own;
+  ++count.all;
+  return std::shared_ptr<const void>(
+      this, [this, identity, &count](const void*) { GiveBack(identity, count); });
+}
+
+void Quotas::GiveBack(const std::string& identity, Count& count) {
+  const std::lock_guard lock(mutex_);
+  --count.all;
+  const auto own = count.by_identity.find(identity);
+  if (--own->second == 0) count.by_identity.erase(own);
 }
 
 }  // namespace thunderhead::access

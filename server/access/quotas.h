@@ -57,15 +57,28 @@ class Quotas {
   // The place of a call that stays open, given back with the last copy. Must not outlive this.
   absl::StatusOr<std::shared_ptr<const void>> TakeStream(const std::string& identity);
 
+  // The same for an answer of a unary call, until its client has taken it. There may be as many of
+  // them as of calls that stay open, beside those.
+  absl::StatusOr<std::shared_ptr<const void>> TakeAnswer(const std::string& identity);
+
   const QuotaLimits& limits() const { return limits_; }
 
  private:
-  void GiveBack(const std::string& identity);
+  // How many of a kind there are.
+  struct Count {
+    std::size_t all = 0;
+    std::map<std::string, std::size_t> by_identity;
+  };
+  using TooMany = absl::Status (*)(std::size_t maximum, const char* whose);
+
+  absl::StatusOr<std::shared_ptr<const void>> Take(const std::string& identity, Count& count,
+                                                   TooMany too_many);
+  void GiveBack(const std::string& identity, Count& count);
 
   const QuotaLimits limits_;
   std::mutex mutex_;
-  std::size_t streams_ = 0;
-  std::map<std::string, std::size_t> streams_by_identity_;
+  Count streams_;
+  Count answers_;
   std::map<std::string, RequestBudget> budgets_;
 };
 

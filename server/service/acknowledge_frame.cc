@@ -26,8 +26,8 @@ absl::Status Acknowledge(Engine& engine, const v1::AcknowledgeFrameRequest& requ
 grpc::ServerUnaryReactor* AcknowledgeFrame(Engine& engine, grpc::CallbackServerContext* context,
                                            const CallerRef& caller,
                                            const v1::AcknowledgeFrameRequest* request,
-                                           v1::AcknowledgeFrameResponse* /*response*/) {
-  return Finished(context, *caller, Acknowledge(engine, *request));
+                                           v1::AcknowledgeFrameResponse* response) {
+  return Finished(engine.limits, context, caller, Acknowledge(engine, *request), *response);
 }
 
 }  // namespace thunderhead::service

@@ -35,7 +35,7 @@ class Entrance {
   grpc::ServerUnaryReactor* Unary(const char* method, grpc::CallbackServerContext* context,
                                   const Handler& handle) const {
     const CallerOr caller = Enter(*context, method, access::CallKind::kUnary);
-    return caller.ok() ? handle(*caller) : Answered(context, caller.status());
+    return caller.ok() ? handle(*caller) : Refused(context, caller.status());
   }
 
   template <typename Reactor, typename Handler>

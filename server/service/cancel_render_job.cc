@@ -5,21 +5,22 @@
 
 namespace thunderhead::service {
 
-grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits,
+                                          grpc::CallbackServerContext* context,
                                           const CallerRef& caller,
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response) {
   if (const absl::Status wrong = CheckLimits(*request); !wrong.ok()) {
-    return Finished(context, *caller, wrong);
+    return Refused(context, *caller, wrong);
   }
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  auto* const answer = new Answer(context, limits, caller, *response);
   jobs.Cancel(request->job_id(), AskerOf(*caller), request->forget(),
-              [reactor, caller, request, response](const absl::StatusOr<jobs::JobView>& ended) {
+              [answer, caller, request, response](const absl::StatusOr<jobs::JobView>& ended) {
                 caller->Report("CancelRenderJob", ended.status());
                 if (ended.ok() && !request->forget()) ToMessage(*ended, *response->mutable_job());
-                reactor->Finish(ToGrpcStatus(ended.status()));
+                answer->Give(ended.status());
               });
-  return reactor;
+  return answer;
 }
 
 }  // namespace thunderhead::service

@@ -28,21 +28,21 @@ grpc::ServerUnaryReactor* CreateRenderJob(Engine& engine, jobs::Jobs& jobs,
                                           v1::CreateRenderJobResponse* response) {
   if (const absl::Status wrong = CheckShape(*request); !wrong.ok()) {
     caller->Report("CreateRenderJob", wrong);
-    return Answered(context, wrong);
+    return Refused(context, wrong);
   }
   jobs::NewJob job{caller->identity().name, request->label(), {}};
   job.pictures.reserve(static_cast<std::size_t>(request->pictures_size()));
   for (const v1::RenderJobPicture& picture : request->pictures()) {
     job.pictures.push_back(OrderOf(engine.store, picture));
   }
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  auto* const answer = new Answer(context, engine.limits, caller, *response);
   jobs.Create(std::move(job),
-              [reactor, caller, response](const absl::StatusOr<jobs::JobView>& created) {
+              [answer, caller, response](const absl::StatusOr<jobs::JobView>& created) {
                 caller->Report("CreateRenderJob", created.status());
                 if (created.ok()) ToMessage(*created, *response->mutable_job());
-                reactor->Finish(ToGrpcStatus(created.status()));
+                answer->Give(created.status());
               });
-  return reactor;
+  return answer;
 }
 
 }  // namespace thunderhead::service

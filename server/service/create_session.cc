@@ -44,24 +44,24 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   scene = request->scene();
   if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), scene);
   if (status.ok()) status = CheckSize(engine.limits, scene);
-  if (!status.ok()) return Finished(context, *caller, status);
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  if (!status.ok()) return Refused(context, *caller, status);
+  auto* const answer = new Answer(context, engine.limits, caller, *response);
   const session::Rules rules = RulesOf(request->rules(), {});
   FrameThen(engine, caller->identity().name, scene, [=, &engine](const absl::Status& framed) {
     const absl::Status opened = framed.ok() ? base::OrOutOfMemory([&] {
       return Open(engine, caller->identity().name, rules, *response);
     })
                                             : framed;
-    const auto finish = [caller, reactor](const absl::Status& outcome) {
+    const auto finish = [caller, answer](const absl::Status& outcome) {
       caller->Report("CreateSession", outcome);
-      reactor->Finish(ToGrpcStatus(outcome));
+      answer->Give(outcome);
     };
     if (!opened.ok()) return finish(opened);
     SaveThen(engine, [=, &engine](const absl::Status& saved) {
       finish(Saved(engine, saved, response->session_id()));
     });
   });
-  return reactor;
+  return answer;
 }
 
 }  // namespace thunderhead::service

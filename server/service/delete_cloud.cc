@@ -32,19 +32,19 @@ absl::Status Delete(Engine& engine, const std::string& storm_id) {
 grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContext* context,
                                       const CallerRef& caller,
                                       const v1::DeleteCloudRequest* request,
-                                      v1::DeleteCloudResponse* /*response*/) {
+                                      v1::DeleteCloudResponse* response) {
   if (const absl::Status limits = CheckLimits(*request); !limits.ok()) {
-    return Finished(context, *caller, limits);
+    return Refused(context, *caller, limits);
   }
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  auto* const answer = new Answer(context, engine.limits, caller, *response);
   engine.executor.Submit(caller->identity().name, [=, &engine](const absl::Status& status) {
     const absl::Status deleted =
         status.ok() ? base::OrOutOfMemory([&] { return Delete(engine, request->storm_id()); })
                     : status;
     caller->Report("DeleteCloud", deleted);
-    reactor->Finish(ToGrpcStatus(deleted));
+    answer->Give(deleted);
   });
-  return reactor;
+  return answer;
 }
 
 }  // namespace thunderhead::service

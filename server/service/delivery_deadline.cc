@@ -1,35 +1,41 @@
 #include "service/delivery_deadline.h"
 
-#include <chrono>
-
 namespace thunderhead::service {
 
 DeliveryDeadline::~DeliveryDeadline() {
   const std::lock_guard lock(call_->mutex);
   call_->context = nullptr;
-}
-
-void DeliveryDeadline::Taken() {
-  {
-    const std::lock_guard lock(call_->mutex);
-    ++call_->writes;
-  }
-  alarm_.reset();
+  call_->alarm.reset();
 }
 
 void DeliveryDeadline::Begin(std::size_t bytes) {
-  int write = 0;
-  {
-    const std::lock_guard lock(call_->mutex);
-    write = ++call_->writes;
-  }
-  alarm_.emplace();
-  alarm_->Set(std::chrono::system_clock::now() + DeliveryTime(limits_, bytes),
-              [call = call_, write](bool is_over) {
-                if (!is_over) return;
-                const std::lock_guard lock(call->mutex);
-                if (call->context != nullptr && call->writes == write) call->context->TryCancel();
-              });
+  const Clock::time_point due = Clock::now() + DeliveryTime(limits_, bytes);
+  const std::lock_guard lock(call_->mutex);
+  call_->due = due;
+  if (!call_->alarm.has_value() || due < call_->rings_at) call_->SetAlarm(due);
+}
+
+void DeliveryDeadline::Taken() {
+  const std::lock_guard lock(call_->mutex);
+  call_->due.reset();
+}
+
+void DeliveryDeadline::Call::SetAlarm(Clock::time_point at) {
+  rings_at = at;
+  alarm.emplace();
+  alarm->Set(std::chrono::system_clock::now() +
+                 std::chrono::ceil<std::chrono::system_clock::duration>(at - Clock::now()),
+             [self = shared_from_this()](bool rings) {
+               if (rings) self->Look();
+             });
+}
+
+void DeliveryDeadline::Call::Look() {
+  const std::lock_guard lock(mutex);
+  if (context == nullptr) return;
+  if (!due.has_value()) return alarm.reset();
+  if (*due > Clock::now()) return SetAlarm(*due);
+  context->TryCancel();
 }
 
 }  // namespace thunderhead::service

@@ -5,6 +5,7 @@
 #include <grpcpp/alarm.h>
 #include <grpcpp/server_context.h>
 
+#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <mutex>
@@ -25,23 +26,30 @@ class DeliveryDeadline {
   ~DeliveryDeadline();
 
   // The client has the time of so many bytes from now on for what is written next, until Taken().
+  // Cheap enough for each frame.
   void Begin(std::size_t bytes);
   void Taken();
 
  private:
-  // State that the alarm may still use after the call has ended.
-  struct Call {
+  using Clock = std::chrono::steady_clock;
+
+  // State that the alarm may still use after the call has ended. The alarm is not set anew for each
+  // message: when it rings, it looks when the one that is being written is due.
+  struct Call : std::enable_shared_from_this<Call> {
     explicit Call(grpc::CallbackServerContext* of) : context(of) {}
+    void SetAlarm(Clock::time_point at);
+    void Look();
 
     // Recursive, as cancelling may end the call on the same thread.
     std::recursive_mutex mutex;
     grpc::CallbackServerContext* context;  // null: it has ended
-    int writes = 0;                        // that have begun or ended
+    std::optional<Clock::time_point> due;  // nothing: no message is being written
+    std::optional<grpc::Alarm> alarm;
+    Clock::time_point rings_at;
   };
 
   const Limits& limits_;
   const std::shared_ptr<Call> call_;
-  std::optional<grpc::Alarm> alarm_;
 };
 
 }  // namespace thunderhead::service

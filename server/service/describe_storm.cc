@@ -32,8 +32,8 @@ grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerCont
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response) {
   const auto storm = CheckDescribe(engine, *request);
-  if (!storm.ok()) return Finished(context, *caller, storm.status());
-  return FinishedBy(engine.executor, context, caller, [=, &engine] {
+  if (!storm.ok()) return Refused(context, *caller, storm.status());
+  return FinishedBy(engine, context, caller, *response, [=, &engine] {
     return Describe(engine, **storm, static_cast<int>(request->time_index()), *response);
   });
 }

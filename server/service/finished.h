@@ -10,44 +10,56 @@
 
 #include "absl/status/status.h"
 #include "access/door.h"
-#include "base/executor.h"
 #include "base/out_of_memory.h"
+#include "service/answer.h"
+#include "service/engine.h"
+#include "service/limits.h"
 #include "service/status_table.h"
 
 namespace thunderhead::service {
 
-// Answers without the audit: of calls that the door has refused, or whose handler wrote the line.
-inline grpc::ServerUnaryReactor* Answered(grpc::CallbackServerContext* context,
-                                          const absl::Status& status) {
+// Refuses without the audit: calls that the door has refused, or whose handler wrote the line.
+inline grpc::ServerUnaryReactor* Refused(grpc::CallbackServerContext* context,
+                                         const absl::Status& why) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(ToGrpcStatus(status));
+  reactor->Finish(ToGrpcStatus(why));
   return reactor;
 }
 
-inline grpc::ServerUnaryReactor* Finished(grpc::CallbackServerContext* context,
-                                          const access::Caller& caller,
-                                          const absl::Status& status) {
-  caller.ReportRefusal(status);
-  return Answered(context, status);
+inline grpc::ServerUnaryReactor* Refused(grpc::CallbackServerContext* context,
+                                         const access::Caller& caller, const absl::Status& why) {
+  caller.ReportRefusal(why);
+  return Refused(context, why);
+}
+
+inline grpc::ServerUnaryReactor* Finished(const Limits& limits,
+                                          grpc::CallbackServerContext* context,
+                                          const std::shared_ptr<const access::Caller>& caller,
+                                          const absl::Status& status,
+                                          const google::protobuf::Message& response) {
+  caller->ReportRefusal(status);
+  auto* const answer = new Answer(context, limits, caller, response);
+  answer->Give(status);
+  return answer;
 }
 
 // Finishes with what `work` gives on a thread of the executor, in the caller's turn; not begun for
 // a caller who has gone. What gRPC keeps of the call lives until then.
 template <typename Work>
-grpc::ServerUnaryReactor* FinishedBy(base::Executor& executor, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* FinishedBy(Engine& engine, grpc::CallbackServerContext* context,
                                      const std::shared_ptr<const access::Caller>& caller,
-                                     Work work) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  executor.Submit(caller->identity().name, [context, caller, reactor,
-                                            work = std::move(work)](const absl::Status& status) {
+                                     const google::protobuf::Message& response, Work work) {
+  auto* const answer = new Answer(context, engine.limits, caller, response);
+  engine.executor.Submit(caller->identity().name, [context, caller, answer, work = std::move(work)](
+                                                      const absl::Status& status) {
     const bool abandoned = context->IsCancelled();
     const absl::Status outcome = abandoned     ? absl::CancelledError("the call was cancelled")
                                  : status.ok() ? base::OrOutOfMemory(work)
                                                : status;
     caller->ReportRefusal(outcome);
-    reactor->Finish(ToGrpcStatus(outcome));
+    answer->Give(outcome);
   });
-  return reactor;
+  return answer;
 }
 
 // A stream that is refused, of any kind; the first is for those that the door has refused. Deletes

@@ -38,8 +38,8 @@ grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerCont
                                         const v1::GenerateCloudRequest* request,
                                         v1::GenerateCloudResponse* response) {
   auto shape = Check(*request);
-  if (!shape.ok()) return Finished(context, *caller, shape.status());
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  if (!shape.ok()) return Refused(context, *caller, shape.status());
+  auto* const answer = new Answer(context, engine.limits, caller, *response);
   engine.executor.Submit(caller->identity().name,
                          [=, &engine, shape = *std::move(shape)](const absl::Status& status) {
                            const absl::Status made = status.ok() ? base::OrOutOfMemory([&] {
@@ -47,9 +47,9 @@ grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerCont
                            })
                                                                  : status;
                            caller->Report("GenerateCloud", made);
-                           reactor->Finish(ToGrpcStatus(made));
+                           answer->Give(made);
                          });
-  return reactor;
+  return answer;
 }
 
 }  // namespace thunderhead::service

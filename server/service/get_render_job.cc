@@ -21,11 +21,12 @@ absl::Status Get(const jobs::Jobs& jobs, const access::Caller& caller,
 
 }  // namespace
 
-grpc::ServerUnaryReactor* GetRenderJob(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* GetRenderJob(jobs::Jobs& jobs, const Limits& limits,
+                                       grpc::CallbackServerContext* context,
                                        const CallerRef& caller,
                                        const v1::GetRenderJobRequest* request,
                                        v1::GetRenderJobResponse* response) {
-  return Finished(context, *caller, Get(jobs, *caller, *request, *response));
+  return Finished(limits, context, caller, Get(jobs, *caller, *request, *response), *response);
 }
 
 }  // namespace thunderhead::service

@@ -6,6 +6,7 @@
 namespace thunderhead::service {
 
 grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::GetServerInfoRequest* /*request*/,
                                         v1::GetServerInfoResponse* response) {
   const session::DeviceInfo& device = engine.loop.Device();
@@ -18,7 +19,7 @@ grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerCont
     ToMessage(technique, *response->add_techniques());
   }
   AddPresets(*response);
-  return Answered(context, absl::OkStatus());
+  return Finished(engine.limits, context, caller, absl::OkStatus(), *response);
 }
 
 }  // namespace thunderhead::service

@@ -101,8 +101,8 @@ grpc::ServerUnaryReactor* GetStormMap(Engine& engine, grpc::CallbackServerContex
                                       const v1::GetStormMapRequest* request,
                                       v1::GetStormMapResponse* response) {
   const auto storm = CheckMap(engine, *request);
-  if (!storm.ok()) return Finished(context, *caller, storm.status());
-  return FinishedBy(engine.executor, context, caller,
+  if (!storm.ok()) return Refused(context, *caller, storm.status());
+  return FinishedBy(engine, context, caller, *response,
                     [=, &engine] { return Map(engine, **storm, *request, *response); });
 }
 

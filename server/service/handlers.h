@@ -15,10 +15,11 @@ namespace thunderhead::service {
 using CallerRef = std::shared_ptr<const access::Caller>;
 
 grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerContext* context,
+                                        const CallerRef& caller,
                                         const v1::GetServerInfoRequest* request,
                                         v1::GetServerInfoResponse* response);
 grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext* context,
-                                     const v1::ListStormsRequest* request,
+                                     const CallerRef& caller, const v1::ListStormsRequest* request,
                                      v1::ListStormsResponse* response);
 grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerContext* context,
                                         const CallerRef& caller,

@@ -20,6 +20,7 @@
 #include "base/status.h"
 #include "glm/geometric.hpp"
 #include "service/catalogue_follower.h"
+#include "service/delivery_deadline.h"
 #include "service/frame_messages.h"
 #include "service/interact_messages.h"
 #include "service/messages/camera_messages.h"
@@ -87,9 +88,11 @@ class InteractCall : public InteractReactor,
                      public session::Viewer,
                      public std::enable_shared_from_this<InteractCall> {
  public:
-  static InteractReactor* Start(Engine& engine, std::shared_ptr<const access::Caller> caller,
+  static InteractReactor* Start(Engine& engine, grpc::CallbackServerContext* context,
+                                std::shared_ptr<const access::Caller> caller,
                                 double requests_per_second) {
-    auto call = std::make_shared<InteractCall>(engine, std::move(caller), requests_per_second);
+    auto call =
+        std::make_shared<InteractCall>(engine, context, std::move(caller), requests_per_second);
     call->held_by_grpc_ = call;
     call->join_alarm_.Set(std::chrono::system_clock::now() + engine.limits.join_timeout,
                           [weak = std::weak_ptr(call)](bool rang) {
@@ -100,12 +103,13 @@ class InteractCall : public InteractReactor,
     return call.get();
   }
 
-  InteractCall(Engine& engine, std::shared_ptr<const access::Caller> caller,
-               double requests_per_second)
+  InteractCall(Engine& engine, grpc::CallbackServerContext* context,
+               std::shared_ptr<const access::Caller> caller, double requests_per_second)
       : engine_(engine),
         caller_(std::move(caller)),
         requests_per_second_(requests_per_second),
-        budget_(requests_per_second, Clock::now()) {}
+        budget_(requests_per_second, Clock::now()),
+        delivery_(std::in_place, context, engine.limits) {}
 
   // Writes the next message, or ends the call, if there is a reason to and nothing is being
   // written.
@@ -123,6 +127,7 @@ class InteractCall : public InteractReactor,
       if (message.has_value()) sent_.Swap(&*message);
     }
     if (end.has_value()) return Finish(*end);
+    delivery_->Begin(sent_.Length());
     StartWrite(&sent_);
   }
 
@@ -137,6 +142,7 @@ class InteractCall : public InteractReactor,
   }
 
   void OnWriteDone(bool ok) override {
+    delivery_->Taken();
     std::optional<std::uint64_t> doubts;
     {
       const std::lock_guard lock(mutex_);
@@ -165,6 +171,7 @@ class InteractCall : public InteractReactor,
       }
       session_->audience().Leave(person_id_, Clock::now());
     }
+    delivery_.reset();  // the session and updates may keep the call for longer
     held_by_grpc_.reset();
   }
 
@@ -731,6 +738,7 @@ class InteractCall : public InteractReactor,
   access::RequestBudget budget_;  // used by the reading thread alone
   grpc::Alarm join_alarm_;
   std::shared_ptr<InteractCall> held_by_grpc_;
+  std::optional<DeliveryDeadline> delivery_;
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sent_;
 
@@ -776,9 +784,10 @@ class InteractCall : public InteractReactor,
 }  // namespace
 
 // Deletes itself when gRPC calls OnDone.
-InteractReactor* Interact(Engine& engine, std::shared_ptr<const access::Caller> caller,
+InteractReactor* Interact(Engine& engine, grpc::CallbackServerContext* context,
+                          std::shared_ptr<const access::Caller> caller,
                           double requests_per_second) {
-  return InteractCall::Start(engine, std::move(caller), requests_per_second);
+  return InteractCall::Start(engine, context, std::move(caller), requests_per_second);
 }
 
 }  // namespace thunderhead::service

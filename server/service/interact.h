@@ -15,7 +15,7 @@ namespace thunderhead::service {
 using InteractReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
 // Of its requests, those beyond `requests_per_second` are refused; 0: none.
-InteractReactor* Interact(Engine& engine, std::shared_ptr<const access::Caller> caller,
-                          double requests_per_second);
+InteractReactor* Interact(Engine& engine, grpc::CallbackServerContext* context,
+                          std::shared_ptr<const access::Caller> caller, double requests_per_second);
 
 }  // namespace thunderhead::service

@@ -25,11 +25,12 @@ absl::Status List(const jobs::Jobs& jobs, const access::Caller& caller,
 
 }  // namespace
 
-grpc::ServerUnaryReactor* ListRenderJobs(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* ListRenderJobs(jobs::Jobs& jobs, const Limits& limits,
+                                         grpc::CallbackServerContext* context,
                                          const CallerRef& caller,
                                          const v1::ListRenderJobsRequest* request,
                                          v1::ListRenderJobsResponse* response) {
-  return Finished(context, *caller, List(jobs, *caller, *request, *response));
+  return Finished(limits, context, caller, List(jobs, *caller, *request, *response), *response);
 }
 
 }  // namespace thunderhead::service

@@ -5,6 +5,7 @@
 namespace thunderhead::service {
 
 grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext* context,
+                                     const CallerRef& caller,
                                      const v1::ListStormsRequest* /*request*/,
                                      v1::ListStormsResponse* response) {
   for (const volume::StormInfoPtr& storm : engine.store.Storms()) {
@@ -12,7 +13,7 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
     ToMessage(*storm, summary);
     summary.set_deletable(engine.clouds.Holds(storm->id));
   }
-  return Answered(context, absl::OkStatus());
+  return Finished(engine.limits, context, caller, absl::OkStatus(), *response);
 }
 
 }  // namespace thunderhead::service

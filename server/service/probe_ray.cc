@@ -82,8 +82,8 @@ grpc::ServerUnaryReactor* ProbeRay(Engine& engine, grpc::CallbackServerContext* 
                                    const CallerRef& caller, const v1::ProbeRayRequest* request,
                                    v1::ProbeRayResponse* response) {
   const auto asked = Check(engine, *request);
-  if (!asked.ok()) return Finished(context, *caller, asked.status());
-  return FinishedBy(engine.executor, context, caller,
+  if (!asked.ok()) return Refused(context, *caller, asked.status());
+  return FinishedBy(engine, context, caller, *response,
                     [=, &engine] { return Probe(engine, **asked, *response); });
 }
 

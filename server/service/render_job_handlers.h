@@ -16,18 +16,21 @@ grpc::ServerUnaryReactor* CreateRenderJob(Engine& engine, jobs::Jobs& jobs,
                                           const CallerRef& caller,
                                           const v1::CreateRenderJobRequest* request,
                                           v1::CreateRenderJobResponse* response);
-grpc::ServerUnaryReactor* GetRenderJob(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* GetRenderJob(jobs::Jobs& jobs, const Limits& limits,
+                                       grpc::CallbackServerContext* context,
                                        const CallerRef& caller,
                                        const v1::GetRenderJobRequest* request,
                                        v1::GetRenderJobResponse* response);
-grpc::ServerUnaryReactor* ListRenderJobs(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* ListRenderJobs(jobs::Jobs& jobs, const Limits& limits,
+                                         grpc::CallbackServerContext* context,
                                          const CallerRef& caller,
                                          const v1::ListRenderJobsRequest* request,
                                          v1::ListRenderJobsResponse* response);
 grpc::ServerWriteReactor<v1::WatchRenderJobResponse>* WatchRenderJob(
     jobs::Jobs& jobs, const Limits& limits, grpc::CallbackServerContext* context, CallerRef caller,
     const v1::WatchRenderJobRequest* request);
-grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, grpc::CallbackServerContext* context,
+grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits,
+                                          grpc::CallbackServerContext* context,
                                           const CallerRef& caller,
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response);

@@ -39,7 +39,7 @@ grpc::ServerUnaryReactor* RenderJobService::GetRenderJob(grpc::CallbackServerCon
                                                          const v1::GetRenderJobRequest* request,
                                                          v1::GetRenderJobResponse* response) {
   return entrance_.Unary("GetRenderJob", context, [&](const CallerRef& caller) {
-    return service::GetRenderJob(*jobs_, context, caller, request, response);
+    return service::GetRenderJob(*jobs_, engine_.limits, context, caller, request, response);
   });
 }
 
@@ -47,7 +47,7 @@ grpc::ServerUnaryReactor* RenderJobService::ListRenderJobs(grpc::CallbackServerC
                                                            const v1::ListRenderJobsRequest* request,
                                                            v1::ListRenderJobsResponse* response) {
   return entrance_.Unary("ListRenderJobs", context, [&](const CallerRef& caller) {
-    return service::ListRenderJobs(*jobs_, context, caller, request, response);
+    return service::ListRenderJobs(*jobs_, engine_.limits, context, caller, request, response);
   });
 }
 
@@ -63,7 +63,7 @@ grpc::ServerUnaryReactor* RenderJobService::CancelRenderJob(
     grpc::CallbackServerContext* context, const v1::CancelRenderJobRequest* request,
     v1::CancelRenderJobResponse* response) {
   return entrance_.Unary("CancelRenderJob", context, [&](const CallerRef& caller) {
-    return service::CancelRenderJob(*jobs_, context, caller, request, response);
+    return service::CancelRenderJob(*jobs_, engine_.limits, context, caller, request, response);
   });
 }
 

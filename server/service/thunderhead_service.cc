@@ -33,16 +33,16 @@ class ThunderheadService final : public Calls {
   grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
                                           const v1::GetServerInfoRequest* request,
                                           v1::GetServerInfoResponse* response) override {
-    return entrance_.Unary("GetServerInfo", context, [&](const CallerRef& /*caller*/) {
-      return service::GetServerInfo(engine_, context, request, response);
+    return entrance_.Unary("GetServerInfo", context, [&](const CallerRef& caller) {
+      return service::GetServerInfo(engine_, context, caller, request, response);
     });
   }
 
   grpc::ServerUnaryReactor* ListStorms(grpc::CallbackServerContext* context,
                                        const v1::ListStormsRequest* request,
                                        v1::ListStormsResponse* response) override {
-    return entrance_.Unary("ListStorms", context, [&](const CallerRef& /*caller*/) {
-      return service::ListStorms(engine_, context, request, response);
+    return entrance_.Unary("ListStorms", context, [&](const CallerRef& caller) {
+      return service::ListStorms(engine_, context, caller, request, response);
     });
   }
 
@@ -128,7 +128,8 @@ class ThunderheadService final : public Calls {
 
   InteractReactor* Interact(grpc::CallbackServerContext* context) override {
     return entrance_.Stream<InteractReactor>("Interact", context, [&](CallerRef caller) {
-      return service::Interact(engine_, std::move(caller), door_.limits().requests_per_second);
+      return service::Interact(engine_, context, std::move(caller),
+                               door_.limits().requests_per_second);
     });
   }
 

@@ -29,17 +29,17 @@ grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContex
                                       const v1::UpdateSceneRequest* request,
                                       v1::UpdateSceneResponse* response) {
   const auto session = FindToSteer(engine, *request);
-  if (!session.ok()) return Finished(context, *caller, session.status());
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  if (!session.ok()) return Refused(context, *caller, session.status());
+  auto* const answer = new Answer(context, engine.limits, caller, *response);
   ChangeScene(
       engine, caller->identity().name, *session, SceneChangeOf(*request),
       [session = *session] { return session->audience().PresenterMaySteer(); },
       [=](const absl::StatusOr<std::uint64_t>& revision) {
         if (revision.ok()) response->set_scene_revision(*revision);
         caller->ReportRefusal(revision.status());
-        reactor->Finish(ToGrpcStatus(revision.status()));
+        answer->Give(revision.status());
       });
-  return reactor;
+  return answer;
 }
 
 }  // namespace thunderhead::service

@@ -6,6 +6,7 @@
 
 #include "base/error_details.h"
 #include "base/status.h"
+#include "service/delivery_deadline.h"
 #include "service/finished.h"
 #include "service/frame_messages.h"
 #include "service/handlers.h"
@@ -25,8 +26,10 @@ class FrameStream : public FramesReactor,
                     public std::enable_shared_from_this<FrameStream> {
  public:
   // The session counts its onlooker already.
-  static FramesReactor* Start(std::shared_ptr<session::Session> session, CallerRef caller) {
-    auto stream = std::make_shared<FrameStream>(std::move(session), std::move(caller));
+  static FramesReactor* Start(const Limits& limits, grpc::CallbackServerContext* context,
+                              std::shared_ptr<session::Session> session, CallerRef caller) {
+    auto stream =
+        std::make_shared<FrameStream>(limits, context, std::move(session), std::move(caller));
     stream->held_by_grpc_ = stream;
     const auto viewer_id = stream->session_->hub().Join(stream);
     if (!viewer_id.ok()) {
@@ -42,8 +45,11 @@ class FrameStream : public FramesReactor,
     return stream.get();
   }
 
-  FrameStream(std::shared_ptr<session::Session> session, CallerRef caller)
-      : session_(std::move(session)), caller_(std::move(caller)) {}
+  FrameStream(const Limits& limits, grpc::CallbackServerContext* context,
+              std::shared_ptr<session::Session> session, CallerRef caller)
+      : session_(std::move(session)),
+        caller_(std::move(caller)),
+        delivery_(std::in_place, context, limits) {}
 
   void Wake() override {
     std::optional<session::FrameEvent> event;
@@ -59,10 +65,12 @@ class FrameStream : public FramesReactor,
     }
     if (end.has_value()) return Finish(*end);
     SetResponse(*event);
+    delivery_->Begin(response_.ByteSizeLong());
     StartWrite(&response_);
   }
 
   void OnWriteDone(bool ok) override {
+    delivery_->Taken();
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
@@ -84,6 +92,7 @@ class FrameStream : public FramesReactor,
     session_->Touch();
     if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
     session_->audience().RemoveOnlooker();
+    delivery_.reset();  // the hub may keep the stream for longer
     held_by_grpc_.reset();
   }
 
@@ -128,6 +137,7 @@ class FrameStream : public FramesReactor,
   bool writing_ = false;
   bool disconnected_ = false;
   bool finished_ = false;
+  std::optional<DeliveryDeadline> delivery_;
 };
 
 // The session, with one onlooker more.
@@ -144,11 +154,11 @@ absl::StatusOr<std::shared_ptr<session::Session>> FindToWatch(
 
 }  // namespace
 
-FramesReactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* /*context*/,
-                           CallerRef caller, const v1::WatchFramesRequest* request) {
+FramesReactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
+                           const v1::WatchFramesRequest* request) {
   auto session = FindToWatch(engine, *request);
   if (!session.ok()) return new RefusedStream<FramesReactor>(*caller, session.status());
-  return FrameStream::Start(*std::move(session), std::move(caller));
+  return FrameStream::Start(engine.limits, context, *std::move(session), std::move(caller));
 }
 
 }  // namespace thunderhead::service

@@ -1,0 +1,46 @@
+// A client that speaks HTTP/2 by itself, and grants no room for what the server sends.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "base/file_descriptor.h"
+
+namespace thunderhead::testing {
+
+class UntakingClient {
+ public:
+  explicit UntakingClient(int port);
+
+  enum class Stream { kEnds, kStaysOpen };
+  // `method` with its service; its own side of the call ends with the message, or stays open.
+  void Call(const std::string& method, const std::string& message, Stream stream = Stream::kEnds);
+  // The headers of a call whose message does not come.
+  void Announce(const std::string& method);
+
+  // Answers pings until the server resets a call; false if it does not within that time.
+  bool IsReset(std::chrono::milliseconds patience);
+  // The same until the server has refused so many calls without a message.
+  bool AwaitRefused(int calls, std::chrono::milliseconds patience);
+  // The same until the server has closed the connection.
+  bool IsClosed(std::chrono::milliseconds patience);
+
+  void Leave() { socket_ = {}; }
+
+ private:
+  static std::string Frame(char type, char flags, std::size_t stream, const std::string& payload);
+  void Send(const std::string& bytes);
+  bool TakeFrame();
+  template <typename Condition>
+  bool Await(std::chrono::milliseconds patience, const Condition& condition);
+
+  base::FileDescriptor socket_;
+  std::size_t stream_ = 1;  // the next call's
+  std::string received_;
+  bool reset_ = false;
+  bool closed_ = false;
+  int refused_ = 0;
+};
+
+}  // namespace thunderhead::testing
