@@ -95,7 +95,8 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "Connections of each port");
   AddLimit(serve, "--max-connections-each", flags.gateway.max_connections_per_address, 1, 1e5,
            "Those from one address");
-  AddLimit(serve, "--max-streams", flags.quotas.max_streams, 1, 1e6, "Calls that stay open");
+  AddLimit(serve, "--max-streams", flags.quotas.max_streams, 1, 1e6,
+           "Calls that stay open, and as many answers that clients have not taken yet");
   AddLimit(serve, "--max-streams-each", flags.quotas.max_streams_per_identity, 1, 1e6,
            "Calls that stay open, of one identity");
   AddLimit(serve, "--max-streams-per-connection", flags.limits.max_streams_per_connection, 1, 1e6,

@@ -23,13 +23,13 @@ constexpr std::chrono::milliseconds kPause{100};
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<AcceptLoop>> AcceptLoop::Start(
-    std::vector<base::FileDescriptor> sockets, Take take) {
+    std::vector<base::FileDescriptor> sockets, Take take, std::optional<Chore> chore) {
   base::FileDescriptor stop(eventfd(0, EFD_CLOEXEC));
   if (!stop.IsOpen()) {
     return absl::UnavailableError(absl::StrCat("cannot accept connections: ", strerror(errno)));
   }
   std::unique_ptr<AcceptLoop> loop(
-      new AcceptLoop(std::move(sockets), std::move(stop), std::move(take)));
+      new AcceptLoop(std::move(sockets), std::move(stop), std::move(take), std::move(chore)));
   loop->thread_ = std::thread([&loop = *loop] { loop.Run(); });
   return loop;
 }
@@ -43,8 +43,15 @@ AcceptLoop::~AcceptLoop() {
 void AcceptLoop::Run() {
   std::vector<pollfd> waits = {{stop_.Get(), POLLIN, 0}};
   for (const base::FileDescriptor& socket : sockets_) waits.push_back({socket.Get(), POLLIN, 0});
+  const int wait_ms = chore_.has_value() ? static_cast<int>(chore_->pause.count()) : -1;
+  auto ran_at = std::chrono::steady_clock::now();
   while (true) {
-    if (poll(waits.data(), waits.size(), -1) < 0 && errno != EINTR) return;
+    if (poll(waits.data(), waits.size(), wait_ms) < 0 && errno != EINTR) return;
+    if (const auto now = std::chrono::steady_clock::now();
+        chore_.has_value() && now - ran_at >= chore_->pause) {
+      ran_at = now;
+      chore_->run();
+    }
     if (waits.front().revents != 0) return;
     for (std::size_t i = 1; i < waits.size(); ++i) {
       if (waits[i].revents == 0) continue;

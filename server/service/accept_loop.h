@@ -1,8 +1,10 @@
 // Accepts connections on sockets that listen, on a thread of its own.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -16,21 +18,33 @@ class AcceptLoop {
   // Takes over `connection`, which does not block; on the loop's thread.
   using Take = std::function<void(base::FileDescriptor connection)>;
 
+  // What else the loop's thread does, that often at least.
+  struct Chore {
+    std::chrono::milliseconds pause;
+    std::function<void()> run;
+  };
+
   // Accepts until it is destroyed. `sockets` listen and do not block.
   static absl::StatusOr<std::unique_ptr<AcceptLoop>> Start(
-      std::vector<base::FileDescriptor> sockets, Take take);
+      std::vector<base::FileDescriptor> sockets, Take take,
+      std::optional<Chore> chore = std::nullopt);
   ~AcceptLoop();
   AcceptLoop(const AcceptLoop&) = delete;
   AcceptLoop& operator=(const AcceptLoop&) = delete;
 
  private:
-  AcceptLoop(std::vector<base::FileDescriptor> sockets, base::FileDescriptor stop, Take take)
-      : sockets_(std::move(sockets)), stop_(std::move(stop)), take_(std::move(take)) {}
+  AcceptLoop(std::vector<base::FileDescriptor> sockets, base::FileDescriptor stop, Take take,
+             std::optional<Chore> chore)
+      : sockets_(std::move(sockets)),
+        stop_(std::move(stop)),
+        take_(std::move(take)),
+        chore_(std::move(chore)) {}
   void Run();
 
   const std::vector<base::FileDescriptor> sockets_;
   const base::FileDescriptor stop_;  // an eventfd
   const Take take_;
+  const std::optional<Chore> chore_;
   std::thread thread_;
 };
 

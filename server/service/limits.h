@@ -29,6 +29,9 @@ struct Limits {
   double min_bytes_per_second = 8192.0;
   // Until a client of Interact has joined.
   std::chrono::milliseconds join_timeout = std::chrono::seconds(10);
+  // Until a connection of gRPC's port without a call that the door let in is closed, whatever calls
+  // it has announced. gRPC itself closes one without any a little earlier, and more kindly.
+  std::chrono::milliseconds unused_connection = std::chrono::seconds(75);
   // A scene is at most a few kilobytes.
   std::size_t max_request_bytes = 1u << 20;
   // Of gRPC's buffers, all connections together; near it, calls are refused.

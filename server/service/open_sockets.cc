@@ -95,11 +95,25 @@ bool OpenSockets::CloseLeastNeeded(const std::string* network, Clock::time_point
   };
   const auto least = std::ranges::min_element(candidates, {}, order);
   if (least == candidates.end()) return false;
-  // gRPC sees the end, and closes it. Others own the descriptor, and may have closed it just now.
-  const auto [socket, open] = *least->open;
-  if (peer_of_(socket) == open.peer) shutdown(socket, SHUT_RDWR);
-  Forget(least->open);
+  Close(least->open);
   return true;
+}
+
+void OpenSockets::CloseUnused(std::chrono::milliseconds unused, Clock::time_point now) {
+  ForgetClosed(now);
+  for (auto open = open_.begin(); open != open_.end();) {
+    const auto at = open++;
+    const std::optional<ConnectionCalls::Use> use = calls_->UseOf(at->second.peer);
+    if (use.has_value() && use->calls > 0) continue;
+    if (now - (use.has_value() ? use->since : at->second.since) >= unused) Close(at);
+  }
+}
+
+void OpenSockets::Close(std::map<int, Open>::iterator open) {
+  const auto& [socket, connection] = *open;
+  // gRPC sees the end, and closes it. Others own the descriptor, and may have closed it just now.
+  if (peer_of_(socket) == connection.peer) shutdown(socket, SHUT_RDWR);
+  Forget(open);
 }
 
 void OpenSockets::ForgetClosed(Clock::time_point now) {

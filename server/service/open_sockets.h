@@ -42,6 +42,9 @@ class OpenSockets {
   // for those that others closed ten times a second at most.
   bool Take(int socket, const std::string& peer, Clock::time_point now = Clock::now());
 
+  // Shuts those down that have been without a call for so long.
+  void CloseUnused(std::chrono::milliseconds unused, Clock::time_point now = Clock::now());
+
  private:
   struct Open {
     std::string peer;
@@ -52,6 +55,7 @@ class OpenSockets {
   bool HasItsShare(const Open& newcomer) const;
   // Shuts one down, of that network or of any if it is null.
   bool CloseLeastNeeded(const std::string* network, Clock::time_point now);
+  void Close(std::map<int, Open>::iterator open);
   void ForgetClosed(Clock::time_point now);
   // Another connection may have the peer by now, and so the use.
   void Forget(std::map<int, Open>::iterator open);

@@ -15,6 +15,9 @@
 namespace thunderhead::service {
 namespace {
 
+// Looks at the connections within the time that one may be unused.
+constexpr int kLooks = 10;
+
 struct HostAndPort {
   std::string host;
   std::string port;
@@ -98,19 +101,24 @@ absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
       ": it is not an address of this machine, or the port is in use; choose another"));
 }
 
-absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, Refused refused) {
-  // Copyable, as functions have to be.
-  auto take = [acceptor = std::shared_ptr(std::move(acceptor)),
-               open = std::make_shared<OpenSockets>(std::move(open)),
+absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open,
+                                 std::chrono::milliseconds unused, Refused refused) {
+  // Shared, as functions have to be copyable.
+  const auto sockets = std::make_shared<OpenSockets>(std::move(open));
+  auto take = [acceptor = std::shared_ptr(std::move(acceptor)), sockets,
                refused = std::move(refused)](base::FileDescriptor connection) {
     const auto peer = OpenSockets::PeerOf(connection.Get());
     if (!peer.has_value()) return;  // gone already
-    if (!open->Take(connection.Get(), *peer)) return refused(*peer);
+    if (!sockets->Take(connection.Get(), *peer)) return refused(*peer);
     grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters handed;
     handed.fd = connection.Release();
     acceptor->HandleNewConnection(&handed);
   };
-  THUNDERHEAD_ASSIGN_OR_RETURN(loop_, AcceptLoop::Start(std::move(sockets_), std::move(take)));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      loop_, AcceptLoop::Start(std::move(sockets_), std::move(take),
+                               AcceptLoop::Chore{unused / kLooks, [sockets, unused] {
+                                                   sockets->CloseUnused(unused);
+                                                 }}));
   return absl::OkStatus();
 }
 

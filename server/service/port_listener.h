@@ -32,8 +32,9 @@ class PortListener {
   int Port() const { return port_; }
 
   // Hands connections to `acceptor` until this is destroyed, which must be before its server shuts
-  // down.
-  absl::Status Start(Acceptor acceptor, OpenSockets open, Refused refused);
+  // down. Closes those that have been without a call for `unused`.
+  absl::Status Start(Acceptor acceptor, OpenSockets open, std::chrono::milliseconds unused,
+                     Refused refused);
 
  private:
   PortListener(std::vector<base::FileDescriptor> sockets, int port)

@@ -152,7 +152,7 @@ class RunningServer final : public Server {
           port_->Start(std::move(acceptor),
                        OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
                                    door_->Proxies(), connection_calls_),
-                       [this](const std::string& peer) {
+                       limits_.unused_connection, [this](const std::string& peer) {
                          telemetry::Counted().refusals.Of("TOO_MANY_CONNECTIONS").Add();
                          door_->ReportBeforeCall(peer, "Connect", base::TooManyConnections());
                        }));

@@ -122,5 +122,31 @@ TEST_F(OpenSocketsTest, OneThatIsClosedTakesNoUseFromAnotherOfTheSamePeer) {
   }
 }
 
+TEST_F(OpenSocketsTest, ThoseWithoutACallAreClosedAfterAWhile) {
+  OpenSockets open = Of(4, 4);
+  EXPECT_TRUE(Take(open, "192.0.2.1:1"));
+  EXPECT_TRUE(Take(open, "192.0.2.1:2"));
+  EXPECT_TRUE(Take(open, "192.0.2.1:3"));
+  const auto call = calls_->Begin("192.0.2.1:2");
+  calls_->Begin("192.0.2.1:3").reset();  // just now
+  const auto last = OpenSockets::Clock::now();
+  const auto closes = [&](OpenSockets::Clock::time_point now) {
+    looked_for_ = -1;
+    open.CloseUnused(seconds(60), now);
+    return looked_for_;
+  };
+  EXPECT_TRUE(calls_->UseOf("192.0.2.1:3").has_value());
+  closes(last + seconds(59));
+  EXPECT_TRUE(calls_->UseOf("192.0.2.1:3").has_value());
+  closes(last + seconds(61));
+  EXPECT_FALSE(calls_->UseOf("192.0.2.1:3").has_value()) << "closed, and forgotten";
+  EXPECT_TRUE(calls_->UseOf("192.0.2.1:2").has_value()) << "it has a call";
+  // Two places are free.
+  EXPECT_TRUE(Take(open, "192.0.2.2:1"));
+  looked_for_ = -1;
+  EXPECT_TRUE(Take(open, "192.0.2.2:2"));
+  EXPECT_EQ(looked_for_, -1) << "none had to make room";
+}
+
 }  // namespace
 }  // namespace thunderhead::service

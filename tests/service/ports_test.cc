@@ -19,6 +19,7 @@
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/guarded_service.h"
+#include "tests/service/untaking_client.h"
 #include "tests/support/self_signed.h"
 #include "tests/support/temporary_folder.h"
 
@@ -211,6 +212,21 @@ TEST(PortsTest, ConnectionsWithCallsOfGrpcDoNotMakeRoom) {
   EXPECT_THAT(guarded.Audit(), Contains(AllOf(HasSubstr("act=Connect"), HasSubstr("127.0.0.1:"),
                                               HasSubstr("TOO_MANY_CONNECTIONS"))));
   EXPECT_EQ(guarded.service().server().Load().viewers, 2);
+}
+
+TEST(PortsTest, ConnectionsWhoseCallsAreOnlyAnnouncedAreClosed) {
+  service::ServerOptions options;
+  options.address = "127.0.0.1:0";
+  options.limits.unused_connection = std::chrono::milliseconds(1000);
+  GuardedService guarded(options);
+  const int port = guarded.service().server().Port();
+  UntakingClient announcing(port);
+  for (int i = 0; i < 100; ++i) announcing.Announce("ThunderheadService/ListStorms");
+  WatchingClient watching(port, guarded.Create());
+  ASSERT_TRUE(watching.Receives());
+  EXPECT_FALSE(announcing.IsClosed(std::chrono::milliseconds(300)));
+  EXPECT_TRUE(announcing.IsClosed(std::chrono::milliseconds(10'000)));
+  EXPECT_EQ(guarded.service().server().Load().viewers, 1) << "others stay";
 }
 
 TEST(PortsTest, GrpcListensOnAddressesOfIpv6) {
