@@ -388,6 +388,7 @@ test("every parameter of a scene is listed with limits, comment and value, and c
   expect(scene.sky).toBeUndefined();
   expect(turbidity.kind === "number" && turbidity.limits.maximum).toBe(10);
   expect(rings).toMatchObject({ kind: "flag", defaultOn: false });
+  expect(byPath.get("ground.borders")).toMatchObject({ kind: "flag", defaultOn: false });
   expect(byPath.get("display.white_balance")).toMatchObject({ kind: "flag", defaultOn: true });
   const toneMap = byPath.get("display.tone_map");
   expect(toneMap?.kind === "choice" && toneMap.options[0]?.name).toBe("default: filmic");

@@ -37,6 +37,7 @@ describe("limits come from the schema", () => {
   it("reads the defaults of switches and choices", () => {
     expect(DEFAULTS.visible).toBe(true);
     expect(DEFAULTS.rings).toBe(false);
+    expect(DEFAULTS.borders).toBe(false);
     expect(DEFAULTS.toneMap).toBe(ToneMap.FILMIC);
     expect(defaultChoiceOf(SunSchema.field.source)).toBe(0);
     expect(() => defaultOnOf(SceneSchema.field.timeIndex)).toThrow("no default");

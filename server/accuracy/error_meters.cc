@@ -40,7 +40,7 @@ scene::Scene WithoutDisplay(scene::Scene scene) {
 
 scene::Scene MeasuredScene(const scene::Scene& scene) {
   scene::Scene measured = scene;
-  measured.ground.rings = false;
+  measured.ground = {.cover = scene.ground.cover};
   if (auto* medium = scene::MediumSettingsOf(&measured.rendering.technique); medium != nullptr) {
     medium->look.detail = false;
   }

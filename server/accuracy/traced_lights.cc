@@ -10,8 +10,9 @@ bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
   if (!scene::CapabilitiesOf(scene.rendering.technique).traced_light) return false;
   scene::Scene known = traced;
   scene::Scene alike = scene;
-  // When it is traced does not matter.
+  // When it is traced does not matter, nor what is painted on the ground.
   for (scene::Scene* const each : {&known, &alike}) {
+    each->ground = {.cover = each->ground.cover};
     scene::SetTracedLight(&each->rendering.technique, scene::TracedLight::kOff);
   }
   alike.camera = traced.camera;
@@ -19,7 +20,6 @@ bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
   alike.display = traced.display;
   alike.output = traced.output;
   alike.accuracy = traced.accuracy;
-  alike.ground.rings = traced.ground.rings;
   alike.rendering.image_scale = traced.rendering.image_scale;
   return alike == known;
 }

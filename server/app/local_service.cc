@@ -10,6 +10,7 @@
 #include "base/file_stamp.h"
 #include "base/status.h"
 #include "session/gl_frame_source.h"
+#include "volume/border_data.h"
 
 namespace thunderhead::app {
 namespace {
@@ -39,6 +40,7 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
   volume::StormStoreOptions options;
   options.read_ahead = 0;
+  options.borders = volume::BorderData::Find(volume::kBorderFolder);
   auto opened = volume::StormStore::Open({path}, options);
   if (!opened.ok()) return AsFileProblem(path, opened.status());
   std::shared_ptr<volume::StormStore> store = *std::move(opened);

@@ -19,6 +19,7 @@
 #include "base/whole_file.h"
 #include "pipeline/plan.h"
 #include "pipeline/sha256.h"
+#include "volume/border_data.h"
 #include "volume/cached_storm_store.h"
 #include "volume/run_start.h"
 
@@ -309,6 +310,7 @@ absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms
   begun_.clear();
   volume::StormStoreOptions store_options;
   store_options.read_ahead = 0;
+  store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
   const std::shared_ptr<volume::StormStore> store = volume::CachedStormStore::Owned(
       std::make_shared<volume::CachedStormStore>(storms, store_options));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,

@@ -30,6 +30,7 @@
 #include "spdlog/spdlog.h"
 #include "telemetry/metrics.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
+#include "volume/border_data.h"
 
 namespace thunderhead::app {
 namespace {
@@ -147,6 +148,7 @@ absl::Status Serve(ServeFlags flags) {
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(store_options.formats, FormatsOf(flags.sandbox));
   store_options.reader_apart = ReaderApart(flags.sandbox);
+  store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
                                volume::StormStore::Open(flags.data, store_options));

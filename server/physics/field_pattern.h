@@ -30,6 +30,7 @@ using glm::mix;
 using glm::sqrt;
 using glm::vec2;
 using glm::vec3;
+using glm::vec4;
 #include "shaders/physics/ground_cover.glsl"
 
 }  // namespace glsl

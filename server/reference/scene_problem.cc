@@ -223,7 +223,7 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
 }
 
 // The ground where rays from the eye meet it, null where it is the same everywhere. A ray shows a
-// point of it, no footprint; but rings are as wide as pixels demand.
+// point of it, no footprint; but borders and rings are as wide as pixels demand.
 std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& scene,
                                                           const volume::HydrometeorFields& fields,
                                                           const scene::View& view) {
@@ -236,6 +236,7 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
   const double height_px = scene.output.height_px;
   const double ground_m = volume::LowestTerrain_m(fields);
   return [=, land = by_land_use ? fields.land : volume::LandSurface{},
+          borders = look.borders && !fields.borders->nearest.empty() ? fields.borders : nullptr,
           grid = fields.grid](const glm::dvec2& place_m) {
     const auto& pattern = physics::FieldPattern::Plains();
     const glm::vec2 place(place_m);
@@ -250,14 +251,22 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
     } else {
       seen.albedo = glm::dvec3(plain);
     }
+    const double distance_m = glm::distance(view.eye_m, glm::dvec3(place_m, ground_m));
+    const auto across_m = static_cast<float>(
+        2.0 * (view.half_height_m + view.tan_half_height * distance_m) / height_px);
+    const auto paint = [&](const glm::vec3& reflectance, double share) {
+      seen.albedo = glm::mix(seen.albedo, glm::dvec3(reflectance), share);
+      seen.water *= 1.0 - share;
+    };
+    if (borders != nullptr) {
+      paint(
+          physics::glsl::border_reflectance(),
+          physics::glsl::border_paint(volume::NearestBorder(*borders, place_m),
+                                      static_cast<float>(borders->grid.texel_m), point, across_m));
+    }
     if (look.rings) {
-      const double distance_m = glm::distance(view.eye_m, glm::dvec3(place_m, ground_m));
-      const double across_m =
-          2.0 * (view.half_height_m + view.tan_half_height * distance_m) / height_px;
-      const double paint = physics::glsl::ring_paint(glm::vec2(place_m - middle_m), point,
-                                                     static_cast<float>(across_m));
-      seen.albedo = glm::mix(seen.albedo, glm::dvec3(physics::glsl::ring_reflectance()), paint);
-      seen.water *= 1.0 - paint;
+      paint(physics::glsl::ring_reflectance(),
+            physics::glsl::ring_paint(glm::vec2(place_m - middle_m), point, across_m));
     }
     return seen;
   };

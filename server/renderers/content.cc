@@ -17,6 +17,12 @@ void AddNotShown(const scene::Scene& scene, const scene::Capabilities& shows, Co
     content->not_shown.push_back(
         {Code::kLights, "lights besides the sun (metaballs and the reference show them)"});
   }
+  if (scene.ground.borders && !content->ground.borders) {
+    content->not_shown.push_back(
+        {Code::kBorders,
+         "coasts and borders (the storm has no map projection, or the server no data of them: "
+         "Debian's package gmt-gshhg-low)"});
+  }
 }
 
 }  // namespace thunderhead::renderers

@@ -21,7 +21,7 @@ struct Content {
 };
 
 // Adds the parts of `scene` that its technique, which shows `shows`, leaves out. `content` has its
-// fields.
+// fields and ground.
 void AddNotShown(const scene::Scene& scene, const scene::Capabilities& shows, Content* content);
 
 }  // namespace thunderhead::renderers

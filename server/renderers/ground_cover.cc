@@ -26,6 +26,7 @@ void GroundCover::SetLand(const volume::HydrometeorFields& fields) {
 void GroundCover::Prepare(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
   drawn_ = scene::DrawnGround(scene, fields);
   ring_middle_m_ = scene::RingMiddle_m(fields);
+  PrepareBorders(fields);
   if (drawn_.cover == scene::GroundCover::kPlain) return;
   if (fields_.Get() == 0) {
     fields_ = gl::Texture2D::WithMips(GL_RGBA8, glm::ivec2(physics::glsl::kFieldMapCells),
@@ -41,8 +42,22 @@ void GroundCover::Prepare(const scene::Scene& scene, const volume::HydrometeorFi
   land_is_new_ = false;
 }
 
+void GroundCover::PrepareBorders(const volume::HydrometeorFields& fields) {
+  const bool shown = drawn_.borders && !fields.borders->nearest.empty();
+  if (!shown || fields.borders == border_map_) {
+    if (!shown) border_map_ = nullptr;
+    return;
+  }
+  border_map_ = fields.borders;
+  const glm::ivec2 size = border_map_->grid.texels;
+  if (borders_.Size() != size) borders_ = gl::Texture2D(GL_RGBA16F, size);
+  borders_.Upload(GL_RGBA, GL_HALF_FLOAT, border_map_->nearest.data());
+}
+
 GroundCoverVariant GroundCover::Variant() const {
-  return {.cover = static_cast<int>(drawn_.cover), .rings = drawn_.rings};
+  return {.cover = static_cast<int>(drawn_.cover),
+          .borders = border_map_ != nullptr,
+          .rings = drawn_.rings};
 }
 
 void GroundCover::Bind(const gl::Program& program, const scene::Scene& scene,
@@ -55,6 +70,14 @@ void GroundCover::Bind(const gl::Program& program, const scene::Scene& scene,
               glm::vec2(2.0 * glm::dvec2(view.half_height_m, view.tan_half_height) /
                         static_cast<double>(height_px)));
   program.Set(uniform::ring_middle_m, glm::vec2(ring_middle_m_ - glm::dvec2(view.eye_m)));
+  if (border_map_ != nullptr) {
+    const volume::BorderGrid& grid = border_map_->grid;
+    const glm::dvec2 size_m = glm::dvec2(grid.texels) * grid.texel_m;
+    borders_.Bind(shaders::kGroundBordersUnit);
+    program.Set(uniform::borders_scale, glm::vec2(1.0 / size_m));
+    program.Set(uniform::borders_offset, glm::vec2((glm::dvec2(view.eye_m) - grid.low_m) / size_m));
+    program.Set(uniform::borders_texel_m, static_cast<float>(grid.texel_m));
+  }
   if (drawn_.cover == scene::GroundCover::kPlain) return;
   fields_.Bind(shaders::kGroundGrainUnit);
   program.Set(uniform::pattern_origin_m, glm::vec2(view.eye_m));

@@ -1,6 +1,8 @@
-// The ground's cover on the device: a map of the storm's land use, or the pattern of fields;
-// and the rings. Owns GL objects: use it on the context's thread.
+// The ground's cover on the device: a map of the storm's land use, or the pattern of fields; coasts
+// and borders; and the rings. Owns GL objects: use it on the context's thread.
 #pragma once
+
+#include <memory>
 
 #include "gl/objects.h"
 #include "gl/program.h"
@@ -15,9 +17,10 @@ namespace thunderhead::renderers {
 // The variant of common/ground_cover.glsl.
 struct GroundCoverVariant {
   gl::DefineValue cover;  // as scene::GroundCover counts
+  gl::DefineValue borders;
   gl::DefineValue rings;
 
-  gl::Defines Defines() const { return {{"COVER", cover}, {"RINGS", rings}}; }
+  gl::Defines Defines() const { return {{"COVER", cover}, {"BORDERS", borders}, {"RINGS", rings}}; }
 };
 
 class GroundCover {
@@ -35,9 +38,12 @@ class GroundCover {
   void Bind(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
             int height_px) const;
 
-  std::size_t Bytes() const { return fields_.Bytes() + land_.Bytes(); }
+  std::size_t Bytes() const { return fields_.Bytes() + land_.Bytes() + borders_.Bytes(); }
 
  private:
+  // Puts the map that is drawn on the device, if one is.
+  void PrepareBorders(const volume::HydrometeorFields& fields);
+
   scene::Ground drawn_;
   glm::dvec2 ring_middle_m_{0.0};
   gl::Texture2D fields_;  // physics::FieldPattern
@@ -45,6 +51,8 @@ class GroundCover {
   gl::Texture2D land_;
   volume::RegularGrid grid_;
   glm::vec3 land_mean_{0.0F};
+  std::shared_ptr<const volume::BorderMap> border_map_;  // null: none is drawn
+  gl::Texture2D borders_;
 };
 
 }  // namespace thunderhead::renderers

@@ -321,8 +321,8 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
   frame.slices = drawn_slices_;
   frame.device_bytes = Bytes();
   const TechniqueFactory& factory = *registry_->Find(scene::NameOf(scene.rendering.technique));
-  AddNotShown(scene, factory.Capabilities(), &frame.content);
   frame.content.ground = scene::DrawnGround(scene, fields);
+  AddNotShown(scene, factory.Capabilities(), &frame.content);
   return frame;
 }
 

@@ -41,9 +41,10 @@ struct NotShown {
     kDetail,
     kFieldOptics,
     kTracedLight,
-    kLights,  // besides the sun
-    kFields,  // some of the storm's
-    kStorm,   // the surface is made from a seed
+    kLights,   // besides the sun
+    kFields,   // some of the storm's
+    kStorm,    // the surface is made from a seed
+    kBorders,  // and coasts
     kOther,
   } code = Code::kOther;
   std::string message;  // a few words for people

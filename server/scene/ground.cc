@@ -14,6 +14,7 @@ Ground DrawnGround(const Scene& scene, const volume::HydrometeorFields& fields) 
   if (ground.cover == GroundCover::kLandUse && fields.land.Empty()) {
     ground.cover = GroundCover::kPlain;
   }
+  ground.borders = ground.borders && fields.borders != nullptr;
   return ground;
 }
 

@@ -41,7 +41,9 @@ Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   // The storm sees the ground by the shares of sun and sky in its light and by its albedo.
   const MediumSettings* medium = MediumSettingsOf(after.rendering.technique);
   const bool diffuses = medium != nullptr && medium->transport == Transport::kDiffusion;
-  if (diffuses && (before.sky != after.sky || before.ground != after.ground)) return Stage::kLight;
+  // Not what is painted on it.
+  const bool same_cover = before.ground.cover == after.ground.cover;
+  if (diffuses && (before.sky != after.sky || !same_cover)) return Stage::kLight;
   if (before.camera != after.camera || before.sky != after.sky || before.ground != after.ground ||
       !same_size) {
     return Stage::kView;

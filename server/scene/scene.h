@@ -122,6 +122,7 @@ enum class GroundCover {
 // The look of the ground. Which cover is the default depends on the storm.
 struct Ground {
   GroundCover cover = GroundCover::kPlain;
+  bool borders = false;  // and coasts, where fields have them
   bool rings = false;  // of distance, every 10 km around the storm's middle, and an arrow to north
 
   bool operator==(const Ground&) const = default;

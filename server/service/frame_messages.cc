@@ -39,6 +39,7 @@ constexpr std::array kNotShownCodes = {
     std::pair{v1::NotShown::CODE_LIGHTS, scene::NotShown::Code::kLights},
     std::pair{v1::NotShown::CODE_FIELDS, scene::NotShown::Code::kFields},
     std::pair{v1::NotShown::CODE_STORM, scene::NotShown::Code::kStorm},
+    std::pair{v1::NotShown::CODE_BORDERS, scene::NotShown::Code::kBorders},
     std::pair{v1::NotShown::CODE_OTHER, scene::NotShown::Code::kOther},
 };
 constexpr std::array kUnmetCodes = {

@@ -418,8 +418,8 @@ absl::Status SessionDrawer::ShowTraced(const Turn& turn, const NewestScene& show
   picture.modelled.technique = scene::Reference::kName;
   picture.modelled.content.fields =
       scene::HydrometeorsOf(scene::DrawnFieldsOf(*shown.scene, *fields));
-  renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
   picture.modelled.content.ground = scene::DrawnGround(*shown.scene, *fields);
+  renderers::AddNotShown(*shown.scene, scene::Reference::kCapabilities, &picture.modelled.content);
   auto fine = traced.full_size ? FineOf(turn, picture) : std::nullopt;
   Send(turn, shown, traced.full_size, std::move(picture), std::move(fine), traced.refinement);
   return absl::OkStatus();

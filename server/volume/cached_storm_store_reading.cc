@@ -14,6 +14,7 @@
 #include "base/file_stamp.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "volume/border_data.h"
 #include "volume/cached_storm_store.h"
 #include "volume/netcdf_holder.h"
 
@@ -376,6 +377,9 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
                                    return Checkpoint(read, activity, share);
                                  }));
     THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file, ReplacedRetryAfter()));
+    if (options_.borders != nullptr) {
+      counted->fields.borders = options_.borders->MapOf(place.storm->info, counted->fields.grid);
+    }
     if (options_.memory != nullptr) {
       scratch = {};
       THUNDERHEAD_RETURN_IF_ERROR(

@@ -65,7 +65,7 @@ std::size_t HydrometeorFields::Bytes() const {
   }
   return values * sizeof(float) + halves * sizeof(std::uint16_t) +
          land.texels.capacity() * sizeof(glm::u8vec4) + motion.turbulence.capacity() +
-         motion.ascent.capacity();
+         motion.ascent.capacity() + (borders != nullptr ? borders->Bytes() : 0);
 }
 
 }  // namespace thunderhead::volume

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "physics/particle_size.h"
 #include "volume/air_density.h"
 #include "volume/air_motion.h"
+#include "volume/border_map.h"
 #include "volume/grid.h"
 #include "volume/land_surface.h"
 #include "volume/particle_sizes.h"
@@ -79,11 +81,14 @@ struct HydrometeorFields {
       fields;  // every field the file has, in the order of physics::kHydrometeors
   std::vector<float> terrain_height_m;  // nx * ny values above sea level, x fastest
   LandSurface land;                     // empty if the file has no land use of a real place
-  AirMotion motion;                     // of the air
-  AirDensity air;                       // that mixing ratios refer to; empty if there are none
-  CellBox condensate;                   // the smallest box that holds every cell with condensate
+  // Coasts and borders, the same for all times of a storm; null if its place or their data are not
+  // known. By the store.
+  std::shared_ptr<const BorderMap> borders;
+  AirMotion motion;    // of the air
+  AirDensity air;      // that mixing ratios refer to; empty if there are none
+  CellBox condensate;  // the smallest box that holds every cell with condensate
 
-  // Memory of the arrays in bytes.
+  // Memory of the arrays in bytes, those that other times share included.
   std::size_t Bytes() const;
 };
 

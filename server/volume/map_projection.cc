@@ -91,6 +91,12 @@ std::optional<EarthPlace> MapProjection::PlaceOf(const glm::dvec2& world_m) cons
   return Unproject(middle_m_ + world_m);
 }
 
+std::optional<glm::dvec2> MapProjection::WorldOf(const EarthPlace& place) const {
+  const std::optional<glm::dvec2> map_m = Project(place);
+  if (!map_m.has_value()) return std::nullopt;
+  return *map_m - middle_m_;
+}
+
 std::optional<glm::dvec2> MapProjection::Project(const EarthPlace& place) const {
   const double latitude = glm::radians(place.latitude_deg);
   const double turn = glm::radians(Wrapped_deg(place.longitude_deg - longitude0_deg_));

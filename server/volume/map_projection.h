@@ -23,6 +23,8 @@ class MapProjection {
 
   // The place of metres east and north of the middle of the domain; nothing beyond the map.
   std::optional<EarthPlace> PlaceOf(const glm::dvec2& world_m) const;
+  // The metres east and north of it of a place; nothing for one that is not on the map.
+  std::optional<glm::dvec2> WorldOf(const EarthPlace& place) const;
 
  private:
   enum class Kind { kConic, kPolar, kMercator, kPlateCarree };

@@ -70,6 +70,8 @@ using CatalogueListener = std::function<void(const CatalogueChange&)>;
 // Called on the reading thread with the share done, 0 to 1.
 using ReadProgress = std::function<void(double)>;
 
+class BorderData;
+
 // How a store follows what happens in its folders: by the kernel's events where there are any, and
 // by a slow rescan, which also sees what happens on another machine's side of a network file
 // system.
@@ -91,6 +93,8 @@ struct StormStoreOptions {
   // Gives a reader of the file that works in another process, for while this one's is held up by
   // another storage, or null; empty: such reads are refused.
   std::function<std::shared_ptr<const RecordReader>(const StormFile& file)> reader_apart;
+  // Coasts and borders for storms with a place on Earth; null: none.
+  std::shared_ptr<BorderData> borders;
   // Absent: the storms are those of the start. With it, a folder without storms is no error.
   std::optional<LiveCatalogueOptions> live;
 };

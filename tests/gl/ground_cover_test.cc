@@ -1,6 +1,7 @@
-// The cover of the ground in pictures: fields, land use with water, and rings; against the formulas
-// on the CPU and against the reference.
+// The cover of the ground in pictures: fields, land use with water, coasts and borders, and rings;
+// against the formulas on the CPU and against the reference.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -48,13 +49,14 @@ class GroundCoverTest : public testing::Test {
     context_.reset();
   }
 
-  std::vector<float> Pixels(scene::GroundCover cover, bool rings = false) {
-    scene_.ground = {cover, rings};
+  std::vector<float> Pixels(scene::GroundCover cover, bool rings = false, bool borders = false) {
+    scene_.ground = {.cover = cover, .borders = borders, .rings = rings};
     DrawQuality quality;
     quality.single_precision = true;
     const auto frame = renderer_->Draw(scene_, fields_, quality);
     EXPECT_TRUE(frame.ok()) << frame.status();
     EXPECT_EQ(frame->content.ground, scene::DrawnGround(scene_, *fields_));
+    not_shown_ = frame->content.not_shown;
     return frame::ReadLinear(*frame->radiance);
   }
 
@@ -81,6 +83,31 @@ class GroundCoverTest : public testing::Test {
     fields_ = fields;
   }
 
+  // A line of three points, in texels of 500 m.
+  void HaveBorder() {
+    auto fields = std::make_shared<volume::HydrometeorFields>(*fields_);
+    const volume::BorderGrid grid{{-20e3, -20e3}, 500.0, {80, 80}, 0.0};
+    fields->borders = std::make_shared<const volume::BorderMap>(
+        volume::MakeBorderMap({{{kBorder_m.begin(), kBorder_m.end()}, 1.0F}}, grid));
+    fields_ = fields;
+  }
+
+  // The pixel that shows a place on the ground.
+  std::size_t PixelOf(const glm::dvec2& place_m) const {
+    const scene::View view = scene::ViewOf(scene_, *fields_);
+    const glm::dvec2 off_m = place_m - view.touch_m;
+    const double height_m = -0.5 * view.ground_curvature_per_m * glm::dot(off_m, off_m);
+    const glm::dvec3 from_eye_m = glm::dvec3(place_m, height_m) - view.eye_m;
+    const double depth_m = glm::dot(from_eye_m, view.forward);
+    const glm::dvec2 device(
+        glm::dot(from_eye_m, view.right) / (view.half_width_m + depth_m * view.tan_half_width),
+        glm::dot(from_eye_m, view.up) / (view.half_height_m + depth_m * view.tan_half_height));
+    const glm::dvec2 size(scene_.output.width_px, scene_.output.height_px);
+    const glm::ivec2 pixel(glm::floor((0.5 + 0.5 * device) * size));
+    return static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(size.x) +
+           static_cast<std::size_t>(pixel.x);
+  }
+
   picture::LinearPicture Traced(double samples) {
     reference::RefineLimits limits;
     limits.samples_per_pixel = static_cast<int>(samples);
@@ -89,6 +116,9 @@ class GroundCoverTest : public testing::Test {
     return traced->image;
   }
 
+  static constexpr std::array kBorder_m = {glm::dvec2(-9e3, -6'130.0), glm::dvec2(1'270.0, 1'130.0),
+                                           glm::dvec2(9e3, 2e3)};
+  std::vector<scene::NotShown> not_shown_;
   std::unique_ptr<gl::Context> context_;
   std::unique_ptr<SceneRenderer> renderer_;
   std::shared_ptr<const volume::HydrometeorFields> fields_ =
@@ -198,6 +228,65 @@ TEST_F(GroundCoverTest, RingsAreOrangeAndVanishWhenOff) {
   EXPECT_EQ(red_at(with, 15e3, 10.0), red_at(without, 15e3, 10.0));
 }
 
+// From above and from the side, near and far off, where a pixel is wider than the line. A line
+// paints yellow: it leaves hardly any blue.
+TEST_F(GroundCoverTest, BordersAreWhereTheirPointsAreProjected) {
+  HaveBorder();
+  scene_.output = {480, 320, 90};
+  for (const scene::Camera& camera :
+       {scene::Camera(scene::TopDownCamera{{0.0, 0.0}, 30e3}),
+        scene::Camera(scene::TopDownCamera{{0.0, 0.0}, 150e3}),
+        scene::Camera(scene::OrbitCamera{{0.0, 0.0, 0.0}, 200.0, 25.0, 30e3, 35.0}),
+        scene::Camera(scene::OrbitCamera{{0.0, 0.0, 0.0}, 300.0, 50.0, 100e3, 35.0})}) {
+    scene_.camera = camera;
+    const std::vector<float> without = Pixels(scene::GroundCover::kPlain);
+    const std::vector<float> with = Pixels(scene::GroundCover::kPlain, false, true);
+    const auto blue_share = [](const glm::vec3& seen) { return seen.z / seen.x; };
+    std::vector<bool> near(Count(), false);
+    int on_line = 0;
+    for (std::size_t i = 1; i < kBorder_m.size(); ++i) {
+      // Not the ends, which are in the middles of pixels that show ground beyond them.
+      for (int step = 4; step <= 196; ++step) {
+        const glm::dvec2 place_m = glm::mix(kBorder_m[i - 1], kBorder_m[i], step / 200.0);
+        const std::size_t at = PixelOf(place_m);
+        ASSERT_LT(at, Count());
+        // The line is at least a pixel and a half wide, and the corner is cut by parts of a texel.
+        const double to_corner_m = glm::distance(place_m, kBorder_m[1]);
+        if (to_corner_m > 1000.0) {
+          EXPECT_LT(blue_share(Pixel(with, at)), 0.75F * blue_share(Pixel(without, at)))
+              << camera.index() << ' ' << place_m.x << ' ' << place_m.y;
+          ++on_line;
+        }
+        for (int y = -8; y <= 8; ++y) {
+          for (int x = -8; x <= 8; ++x) near[at + static_cast<std::size_t>(480 * y + x)] = true;
+        }
+      }
+    }
+    EXPECT_GT(on_line, 200);
+    for (std::size_t i = 0; i < Count(); ++i) {
+      if (near[i]) continue;
+      ASSERT_EQ(Pixel(with, i), Pixel(without, i)) << i;
+    }
+  }
+}
+
+TEST_F(GroundCoverTest, BordersThatCannotBeDrawnAreNotShown) {
+  const std::vector<float> without = Pixels(scene::GroundCover::kPlain);
+  EXPECT_TRUE(not_shown_.empty());
+  EXPECT_EQ(Pixels(scene::GroundCover::kPlain, false, true), without);
+  ASSERT_EQ(not_shown_.size(), 1U);
+  EXPECT_EQ(not_shown_[0].code, scene::NotShown::Code::kBorders);
+  HaveBorder();
+  EXPECT_NE(Pixels(scene::GroundCover::kPlain, false, true), without);
+  EXPECT_TRUE(not_shown_.empty());
+  // There are data, but no line there.
+  auto fields = std::make_shared<volume::HydrometeorFields>(*fields_);
+  fields->borders = std::make_shared<const volume::BorderMap>();
+  fields_ = fields;
+  EXPECT_EQ(Pixels(scene::GroundCover::kPlain, false, true), without);
+  EXPECT_TRUE(not_shown_.empty());
+}
+
 TEST_F(GroundCoverTest, WaterGlintsBelowTheSunAndLandDoesNot) {
   HaveCoast();
   scene_.sky = {1.0, 0.2, 1.5};
@@ -230,6 +319,7 @@ TEST_F(GroundCoverTest, WithoutLandUseTheGroundIsPlain) {
 // are compared in blocks.
 TEST_F(GroundCoverTest, TheReferenceShowsTheSameGround) {
   HaveCoast();
+  HaveBorder();
   scene_.sky = {1.0, 0.2, 1.5};
   scene_.output = {48, 32, 90};
   for (const auto& [cover, camera] :
@@ -241,7 +331,7 @@ TEST_F(GroundCoverTest, TheReferenceShowsTheSameGround) {
         std::pair{scene::GroundCover::kLandUse,
                   scene::OrbitCamera{{-8e3, -8e3, 0.0}, 90.0, 40.0, 10e3, 35.0}}}) {
     scene_.camera = camera;
-    const std::vector<float> drawn = Pixels(cover, true);
+    const std::vector<float> drawn = Pixels(cover, true, true);
     const picture::LinearPicture traced = Traced(96.0);
     double squares = 0.0;
     double mean = 0.0;

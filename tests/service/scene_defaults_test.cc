@@ -42,10 +42,12 @@ double NumberOf(const Message& message, const FieldDescriptor& field) {
   }
 }
 
-// Enumerators whose default depends on the storm or on other fields, or which have none.
+// Enumerators and switches whose default depends on the storm or on other fields, or which have
+// none.
 const std::set<std::string> kWithoutDefault = {
     "thunderhead.v1.FieldParameters.hydrometeor",
     "thunderhead.v1.FieldParameters.sizes",
+    "thunderhead.v1.Ground.borders",
     "thunderhead.v1.Ground.cover",
     "thunderhead.v1.PhaseFunction.kind",
     "thunderhead.v1.Scene.particle_sizes",
@@ -59,7 +61,9 @@ bool CompareWithDefault(const Message& message, const FieldDescriptor& field,
   const auto& reflection = *message.GetReflection();
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_BOOL:
-      EXPECT_TRUE(options.HasExtension(v1::default_on)) << name << " has no default";
+      EXPECT_NE(options.HasExtension(v1::default_on), kWithoutDefault.contains(field.full_name()))
+          << name;
+      if (!options.HasExtension(v1::default_on)) return false;
       EXPECT_EQ(reflection.GetBool(message, &field), options.GetExtension(v1::default_on)) << name;
       return true;
     case FieldDescriptor::CPPTYPE_ENUM:
@@ -451,6 +455,31 @@ TEST(SceneDefaults, ThePapersPresetsStandForTheirConstants) {
   for (const v1::Preset preset : {v1::PRESET_FAST, v1::PRESET_BALANCED, v1::PRESET_TRUE}) {
     EXPECT_EQ(sizes(preset, v1::PARTICLE_SIZES_UNSPECIFIED), v1::PARTICLE_SIZES_MODEL);
   }
+}
+
+// On land use of a storm with a map projection.
+TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
+  const auto borders = [](const volume::StormInfo& storm, v1::Scene scene = {}) {
+    FillSceneDefaults(scene, storm);
+    EXPECT_TRUE(scene.ground().has_borders());
+    EXPECT_EQ(ToScene(scene).ground.borders, scene.ground().borders());
+    return scene.ground().borders();
+  };
+  volume::StormInfo real = Storm();
+  real.latitude_deg = 35.0;
+  real.longitude_deg = -97.0;
+  EXPECT_FALSE(borders(Storm()));
+  EXPECT_FALSE(borders(real)) << "its projection is not known";
+  real.projection = "+proj=merc +lat_ts=15 +lon_0=120 +R=6370000";
+  EXPECT_TRUE(borders(real));
+  v1::Scene papers;
+  papers.mutable_rendering()->set_preset(v1::PRESET_UNIFORM_PHASE_TRANSLUCENT);
+  EXPECT_FALSE(borders(real, papers));
+  papers.mutable_ground()->set_borders(true);
+  EXPECT_TRUE(borders(real, papers));
+  v1::Scene off;
+  off.mutable_ground()->set_borders(false);
+  EXPECT_FALSE(borders(real, off));
 }
 
 // The ground that is the default follows from the storm; rings are as the value has them.

@@ -104,6 +104,7 @@ class Writer {
     Number("DX", file_.dx_m);
     Number("DY", file_.dy_m);
     Number("MAP_PROJ", file_.map_projection);
+    for (const auto& [name, number] : file_.numbers) Number(name.c_str(), number);
     Number("GRID_ID", file_.domain);
     if (file_.microphysics != 0) Number("MP_PHYSICS", file_.microphysics);
     if (file_.hail_option != 0) Number("HAIL_OPT", file_.hail_option);

@@ -55,6 +55,7 @@ struct SyntheticWrf {
   double latitude_deg = 35.0;  // of the south-west cell; 0.1 degrees more a cell
   double longitude_deg = -97.0;
   int map_projection = 1;
+  std::map<std::string, double> numbers;  // more global attributes, such as TRUELAT1
   int domain = 1;
   int microphysics = 0;  // MP_PHYSICS; 0: not in the file
   int hail_option = 0;   // HAIL_OPT; the same

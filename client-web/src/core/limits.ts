@@ -1,6 +1,6 @@
 // Range, default and unit of each number and the defaults of switches and choices, read from the field options in proto/, and
 // the mapping between a value and its slider's position. Independent of widgets.
-import { type DescField, getOption, hasOption, ScalarType } from "@bufbuild/protobuf";
+import { type DescField, getOption, ScalarType } from "@bufbuild/protobuf";
 import {
   default_choice as defaultChoiceOption,
   default_on as defaultOnOption,
@@ -44,9 +44,9 @@ export function limitsOf(field: DescField): Limits {
   };
 }
 
-// The value of an absent bool.
+// The value of an absent bool; false where it depends on the storm.
 export function defaultOnOf(field: DescField): boolean {
-  if (!hasOption(field, defaultOnOption)) {
+  if (field.fieldKind !== "scalar" || field.scalar !== ScalarType.BOOL) {
     throw new Error(`${field.toString()} has no default in the schema`);
   }
   return getOption(field, defaultOnOption);

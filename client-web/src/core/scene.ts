@@ -100,6 +100,7 @@ export const LIMITS = {
 // Of absent switches and choices.
 export const DEFAULTS = {
   visible: defaultOnOf(FieldParametersSchema.field.visible),
+  borders: defaultOnOf(GroundSchema.field.borders),
   rings: defaultOnOf(GroundSchema.field.rings),
   whiteBalance: defaultOnOf(DisplaySchema.field.whiteBalance),
   toneMap: defaultChoiceOf(DisplaySchema.field.toneMap) as ToneMap,

@@ -100,6 +100,12 @@ export function PictureSection({ page }: { page: Page }) {
         </p>
       )}
       <Switch
+        label="Coasts and borders"
+        checked={ground?.borders ?? DEFAULTS.borders}
+        testId="borders"
+        onChange={(borders) => state.edit((scene) => withGround(scene, { borders }))}
+      />
+      <Switch
         label="Rings every 10 km"
         checked={ground?.rings ?? DEFAULTS.rings}
         testId="rings"

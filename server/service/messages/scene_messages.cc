@@ -251,11 +251,15 @@ namespace {
 // The particles' sizes are known by now.
 void FillGroundDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
   v1::Ground& ground = *scene.mutable_ground();
-  if (ground.cover() != v1::Ground::COVER_UNSPECIFIED) return;
-  const bool of_the_papers = scene.particle_sizes() == v1::PARTICLE_SIZES_PAPERS;
-  ground.set_cover(of_the_papers                    ? v1::Ground::COVER_PLAIN
-                   : storm.latitude_deg.has_value() ? v1::Ground::COVER_LAND_USE
-                                                    : v1::Ground::COVER_FIELDS);
+  if (ground.cover() == v1::Ground::COVER_UNSPECIFIED) {
+    const bool of_the_papers = scene.particle_sizes() == v1::PARTICLE_SIZES_PAPERS;
+    ground.set_cover(of_the_papers                    ? v1::Ground::COVER_PLAIN
+                     : storm.latitude_deg.has_value() ? v1::Ground::COVER_LAND_USE
+                                                      : v1::Ground::COVER_FIELDS);
+  }
+  if (!ground.has_borders()) {
+    ground.set_borders(ground.cover() == v1::Ground::COVER_LAND_USE && !storm.projection.empty());
+  }
 }
 
 }  // namespace
@@ -263,6 +267,7 @@ void FillGroundDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
 void ToMessage(const scene::Ground& ground, v1::Ground& message) {
   message.set_cover(MessageOf(kGroundCovers, ground.cover));
   message.set_rings(ground.rings);
+  message.set_borders(ground.borders);
 }
 
 void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
@@ -303,7 +308,9 @@ scene::Scene ToScene(const v1::Scene& message) {
                message.sun().irradiance()};
   scene.sky = {message.sky().brightness(), message.sky().ground_albedo(),
                message.sky().turbidity()};
-  scene.ground = {ValueOf(kGroundCovers, message.ground().cover()), message.ground().rings()};
+  scene.ground = {.cover = ValueOf(kGroundCovers, message.ground().cover()),
+                  .borders = message.ground().borders(),
+                  .rings = message.ground().rings()};
   for (scene::FieldParameters& field : scene.fields) field.sizes = SizesOf(message);
   for (const v1::FieldParameters& field : message.fields()) {
     SetField(field, scene.fields[IndexOf(field.hydrometeor())]);

@@ -33,6 +33,7 @@ const int kSkyTableUnit = 6;
 const int kGroundCoverUnit = 13;
 const int kGroundGrainUnit = 14;
 const int kGroundSkyUnit = 15;
+const int kGroundBordersUnit = 19;
 const int kEyeUnit = 4;
 const int kLinearFrameUnit = 4;
 const int kChosenPlacesUnit = 18;

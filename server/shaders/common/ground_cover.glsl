@@ -1,5 +1,5 @@
 // The ground's cover where a view ray meets it. Coordinates are metres from the eye. Variants: COVER (0 plain, 1 fields,
-// 2 land use), RINGS.
+// 2 land use), BORDERS, RINGS.
 #include "common/bindings.glsl"
 #include "common/ground.glsl"
 #include "physics/ground_cover.glsl"
@@ -8,7 +8,7 @@
 
 uniform vec3 ground_reflectance;  // radiance per irradiance; for land use that of a reflectance of 1
 
-#if COVER != 0 || RINGS
+#if COVER != 0 || BORDERS || RINGS
 uniform vec2 pixel_width;  // of a pixel: at the eye, and what a metre of distance adds
 #endif
 
@@ -30,6 +30,14 @@ uniform float land_fades_cells;  // beyond the domain's edge, by e
 uniform float coast_cells;       // width of a coast
 #endif
 
+#if BORDERS
+layout(binding = kGroundBordersUnit) uniform sampler2D borders;  // volume::BorderMap
+
+uniform vec2 borders_scale;  // texture coordinates per metre
+uniform vec2 borders_offset;
+uniform float borders_texel_m;
+#endif
+
 #if RINGS
 uniform vec2 ring_middle_m;
 #endif
@@ -39,7 +47,7 @@ struct Cover {
   float water;       // share
 };
 
-#if COVER != 0 || RINGS
+#if COVER != 0 || BORDERS || RINGS
 vec2 footprint_of(vec3 point_m, vec3 ray, float across_m) {
   float grazing = -(ray.z + ground_curvature_per_m * dot(point_m.xy - touch_m, ray.xy));
   return ground_footprint(ray, grazing, across_m);
@@ -87,9 +95,17 @@ vec3 sky_of_ground(vec3 direction, vec3 towards_sun) {
 }
 #endif
 
+#if BORDERS || RINGS
+// Something painted on the ground, over a share of it.
+void paint(inout Cover cover, vec3 reflectance, float share) {
+  cover.reflectance = mix(cover.reflectance, reflectance / 3.14159265, share);
+  cover.water *= 1.0 - share;
+}
+#endif
+
 // Of the ground at a point of the view ray.
 Cover ground_cover(vec3 point_m, vec3 ray, float distance_m) {
-#if COVER != 0 || RINGS
+#if COVER != 0 || BORDERS || RINGS
   float across_m = pixel_width.x + pixel_width.y * distance_m;
   vec2 footprint_m = footprint_of(point_m, ray, across_m);
 #endif
@@ -100,10 +116,12 @@ Cover ground_cover(vec3 point_m, vec3 ray, float distance_m) {
 #else
   Cover cover = cover_of(point_m.xy + pattern_origin_m, footprint_m, point_m.xy);
 #endif
+#if BORDERS
+  vec4 nearest = textureLod(borders, point_m.xy * borders_scale + borders_offset, 0.0);
+  paint(cover, border_reflectance(), border_paint(nearest, borders_texel_m, footprint_m, across_m));
+#endif
 #if RINGS
-  float paint = ring_paint(point_m.xy - ring_middle_m, footprint_m, across_m);
-  cover.reflectance = mix(cover.reflectance, ring_reflectance() / 3.14159265, paint);
-  cover.water *= 1.0 - paint;
+  paint(cover, ring_reflectance(), ring_paint(point_m.xy - ring_middle_m, footprint_m, across_m));
 #endif
   return cover;
 }

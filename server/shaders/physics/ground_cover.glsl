@@ -1,4 +1,4 @@
-// The ground's cover where a view ray meets it: fields of crops on the section grid of the Great Plains, and rings of
+// The ground's cover where a view ray meets it: fields of crops on the section grid of the Great Plains, lines, and rings of
 // distance. Everything is averaged over a footprint, the axis-parallel rectangle of ground that a pixel shows, so that
 // nothing is finer than a pixel. Compiles as GLSL and as C++ (physics/field_pattern.h). Lengths in metres.
 #ifdef __cplusplus
@@ -102,11 +102,10 @@ PHYSICS_FUNCTION float grain_factor(float grain, float contrast) {
   return 1.0f + contrast * 0.7f * (grain - 128.0f / 255.0f);
 }
 
-// Rings around a middle, every 10 km up to 200; to the north of it a line, and an arrowhead on each ring.
-const float kRing_m = 10000.0f;
-const float kLastRing_m = 200000.0f;
-const float kRingLine_m = 120.0f;  // width of a line
-const float kArrow = 0.25f;        // length of an arrowhead, in distances between rings
+const float kLine_m = 120.0f;  // width of a line on the ground
+
+// At least as wide as a pixel and a half, so that it can be seen from afar; `across_m` is the width of a pixel.
+PHYSICS_FUNCTION float line_width(float across_m) { return max(kLine_m, 1.5f * across_m); }
 
 // The share of the footprint that a line of width `line` covers, the middle of which is `off` away.
 PHYSICS_FUNCTION float line_share(float off, float width, float line) {
@@ -115,11 +114,32 @@ PHYSICS_FUNCTION float line_share(float off, float width, float line) {
   return clamp((high - low) / width, 0.0f, 1.0f);
 }
 
-// The share of the footprint that is painted, at a place from the middle. Lines are at least as wide as `across_m`, that of
-// a pixel, so that they can be seen from afar.
+// The share of the footprint that coasts and borders paint. `nearest` is of volume::BorderMap, linear between its texels:
+// the offset from the nearest line and the distance to it, in texels, and its strength.
+PHYSICS_FUNCTION float border_paint(vec4 nearest, float texel_m, vec2 footprint, float across_m) {
+  vec2 offset = vec2(nearest.x, nearest.y);
+  float near = length(offset);
+  // The offset of a straight line is exact, but offsets from two lines cancel out between them. Distances do not, and those
+  // from a straight line are at most half a texel longer than the offset.
+  float off = min(near + 2.0f * max(nearest.z - near - 0.5f, 0.0f), max(nearest.z, near));
+  // On the line itself the offset has no direction: the footprint's mean then.
+  vec2 across = near > 1e-3f ? abs(offset) / near : vec2(0.5f, 0.5f);
+  float width = max(dot(across, footprint), 0.01f);
+  return nearest.w * line_share(texel_m * off, width, line_width(across_m));
+}
+
+// Yellow: unlike crops, water, snow and rings.
+PHYSICS_FUNCTION vec3 border_reflectance() { return vec3(0.85f, 0.75f, 0.08f); }
+
+// Rings around a middle, every 10 km up to 200; to the north of it a line, and an arrowhead on each ring.
+const float kRing_m = 10000.0f;
+const float kLastRing_m = 200000.0f;
+const float kArrow = 0.25f;  // length of an arrowhead, in distances between rings
+
+// The share of the footprint that is painted, at a place from the middle.
 PHYSICS_FUNCTION float ring_paint(vec2 place, vec2 footprint, float across_m) {
   float radius = max(length(place), 1.0f);
-  float line = max(kRingLine_m, 1.5f * across_m);
+  float line = line_width(across_m);
   float width = max(dot(abs(place), footprint) / radius, 0.01f);
   float nearest = clamp(floor(radius / kRing_m + 0.5f), 1.0f, kLastRing_m / kRing_m);
   float ring = line_share(abs(radius - nearest * kRing_m), width, line);

@@ -148,11 +148,11 @@ TEST(ErrorMeter, FalseColorsAreNoError) {
 TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
   const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
   scene::Scene scene = TowerScene();
-  scene.ground.rings = true;
+  scene.ground = {.cover = scene::GroundCover::kFields, .borders = true, .rings = true};
   int drawn = 0;
   const ErrorMeters::Draw draw = [&](const scene::Scene& measured) {
     ++drawn;
-    EXPECT_FALSE(measured.ground.rings);
+    EXPECT_EQ(measured.ground, (scene::Ground{.cover = scene::GroundCover::kFields}));
     EXPECT_FALSE(scene::MediumSettingsOf(measured.rendering.technique)->look.detail);
     return picture::LinearPicture{{32, 24}, std::vector<glm::vec3>(768, glm::vec3(0.1F))};
   };

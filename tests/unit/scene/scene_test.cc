@@ -49,6 +49,12 @@ TEST(Scene, ANewSkyLightsTheGroundUnderDiffusion) {
   }
 }
 
+TEST(Scene, WhatIsPaintedOnTheGroundDoesNotLightTheStorm) {
+  EXPECT_EQ(After([](Scene* s) { s->ground.cover = GroundCover::kFields; }), Stage::kLight);
+  EXPECT_EQ(After([](Scene* s) { s->ground.borders = true; }), Stage::kView);
+  EXPECT_EQ(After([](Scene* s) { s->ground.rings = true; }), Stage::kView);
+}
+
 TEST(Scene, EachTechniqueRerunsFromItsOwnStage) {
   const auto first = [](const Technique& before, const Technique& after) {
     Scene a;

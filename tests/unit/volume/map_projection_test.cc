@@ -30,6 +30,10 @@ TEST_P(MapProjections, PlacesAreThoseOfProj) {
   // A millimetre.
   EXPECT_NEAR(place->latitude_deg, GetParam().expected.latitude_deg, 1e-8);
   EXPECT_NEAR(place->longitude_deg, GetParam().expected.longitude_deg, 1e-8);
+  const auto back_m = map->WorldOf(GetParam().expected);
+  ASSERT_TRUE(back_m.has_value());
+  EXPECT_NEAR(back_m->x, GetParam().world_m.x, 2e-3);
+  EXPECT_NEAR(back_m->y, GetParam().world_m.y, 2e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(
