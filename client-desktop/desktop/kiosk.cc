@@ -9,6 +9,8 @@ namespace {
 
 // A connection that comes back at once is of no interest on a wall.
 constexpr std::chrono::seconds kQuietLoss{10};
+// A view whose picture never comes, as its storm cannot be read, is not the last one.
+constexpr std::chrono::minutes kMostWait{2};
 
 }  // namespace
 
@@ -40,6 +42,9 @@ void Kiosk::Advance(Ui& ui, TimePoint now) {
   // In another session, or where somebody else has steered meanwhile.
   const bool undone = !first && (state.joined_count != shown_in_ || state.Steers() != steered_ ||
                                  (ShowsOwnView() && !state.Steers() && !state.looks_around));
+  // Its time begins with its picture.
+  const bool pictured = !state.Steers() || ui.frame.scene_revision() >= state.scene_revision;
+  if (!pictured && now - asked_at_ < kMostWait) shown_at_ = now;
   const bool due = now - shown_at_ >= interval_ && views_.size() > 1;
   if (!first && !undone && !due) return;
   const int next = first || due ? (shown_ + 1) % static_cast<int>(views_.size()) : shown_;
@@ -50,7 +55,7 @@ void Kiosk::Advance(Ui& ui, TimePoint now) {
     if (!ui.session.ShowCamera(view.camera())) return;
   }
   shown_ = next;
-  shown_at_ = now;
+  asked_at_ = shown_at_ = now;
   shown_in_ = state.joined_count;
   steered_ = state.Steers();
   notices_ = state.notice_count;

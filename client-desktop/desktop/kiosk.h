@@ -22,7 +22,9 @@ class Kiosk {
   Kiosk(std::vector<v1::Scene> views, double view_seconds);
 
   // Shows the next view if it is due: the whole of it where this window steers, else its camera as
-  // an own view. Shows a view again at once where another session or somebody else has undone it.
+  // an own view. A view is due when the picture of the one before has been shown for its time, or
+  // has not come for two minutes. Shows a view again at once where another session or somebody else
+  // has undone it.
   void Advance(Ui& ui, TimePoint now);
   // The index of the view shown; -1 before the first.
   int shown() const { return shown_; }
@@ -37,6 +39,7 @@ class Kiosk {
   const std::vector<v1::Scene> views_;
   const std::chrono::duration<double> interval_;
   int shown_ = -1;
+  TimePoint asked_at_{};
   TimePoint shown_at_{};
   int shown_in_ = 0;  // the state's joined_count then
   bool steered_ = false;

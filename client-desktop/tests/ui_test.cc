@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "client-cpp/tests/fake_service.h"
+#include "desktop/kiosk.h"
 #include "gtest/gtest.h"
 
 namespace thunderhead::desktop {
@@ -68,6 +69,28 @@ TEST_F(UiTest, TimesThatArePlayedAreNoStepsOfTheHistory) {
   ui.Redo();
   EXPECT_TRUE(scene().sun().has_azimuth_deg());
   EXPECT_EQ(scene().time_index(), 2U);
+}
+
+TEST_F(UiTest, AViewOfAKioskIsShownForItsTimeOnceItsPictureIsThere) {
+  std::vector<v1::Scene> views(2);
+  Kiosk kiosk(views, 10.0);
+  Kiosk::TimePoint now{};
+  const auto after = [&](int seconds) {
+    now += std::chrono::seconds(seconds);
+    kiosk.Advance(ui, now);
+    return kiosk.shown();
+  };
+  EXPECT_EQ(after(0), 0);
+  ui.state.scene_revision = 2;
+  ui.frame.set_scene_revision(1);
+  EXPECT_EQ(after(60), 0) << "there is no picture of it";
+  ui.frame.set_scene_revision(2);
+  EXPECT_EQ(after(9), 0);
+  EXPECT_EQ(after(1), 1);
+  ui.state.scene_revision = 3;
+  EXPECT_EQ(after(119), 1) << "it may still come";
+  EXPECT_EQ(after(9), 1);
+  EXPECT_EQ(after(1), 0) << "it cannot be drawn";
 }
 
 TEST_F(UiTest, PlayFromTheStartIsNoStepEither) {
