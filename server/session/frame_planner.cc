@@ -22,12 +22,12 @@ FrameQuality Step(int step, FrameQuality quality) {
   return quality;
 }
 
-// The least output_scale for the sake of speed, and the least pixels that it leaves: the cost of
-// smaller pictures is not of their pixels.
+// Pictures are not made smaller than this for the sake of speed. Below so many pixels, their number
+// no longer decides what a frame costs.
 constexpr double kLeastOutputScale = 0.5;
 constexpr double kLeastPixels = 640.0 * 360.0;
-// By what factor another must be wanted for frames of one gesture to change their size: that is
-// seen, and costs video a key frame.
+// During a gesture the size changes only if the wanted one differs by more than this factor: people
+// see each change, and video needs a key frame for it.
 constexpr double kKept = 1.15;
 constexpr double kStep = 1.189207115;  // 2^(1/4)
 

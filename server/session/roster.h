@@ -60,10 +60,10 @@ struct RosterTimeouts {
   std::chrono::milliseconds answer = std::chrono::seconds(20);    // to a request for control
   std::chrono::milliseconds ask_again = std::chrono::seconds(5);  // the least between two requests
   std::chrono::milliseconds away = std::chrono::seconds(60);      // until control becomes free
-  // Until control goes to others when the one who steered has lost the connection.
+  // For how long control waits for a person whose connection was lost, before others get it.
   std::chrono::milliseconds come_back = std::chrono::seconds(10);
-  // Of one who is doubted, once the question is on its way; behind a large picture on a slow link
-  // it is not at once, so there is more time in all.
+  // In which a person whose connection is doubted must answer: from when the question was sent on,
+  // and in all, since it may wait behind a large picture on a slow link.
   std::chrono::milliseconds sign_of_life = std::chrono::seconds(3);
   std::chrono::milliseconds sign_of_life_in_all = std::chrono::seconds(15);
 };
@@ -81,12 +81,14 @@ class Roster {
   // Control is free, as it was before the server started again.
   void RestoreFreeControl() { Free(); }
 
-  // Who comes back with the same key and role steers again if control waits for that, asks for
-  // control if the one who left did, or has it if it is free by now, and asked last when that one
-  // did. Doubts those who are there with them, if they answer; `answers` says so of the newcomer.
+  // Adds a person and returns their id. A person with the key and role of somebody whose connection
+  // was lost is taken for them: they steer again if control waits for them, and if the other was
+  // asking for control, they ask, or get it if it is free by now. Other connections with this key
+  // and role are doubted, if they answer questions; `answers` says whether the new one does.
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "",
                      bool answers = true);
-  // What the one who leaves had goes to who is there with the same key and role, or waits for them.
+  // Removes the person. Their control, or their request for it, goes to another connection with the
+  // same key and role, or waits for one.
   void Leave(std::uint64_t id, Time now);
   // The person has said something.
   void Heard(std::uint64_t id);

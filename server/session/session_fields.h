@@ -63,8 +63,8 @@ class SessionFields {
   bool IsPrepared(const scene::Scene& scene,
                   const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
   void Ask(const NewestScene& newest);
-  // The key of the newest scene, looked up once for its revision: who follows the catalogue gives
-  // scenes whose file was replaced another one.
+  // The key of the newest scene's fields. It is looked up once for each revision: when a file is
+  // replaced, the sessions that show it get a new revision.
   const FieldsKey& KeyFor(const NewestScene& newest);
 
   const FieldsAccess& access_;
