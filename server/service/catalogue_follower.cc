@@ -7,7 +7,6 @@
 
 #include "service/engine.h"
 #include "service/messages/prepare_scene.h"
-#include "service/messages/scene_messages.h"
 #include "service/scene_update.h"
 #include "spdlog/spdlog.h"
 
@@ -109,7 +108,7 @@ bool CatalogueFollower::Move(session::Session& session, const volume::CatalogueC
   }
   const absl::StatusOr<std::uint64_t> revision = session.TakeRevisionAfter(newest->revision);
   if (!revision.ok()) return false;
-  session.Show(*revision, ToScene(scene), scene.SerializeAsString());
+  ShowScene(store_, session, *revision, scene);
   return true;
 }
 

@@ -5,7 +5,7 @@
 #include "service/interact_messages.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
-#include "service/messages/scene_messages.h"
+#include "service/scene_update.h"
 #include "telemetry/metrics.h"
 
 namespace thunderhead::service {
@@ -15,7 +15,7 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
                   v1::CreateSessionResponse& response) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto session, engine.sessions.Create(rules, owner));
   const std::uint64_t revision = session->TakeRevision();
-  session->Show(revision, ToScene(response.scene()), response.scene().SerializeAsString());
+  ShowScene(engine.store, *session, revision, response.scene());
   response.set_session_id(session->keys().presenter);
   response.set_viewer_key(session->keys().viewer);
   response.set_scene_revision(revision);

@@ -122,6 +122,14 @@ absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session) {
   return Read(newest->revision, *newest->serialized);
 }
 
+bool ShowScene(const volume::StormStore& store, session::Session& session, std::uint64_t revision,
+               const v1::Scene& scene) {
+  const volume::StormInfoPtr storm = store.Find(scene.storm_id());
+  std::optional<std::string> domain;
+  if (storm != nullptr) domain = volume::DomainOf(*storm);
+  return session.Show(revision, ToScene(scene), scene.SerializeAsString(), domain);
+}
+
 void ChangeScene(Engine& engine, const std::string& owner,
                  const std::shared_ptr<session::Session>& session, const SceneChange& change,
                  std::function<absl::Status()> may,
@@ -132,13 +140,12 @@ void ChangeScene(Engine& engine, const std::string& owner,
   const std::uint64_t revision = changed->revision;
   const std::shared_ptr<v1::Scene> scene = changed->scene;
   FrameThen(engine, owner, *scene,
-            [revision, scene, session, may = std::move(may),
+            [&store = engine.store, revision, scene, session, may = std::move(may),
              done = std::move(done)](const absl::Status& framed) {
               const absl::Status shown = !framed.ok() ? framed : base::OrOutOfMemory([&] {
                 THUNDERHEAD_RETURN_IF_ERROR(may());
-                return session->Show(revision, ToScene(*scene), scene->SerializeAsString())
-                           ? absl::OkStatus()
-                           : Overruled();
+                return ShowScene(store, *session, revision, *scene) ? absl::OkStatus()
+                                                                    : Overruled();
               });
               if (shown.ok()) return done(revision);
               session->Drop(revision);

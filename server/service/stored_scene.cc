@@ -24,7 +24,9 @@ absl::StatusOr<session::DecodedScene> DecodeStoredScene(
   } else {
     FillDefaults(scene);
   }
-  return session::DecodedScene{ToScene(scene), scene.SerializeAsString()};
+  session::DecodedScene decoded{ToScene(scene), scene.SerializeAsString(), std::nullopt};
+  if (storm != nullptr) decoded.domain = volume::DomainOf(*storm);
+  return decoded;
 }
 
 }  // namespace thunderhead::service

@@ -139,8 +139,10 @@ void Audience::RestoreFreeControl() {
   roster_.RestoreFreeControl();
 }
 
-void Audience::SceneChanged(std::uint64_t revision, Time now) {
+void Audience::SceneChanged(std::uint64_t revision, const std::optional<std::string>& domain,
+                            Time now) {
   std::unique_lock lock(mutex_);
+  if (revision >= scene_revision_ && domain.has_value()) board_.ShowDomain(*domain);
   scene_revision_ = std::max(scene_revision_, revision);
   Settle(std::move(lock), now);
 }
@@ -245,7 +247,7 @@ Told Audience::Marks(std::uint64_t count) {
     return {count + 1, marks_changes_[marks_changes_.size() - missed]};
   }
   if (all.bytes == nullptr) {
-    all.bytes = std::make_shared<const std::string>(format_.marks(board_.marks()));
+    all.bytes = std::make_shared<const std::string>(format_.marks(board_.MarksShown()));
   }
   return all;
 }

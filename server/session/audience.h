@@ -102,8 +102,9 @@ class Audience {
 
   // Control is free, as it was before the server started again; called before anybody has joined.
   void RestoreFreeControl();
-  // The session shows a scene of that revision, which everybody is to be sent.
-  void SceneChanged(std::uint64_t revision, Time now);
+  // The session shows a scene of that revision, which everybody is to be sent, and a storm of that
+  // domain; absent: of the one before, as far as is known.
+  void SceneChanged(std::uint64_t revision, const std::optional<std::string>& domain, Time now);
   // The times in memory of the storm that the session shows; everybody is told if it is news.
   void Hold(const HeldTimes& held, Time now);
   // Wakes everybody, when the session has ended.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -25,11 +26,39 @@ Board::Board(std::vector<Mark> marks) : marks_(std::move(marks)), marks_revision
   for (const Mark& mark : marks_) mark_count_ = std::max(mark_count_, mark.id);
 }
 
+void Board::ShowDomain(const std::string& domain) {
+  if (domain == domain_) return;
+  bool changed = false;
+  for (Mark& mark : marks_) {
+    const bool was_shown = IsShown(mark);
+    if (domain_.empty() && mark.domain.empty()) mark.domain = domain;
+    const bool is_shown = mark.domain == domain;
+    changed = changed || was_shown || is_shown;
+    if (was_shown && !is_shown) erased_.push_back(mark.id);
+    if (is_shown && !was_shown) {
+      std::erase(erased_, mark.id);
+      drawn_.insert(mark.id);
+    }
+  }
+  domain_ = domain;
+  if (changed) ++marks_revision_;
+}
+
+std::vector<Mark> Board::MarksShown() const {
+  std::vector<Mark> shown;
+  std::ranges::copy_if(marks_, std::back_inserter(shown),
+                       [this](const Mark& mark) { return IsShown(mark); });
+  return shown;
+}
+
 absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
                                          std::vector<glm::dvec3> positions_m,
                                          const std::optional<glm::vec3>& color,
                                          const std::string& owner_key) {
-  if (marks_.size() >= kMaxMarks) {
+  const auto kept = std::ranges::find_if(marks_, [&](const Mark& mark) { return !IsShown(mark); });
+  if (marks_.size() >= kMaxMarks && kept != marks_.end()) {
+    marks_.erase(kept);
+  } else if (marks_.size() >= kMaxMarks) {
     return base::WithDetails(
         absl::FailedPreconditionError(absl::StrCat("the session already has the maximum of ",
                                                    kMaxMarks, " marks; erase some first")),
@@ -38,7 +67,7 @@ absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
   }
   const glm::vec3 own = kColors[person_id % kColors.size()];
   marks_.push_back(
-      {++mark_count_, person_id, std::move(positions_m), color.value_or(own), owner_key});
+      {++mark_count_, person_id, std::move(positions_m), color.value_or(own), owner_key, domain_});
   drawn_.insert(mark_count_);
   ++marks_revision_;
   return mark_count_;
@@ -47,7 +76,7 @@ absl::StatusOr<std::uint64_t> Board::Add(std::uint64_t person_id,
 MarksChange Board::TakeMarksChange() {
   MarksChange change{.erased = std::exchange(erased_, {})};
   for (const Mark& mark : marks_) {
-    if (drawn_.contains(mark.id)) change.drawn.push_back(mark);
+    if (drawn_.contains(mark.id) && IsShown(mark)) change.drawn.push_back(mark);
   }
   drawn_.clear();
   return change;
@@ -79,7 +108,8 @@ bool Board::HasOfOthers(const std::vector<std::uint64_t>& ids, std::uint64_t per
 
 void Board::Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id) {
   const auto erased = std::erase_if(marks_, [&](const Mark& mark) {
-    const bool erases = (ids.empty() || std::ranges::find(ids, mark.id) != ids.end()) &&
+    const bool erases = IsShown(mark) &&
+                        (ids.empty() || std::ranges::find(ids, mark.id) != ids.end()) &&
                         (!person_id.has_value() || mark.person_id == *person_id);
     if (erases) erased_.push_back(mark.id);
     return erases;

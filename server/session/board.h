@@ -1,5 +1,6 @@
 // People show one another on a session's picture: pointers, and marks that they draw. Both are
-// places in the world, so they stay where they are when the camera turns. A plain value.
+// places in the world, so they stay where they are when the camera turns. A mark is shown with the
+// domain of the storm that it was drawn on, and kept while that of another is. A plain value.
 #pragma once
 
 #include <cstddef>
@@ -27,6 +28,7 @@ struct Mark {
   glm::vec3 color{1.0F};  // linear sRGB
   // Secret of who drew it, by which the marks follow the person to a new connection; empty: none.
   std::string owner_key{};
+  std::string domain{};  // of the storm that it lies on; empty: not known
 
   bool operator==(const Mark&) const = default;
 };
@@ -43,7 +45,11 @@ class Board {
   Board() = default;
   explicit Board(std::vector<Mark> marks);
 
-  // Without a colour, one of the person's own. RESOURCE_EXHAUSTED if there are too many marks.
+  // A storm of that domain is shown. Marks of no known domain are of the first.
+  void ShowDomain(const std::string& domain);
+
+  // Without a colour, one of the person's own. FAILED_PRECONDITION if too many marks are shown;
+  // where others are kept, the oldest of those makes room.
   absl::StatusOr<std::uint64_t> Add(std::uint64_t person_id, std::vector<glm::dvec3> positions_m,
                                     const std::optional<glm::vec3>& color,
                                     const std::string& owner_key = "");
@@ -51,14 +57,16 @@ class Board {
   void HandOver(const std::string& owner_key, std::uint64_t person_id);
   // True if one of `ids` is a mark of somebody else.
   bool HasOfOthers(const std::vector<std::uint64_t>& ids, std::uint64_t person_id) const;
-  // Erases `ids`, or every mark if there are none: of anybody, or only of that person.
+  // Erases `ids`, or every mark shown if there are none: of anybody, or only of that person.
   void Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id);
 
   // Moves the person's pointer; without a place it goes.
   void Point(std::uint64_t person_id, const std::optional<glm::dvec3>& position_m);
 
+  // Those of other domains, too.
   const std::vector<Mark>& marks() const { return marks_; }
-  // What has happened to the marks since the last call.
+  std::vector<Mark> MarksShown() const;
+  // What has happened to the marks shown since the last call.
   MarksChange TakeMarksChange();
   // The largest id of those who drew them; 0 without marks.
   std::uint64_t LastPerson() const;
@@ -68,6 +76,9 @@ class Board {
   std::uint64_t pointers_revision() const { return pointers_revision_; }
 
  private:
+  bool IsShown(const Mark& mark) const { return mark.domain == domain_; }
+
+  std::string domain_;  // empty: not known
   std::vector<Mark> marks_;
   std::set<std::uint64_t> drawn_;  // ids for TakeMarksChange
   std::vector<std::uint64_t> erased_;

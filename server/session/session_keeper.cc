@@ -60,8 +60,8 @@ absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
                                          " is not brought back, but kept until it is too old")));
       continue;
     }
-    kept_[record.id].session =
-        sessions_.Restore(record, std::move(decoded->scene), std::move(decoded->serialized));
+    kept_[record.id].session = sessions_.Restore(record, std::move(decoded->scene),
+                                                 std::move(decoded->serialized), decoded->domain);
   }
   THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(too_old));
   // Before anybody sees their new revisions, so that the next restart's are larger still.

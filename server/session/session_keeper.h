@@ -25,6 +25,7 @@ namespace thunderhead::session {
 struct DecodedScene {
   scene::Scene scene;
   std::string serialized;
+  std::optional<std::string> domain;  // of its storm, if that is there
 };
 using DecodeScene = std::function<absl::StatusOr<DecodedScene>(const std::string& serialized)>;
 

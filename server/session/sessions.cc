@@ -107,7 +107,8 @@ void Session::Drop(std::uint64_t revision) {
   taken_.erase(revision);
 }
 
-bool Session::Show(std::uint64_t revision, scene::Scene scene, std::string serialized) {
+bool Session::Show(std::uint64_t revision, scene::Scene scene, std::string serialized,
+                   const std::optional<std::string>& domain) {
   std::vector<std::shared_ptr<OwnView>> views;
   NewestScene newest;
   {
@@ -127,20 +128,20 @@ bool Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
   for (const auto& view : views) {
     if (view != nullptr) view->Follow(newest);
   }
-  audience_.SceneChanged(newest.revision, Clock::now());
+  audience_.SceneChanged(newest.revision, domain, Clock::now());
   signals_.on_work();
   return true;
 }
 
-void Session::ShowRestored(const SessionRecord& record, scene::Scene scene,
-                           std::string serialized) {
+void Session::ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized,
+                           const std::optional<std::string>& domain) {
   if (record.control_is_free) audience_.RestoreFreeControl();
   {
     const std::lock_guard lock(mutex_);
     revision_count_ = record.scene_revision + kUnsavedRevisions - 1;
     last_used_ = Clock::now();
   }
-  Show(TakeRevision(), std::move(scene), std::move(serialized));
+  Show(TakeRevision(), std::move(scene), std::move(serialized), domain);
 }
 
 void Session::Close(const absl::Status& why) {
@@ -258,11 +259,12 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
 }
 
 std::shared_ptr<Session> Sessions::Restore(const SessionRecord& record, scene::Scene scene,
-                                           std::string serialized) {
+                                           std::string serialized,
+                                           const std::optional<std::string>& domain) {
   auto session =
       std::make_shared<Session>(record.id, record.keys, record.rules, Board(record.marks),
                                 options_.format, signals_, options_.roster_timeouts, record.owner);
-  session->ShowRestored(record, std::move(scene), std::move(serialized));
+  session->ShowRestored(record, std::move(scene), std::move(serialized), domain);
   const std::lock_guard lock(mutex_);
   Add(session);
   return session;

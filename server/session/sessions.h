@@ -95,15 +95,18 @@ class Session {
                                                   IncompleteUpdate update = {});
   // The revision was taken for a scene that is not to be shown.
   void Drop(std::uint64_t revision);
-  // Replaces the newest scene unless that has a newer revision. False if the revision was dropped:
-  // changes were made without it.
-  bool Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "");
+  // Replaces the newest scene unless that has a newer revision. `domain` is its storm's
+  // (volume/storm_store.h), if that is known. False if the revision was dropped: changes were made
+  // without it.
+  bool Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "",
+            const std::optional<std::string>& domain = std::nullopt);
   std::optional<NewestScene> Newest() const;
   // The scene of the newest update that counts, complete or not; none before the first.
   std::optional<SerializedScene> NewestTaken();
 
   // The scene of a record, with a larger revision than any client has seen.
-  void ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized);
+  void ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized,
+                    const std::optional<std::string>& domain);
 
   // Ends everybody's stream with `why`.
   void Close(const absl::Status& why);
@@ -196,7 +199,8 @@ class Sessions {
   // The session of a record from another run, as if everybody had just left: the time that the
   // server was down does not count, as nobody could come back then.
   std::shared_ptr<Session> Restore(const SessionRecord& record, scene::Scene scene,
-                                   std::string serialized);
+                                   std::string serialized,
+                                   const std::optional<std::string>& domain = std::nullopt);
   // True for a record that was last used too long ago to be brought back.
   bool IsTooOld(std::chrono::system_clock::time_point last_used) const;
   // By either key. NOT_FOUND if it never existed, was closed or has expired; UNAVAILABLE after

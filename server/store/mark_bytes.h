@@ -1,4 +1,4 @@
-// Marks as bytes, without their owners' keys, little-endian whatever the machine.
+// Marks as bytes, without their owners' keys and domains, little-endian whatever the machine.
 #pragma once
 
 #include <string>

@@ -74,6 +74,10 @@ constexpr std::array kSteps = {R"(
 )",
                                R"(
   ALTER TABLE sessions ADD COLUMN control_is_free INTEGER NOT NULL DEFAULT 0;
+)",
+                               R"(
+  -- As owner_keys: the domain of the storm that it lies on, or nothing.
+  ALTER TABLE marks ADD COLUMN domains TEXT NOT NULL DEFAULT '';
 )"};
 
 absl::Status CheckOrigin(Database& database, const std::string& path) {

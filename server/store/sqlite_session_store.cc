@@ -32,30 +32,33 @@ constexpr char kSaveSession[] =
     "owner = excluded.owner, control_is_free = excluded.control_is_free";
 // Written only when they have changed.
 constexpr char kSaveMarks[] =
-    "INSERT INTO marks (session_id, marks, owner_keys) VALUES (?, ?, ?) "
+    "INSERT INTO marks (session_id, marks, owner_keys, domains) VALUES (?, ?, ?, ?) "
     "ON CONFLICT (session_id) DO UPDATE SET "
-    "marks = excluded.marks, owner_keys = excluded.owner_keys "
-    "WHERE marks IS NOT excluded.marks OR owner_keys IS NOT excluded.owner_keys";
+    "marks = excluded.marks, owner_keys = excluded.owner_keys, domains = excluded.domains "
+    "WHERE marks IS NOT excluded.marks OR owner_keys IS NOT excluded.owner_keys "
+    "OR domains IS NOT excluded.domains";
 constexpr char kLoad[] =
     "SELECT id, presenter_key, viewer_key, viewers_may_steer, control_locked, following_locked, "
     "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks, owner_keys, "
-    "owner, control_is_free "
+    "owner, control_is_free, domains "
     "FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
 
-std::string OwnerKeysOf(const std::vector<session::Mark>& marks) {
-  std::string keys;
-  for (const session::Mark& mark : marks) absl::StrAppend(&keys, mark.owner_key, "\n");
-  return keys;
+// A line for each mark.
+std::string LinesOf(const std::vector<session::Mark>& marks, std::string session::Mark::*text) {
+  std::string lines;
+  for (const session::Mark& mark : marks) absl::StrAppend(&lines, mark.*text, "\n");
+  return lines;
 }
 
-// Marks for which there is no key are nobody's.
-void SetOwnerKeys(std::string_view keys, std::vector<session::Mark>* marks) {
+// Marks for which there is no line have none.
+void SetLines(std::string_view lines, std::string session::Mark::*text,
+              std::vector<session::Mark>* marks) {
   for (session::Mark& mark : *marks) {
-    const std::size_t end = keys.find('\n');
+    const std::size_t end = lines.find('\n');
     if (end == std::string_view::npos) return;
-    mark.owner_key = keys.substr(0, end);
-    keys.remove_prefix(end + 1);
+    mark.*text = lines.substr(0, end);
+    lines.remove_prefix(end + 1);
   }
 }
 
@@ -91,8 +94,10 @@ class OpenSessionStore final : public SqliteSessionStore {
       const std::string marks = ToBytes(record.marks);
       save_marks.Bind(1, record.id);
       save_marks.BindBlob(2, marks);
-      const std::string owner_keys = OwnerKeysOf(record.marks);
+      const std::string owner_keys = LinesOf(record.marks, &session::Mark::owner_key);
+      const std::string domains = LinesOf(record.marks, &session::Mark::domain);
       save_marks.Bind(3, owner_keys);
+      save_marks.Bind(4, domains);
       THUNDERHEAD_RETURN_IF_ERROR(save_marks.Run());
     }
     return transaction.Commit();
@@ -119,7 +124,8 @@ class OpenSessionStore final : public SqliteSessionStore {
       auto marks = MarksFrom(rows.Bytes(11));
       if (marks.ok()) {
         record.marks = *std::move(marks);
-        SetOwnerKeys(rows.Bytes(12), &record.marks);
+        SetLines(rows.Bytes(12), &session::Mark::owner_key, &record.marks);
+        SetLines(rows.Bytes(15), &session::Mark::domain, &record.marks);
       } else {
         base::LogError(base::Annotate(
             marks.status(), absl::StrCat("session ", record.id, " comes back without its marks")));

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
@@ -16,6 +17,16 @@
 #include "volume/storm_catalogue.h"
 
 namespace thunderhead::volume {
+
+std::string DomainOf(const StormInfo& storm) {
+  std::string domain = absl::StrFormat("%d %d %.1f %.1f", storm.file_cells.x, storm.file_cells.y,
+                                       storm.dx_m, storm.dy_m);
+  // To about a metre.
+  for (const std::optional<double>& degrees : {storm.latitude_deg, storm.longitude_deg}) {
+    if (degrees.has_value()) absl::StrAppendFormat(&domain, " %.5f", *degrees);
+  }
+  return domain;
+}
 
 namespace {
 

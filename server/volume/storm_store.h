@@ -56,6 +56,10 @@ struct StormInfo {
 // A description never changes; a storm that grows gets another.
 using StormInfoPtr = std::shared_ptr<const StormInfo>;
 
+// Names the part of the world that the storm's model covers: the same for each run over it, and for
+// idealised runs of one grid. In a line.
+std::string DomainOf(const StormInfo& storm);
+
 // A storm before and after a change of the files; null before for a new one, and after for one that
 // is gone.
 struct StormChange {

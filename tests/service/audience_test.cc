@@ -16,7 +16,9 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using ::testing::ElementsAre;
 using ::testing::Gt;
+using ::testing::IsEmpty;
 
 class ToldViewer : public Viewer {
  public:
@@ -415,9 +417,64 @@ TEST(BoardTest, TellsWhatHasHappenedToItsMarks) {
   ASSERT_TRUE(board.Add(7, {{}}, {}).ok());
   board.Erase({4}, std::nullopt);
   const MarksChange change = board.TakeMarksChange();
-  EXPECT_THAT(change.erased, ::testing::ElementsAre(2U, 4U));
+  EXPECT_THAT(change.erased, ElementsAre(2U, 4U));
   ASSERT_EQ(change.drawn.size(), 2U) << "which are another person's now";
   EXPECT_EQ(change.drawn[0].person_id, 7U);
+}
+
+std::vector<std::uint64_t> IdsOf(const std::vector<Mark>& marks) {
+  std::vector<std::uint64_t> ids;
+  for (const Mark& mark : marks) ids.push_back(mark.id);
+  return ids;
+}
+
+TEST(BoardTest, MarksAreShownWithTheDomainThatTheyWereDrawnOn) {
+  Board board;
+  board.ShowDomain("Oklahoma");
+  ASSERT_TRUE(board.Add(1, {{}}, {}, "key").ok());
+  EXPECT_THAT(IdsOf(board.TakeMarksChange().drawn), ElementsAre(1U));
+  const std::uint64_t before = board.marks_revision();
+  board.ShowDomain("Bavaria");
+  EXPECT_GT(board.marks_revision(), before);
+  EXPECT_THAT(board.MarksShown(), IsEmpty());
+  MarksChange change = board.TakeMarksChange();
+  EXPECT_THAT(change.erased, ElementsAre(1U));
+  EXPECT_THAT(change.drawn, IsEmpty());
+  ASSERT_TRUE(board.Add(1, {{}}, {}, "key").ok());
+  // Whoever is handed them over is told of those shown alone, and erases no others.
+  board.HandOver("key", 7);
+  EXPECT_THAT(IdsOf(board.TakeMarksChange().drawn), ElementsAre(2U));
+  board.Erase({}, std::nullopt);
+  board.Erase({1}, std::nullopt);
+  EXPECT_THAT(board.TakeMarksChange().erased, ElementsAre(2U));
+  board.ShowDomain("Oklahoma");
+  EXPECT_THAT(IdsOf(board.MarksShown()), ElementsAre(1U));
+  change = board.TakeMarksChange();
+  EXPECT_THAT(IdsOf(change.drawn), ElementsAre(1U));
+  EXPECT_EQ(change.drawn[0].person_id, 7U);
+  // There and back between two tellings: a client would take it off last.
+  board.ShowDomain("Bavaria");
+  board.ShowDomain("Oklahoma");
+  EXPECT_THAT(board.TakeMarksChange().erased, IsEmpty());
+}
+
+TEST(BoardTest, MarksOfNoKnownDomainAreOfTheFirst) {
+  Board board({{.id = 3, .person_id = 1, .positions_m = {{}}}});
+  EXPECT_THAT(IdsOf(board.MarksShown()), ElementsAre(3U));
+  board.ShowDomain("Oklahoma");
+  EXPECT_THAT(IdsOf(board.MarksShown()), ElementsAre(3U));
+  board.ShowDomain("Bavaria");
+  EXPECT_THAT(board.MarksShown(), IsEmpty());
+}
+
+TEST(BoardTest, MarksOfOtherDomainsMakeRoom) {
+  Board board;
+  board.ShowDomain("Oklahoma");
+  for (std::size_t i = 0; i < 2; ++i) ASSERT_TRUE(board.Add(1, {{}}, {}).ok());
+  board.ShowDomain("Bavaria");
+  for (std::size_t i = 0; i < Board::kMaxMarks; ++i) ASSERT_TRUE(board.Add(1, {{}}, {}).ok());
+  EXPECT_EQ(board.marks().size(), Board::kMaxMarks);
+  EXPECT_TRUE(absl::IsFailedPrecondition(board.Add(1, {{}}, {}).status()));
 }
 
 TEST(BoardTest, MarksWithoutAKeyAreHandedOverToNobody) {

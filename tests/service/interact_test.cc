@@ -857,6 +857,37 @@ TEST(InteractTest, ViewersMarkIfAllowedAndEraseTheirOwn) {
   EXPECT_TRUE(marks_are(0));
 }
 
+TEST(InteractTest, MarksAreSeenOverTheStormsOfTheDomainThatTheyWereDrawnOn) {
+  Class group;
+  group.service.store->Become("clear", [](volume::StormInfo& storm) {
+    storm.file_cells = {30, 10, 5};
+  });
+  const auto has = [](Interacting& person, int count) {
+    return person.AwaitMarks([&](const v1::Marks& marks) { return marks.marks_size() == count; });
+  };
+  const auto show = [&](const std::string& storm_id) {
+    v1::InteractRequest request = SunTo(120.0F);
+    request.mutable_update_scene()->mutable_scene()->set_storm_id(storm_id);
+    return group.presenter->Answer(group.presenter->Send(request)).has_scene_taken();
+  };
+  group.presenter->Send(Draws());
+  ASSERT_TRUE(has(*group.ana, 1));
+  ASSERT_TRUE(show("clear"));
+  EXPECT_TRUE(has(*group.ana, 0));
+  Interacting late(group.service.stub(), group.created.viewer_key());
+  EXPECT_TRUE(has(late, 0));
+  ASSERT_TRUE(show("anvil"));
+  EXPECT_TRUE(has(*group.ana, 1));
+  EXPECT_TRUE(has(late, 1));
+  // Another run over the same domain.
+  group.service.store->Become("clear", [](volume::StormInfo& storm) {
+    storm.file_cells = {20, 10, 7};
+  });
+  ASSERT_TRUE(show("clear"));
+  group.presenter->Send(Draws());
+  EXPECT_TRUE(has(*group.ana, 2));
+}
+
 TEST(InteractTest, OnlyChangesOfMarksAreToldAndAllOfThemToNewcomers) {
   Class group;
   const auto has = [](Interacting& person, int count) {

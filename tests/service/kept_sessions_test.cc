@@ -261,6 +261,35 @@ TEST_F(KeptSessionsTest, AViewerHasTheOwnMarksAgain) {
   EXPECT_TRUE(other.AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 0; }));
 }
 
+TEST_F(KeptSessionsTest, MarksOfAnotherDomainAreKeptAndNotSeen) {
+  const auto created = Create();
+  {
+    Interacting presenter(service_->stub(), created.session_id());
+    presenter.Send(DrawsDown());
+    ASSERT_TRUE(
+        presenter.AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 1; }));
+  }
+  service_.reset();
+  store_->Change([](SessionRecord& record) {
+    ASSERT_EQ(record.marks.size(), 1U);
+    EXPECT_FALSE(record.marks[0].domain.empty());
+    record.marks.push_back(record.marks[0]);
+    record.marks[1].id = 2;
+    record.marks[1].domain = "elsewhere";
+  });
+  Start();
+  {
+    Interacting back(service_->stub(), created.session_id());
+    back.Send(DrawsDown());
+    EXPECT_TRUE(back.AwaitMarks([](const v1::Marks& marks) {
+      return marks.marks_size() == 2 && marks.marks(0).mark_id() == 1 &&
+             marks.marks(1).mark_id() == 3;
+    }));
+  }
+  service_.reset();
+  EXPECT_EQ(store_->Records().at(0).marks.size(), 3U);
+}
+
 TEST_F(KeptSessionsTest, ASessionHasAtMostSoManyMarks) {
   const auto created = Create();
   service_.reset();

@@ -112,6 +112,7 @@ TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
   ASSERT_EQ(sqlite3_exec(database,
                          "DROP TABLE job_pictures; DROP TABLE jobs; "
                          "ALTER TABLE marks DROP COLUMN owner_keys; "
+                         "ALTER TABLE marks DROP COLUMN domains; "
                          "ALTER TABLE sessions DROP COLUMN control_is_free; "
                          "ALTER TABLE sessions DROP COLUMN owner; PRAGMA user_version = 1",
                          nullptr, nullptr, nullptr),

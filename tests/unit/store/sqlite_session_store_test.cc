@@ -37,8 +37,9 @@ SessionRecord SessionRecordOf(const std::string& id) {
   record.control_is_free = true;
   record.scene = std::string("a\0scene\xff", 8);
   record.scene_revision = 1ULL << 40;
-  record.marks = {{7, 3, {{1.5, -2e6, 0.1}, {4.0, 5.0, 6.0}}, {0.25F, 0.5F, 1.0F}, ""},
-                  {9, 4, {}, {}, "a secret"}};
+  record.marks = {
+      {7, 3, {{1.5, -2e6, 0.1}, {4.0, 5.0, 6.0}}, {0.25F, 0.5F, 1.0F}, "", "20 10 1000.0 1000.0"},
+      {9, 4, {}, {}, "a secret"}};
   record.last_used =
       std::chrono::system_clock::time_point(std::chrono::milliseconds(1'700'000'000'123));
   return record;
@@ -124,11 +125,15 @@ TEST_F(SqliteSessionStoreTest, MarksOfAFileWithoutOwnersComeBackWithoutThem) {
   Execute(path_,
           "ALTER TABLE sessions DROP COLUMN control_is_free; "
           "ALTER TABLE sessions DROP COLUMN owner; ALTER TABLE marks DROP COLUMN owner_keys; "
+          "ALTER TABLE marks DROP COLUMN domains; "
           "PRAGMA user_version = 2");
   SessionRecord without_owners = SessionRecordOf("a");
   without_owners.owner.clear();
   without_owners.control_is_free = false;
-  for (session::Mark& mark : without_owners.marks) mark.owner_key.clear();
+  for (session::Mark& mark : without_owners.marks) {
+    mark.owner_key.clear();
+    mark.domain.clear();
+  }
   EXPECT_THAT(Loaded(), ElementsAre(without_owners));
   // They are written although the marks are the same.
   ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
@@ -202,8 +207,8 @@ TEST_F(SqliteSessionStoreTest, ANewerVersionIsRefusedAndLeftAsItIs) {
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
-              HasSubstr("newer Thunderhead (version 7; this one knows 5)"));
-  Execute(path_, "PRAGMA user_version = 5");
+              HasSubstr("newer Thunderhead (version 7; this one knows 6)"));
+  Execute(path_, "PRAGMA user_version = 6");
   EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
 
@@ -237,9 +242,12 @@ TEST_F(SqliteSessionStoreTest, AFolderThatIsNotThereIsNamed) {
 
 TEST(MarkBytesTest, CutBytesAreAnError) {
   const std::string whole = store::ToBytes(SessionRecordOf("a").marks);
-  std::vector<session::Mark> without_keys = SessionRecordOf("a").marks;
-  for (session::Mark& mark : without_keys) mark.owner_key.clear();
-  ASSERT_EQ(*store::MarksFrom(whole), without_keys);
+  std::vector<session::Mark> without_texts = SessionRecordOf("a").marks;
+  for (session::Mark& mark : without_texts) {
+    mark.owner_key.clear();
+    mark.domain.clear();
+  }
+  ASSERT_EQ(*store::MarksFrom(whole), without_texts);
   int accepted = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     accepted += store::MarksFrom(whole.substr(0, size)).ok() ? 1 : 0;
