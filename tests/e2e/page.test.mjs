@@ -638,6 +638,38 @@ test("a cloud is made to order and shown, and a bad one is named", async () => {
   await page.keyboard.press("Escape");
 });
 
+test("marks are gone while a storm of another domain is shown, and back with their own", async () => {
+  const marksAre = (count) => until(`${count} marks`, async () => (await page.getByTestId("mark").count()) === count);
+  const show = async (storm) => {
+    await openPanel(page, "storms");
+    await changing(() => page.getByTestId("storm").selectOption(storm));
+    await page.keyboard.press("Escape");
+  };
+  const drawTo = async (count) => {
+    await page.getByTestId("tool-pen").click();
+    await page.getByTestId("mark-middle").click();
+    await marksAre(count);
+    await page.getByTestId("tool-pen").click();
+  };
+  await openTool(page, "marks");
+  await drawTo(1);
+  await show("fair-weather-cumulus-3");
+  await marksAre(0);
+  await drawTo(1);
+  await drawTo(2);
+  await show("supercell");
+  await marksAre(1);
+  await page.getByTestId("clear-marks").click();
+  await marksAre(0);
+  await show("fair-weather-cumulus-3");
+  await marksAre(2);
+  await page.getByTestId("clear-marks").click();
+  await marksAre(0);
+  await show("supercell");
+  await openTool(page, undefined);
+  await rested();
+});
+
 test("a cloud that was made can be deleted, after a second thought", async () => {
   await openPanel(page, "storms");
   await changing(() => page.getByTestId("storm").selectOption("fair-weather-cumulus-3"));
