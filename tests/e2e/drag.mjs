@@ -1,13 +1,92 @@
-// Measures a drag with server and browser on this machine: frames a second, and milliseconds from the pointer to the picture.
-//   node drag.mjs [seconds] [width] [height]
+// Measures a drag with server and browser on this machine: frames painted a second, and milliseconds from each movement of the
+// pointer, as the browser dates it, to the end of the page's frame that paints a picture which follows it.
+//   node drag.mjs [seconds] [width] [height] [trace]
+// At 960 x 540, the size that the aims are of, it fails where they are missed. With `trace` it also prints what a picture costs the
+// browser, by a trace of one more drag.
+import { loadavg } from "node:os";
 import { setTimeout } from "node:timers/promises";
-import { launchBrowser, rested } from "./driver.mjs";
+import { launchBrowser, rested, until } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
-const [seconds, width, height] = [20, 960, 540].map((usual, i) => Number(process.argv[2 + i] ?? usual));
+const AIM = { widthPx: 960, heightPx: 540, framesPerSecond: 20, medianMs: 120 };
+const [seconds, width, height] = [20, AIM.widthPx, AIM.heightPx].map((usual, i) => Number(process.argv[2 + i] ?? usual));
 const STEP_MS = 16;
-// Warm-up: the first pictures of a drag are not representative.
-const WARM_MS = 3000;
+const STEP_PX = 4;
+// A drag over the whole window's height turns the camera so far.
+const TURN_DEG = 180;
+// Of the azimuth that the page tells.
+const ROUNDING_DEG = 0.02;
+
+// In the page: the pointer's movements, and the azimuth of each picture once it is painted.
+const record = () => {
+  const canvas = document.querySelector("[data-testid=storm-canvas]");
+  window.drag = { moved: [], painted: [] };
+  canvas.addEventListener("pointermove", (event) => {
+    for (const { clientX, timeStamp } of event.getCoalescedEvents()) window.drag.moved.push({ x: clientX, atMs: timeStamp });
+  });
+  // The observer is called before the frame is painted, a message after that.
+  const channel = new MessageChannel();
+  channel.port1.onmessage = ({ data }) => window.drag.painted.push({ azimuthDeg: data, atMs: performance.now() });
+  new MutationObserver(() => channel.port2.postMessage(Number(canvas.dataset.azimuth))).observe(canvas, {
+    attributeFilter: ["data-sequence"],
+  });
+};
+
+const azimuthOf = (page) => page.getByTestId("storm-canvas").evaluate(({ dataset }) => Number(dataset.azimuth));
+
+// Drags once from left to right, so that each azimuth is of one place of the pointer.
+async function stroke(page) {
+  const [left, right, middle] = [0.1 * width, 0.9 * width, height / 2];
+  const firstDeg = await azimuthOf(page);
+  const turnedDeg = (azimuthDeg) => ((azimuthDeg - firstDeg + 360 + 20) % 360) - 20;
+  await page.mouse.move(left, middle);
+  await page.mouse.down();
+  await page.evaluate(() => Object.assign(window.drag, { moved: [], painted: [] }));
+  for (let x = left + STEP_PX; x <= right; x += STEP_PX) {
+    const at = Date.now();
+    await page.mouse.move(x, middle);
+    await setTimeout(Math.max(0, STEP_MS - (Date.now() - at)));
+  }
+  const { moved, painted } = await page.evaluate(async () => {
+    const last = window.drag.moved.at(-1).atMs;
+    while (performance.now() < last + 2000) await new Promise(requestAnimationFrame);
+    return window.drag;
+  });
+  await page.mouse.up();
+  const pictures = painted.map(({ azimuthDeg, atMs }) => ({ deg: turnedDeg(azimuthDeg), atMs }));
+  const latenciesMs = moved.map(({ x, atMs }) => {
+    const deg = ((x - left) / height) * TURN_DEG;
+    const picture = pictures.find((each) => each.deg > deg - ROUNDING_DEG);
+    if (picture === undefined) throw new Error(`no picture shows the pointer at ${x}: the last is turned by ${pictures.at(-1)?.deg} degrees`);
+    return picture.atMs - atMs;
+  });
+  const [begin, end] = [moved[0].atMs, moved.at(-1).atMs];
+  const frames = pictures.filter(({ atMs }) => atMs >= begin && atMs <= end).length;
+  return { latenciesMs, frames, ms: end - begin };
+}
+
+// CPU time, which other processes do not change: in all on the page's main thread, there in callbacks before a frame, which draw
+// the picture, and in updating layers, which copies the canvas for the compositor; and of decoding, on other threads.
+const PARTS = {
+  "the main thread": { thread: "CrRendererMain", event: "RunTask" },
+  "its callbacks before frames": { thread: "CrRendererMain", event: "FireAnimationFrame" },
+  "its updates of layers": { thread: "CrRendererMain", event: "LayerTreeHost::DoUpdateLayers" },
+  "decoding elsewhere": { thread: "ThreadPoolForegroundWorker", event: "Decode Image" },
+};
+
+async function costsOfPicture(page) {
+  await browser.startTracing(page, { categories: ["toplevel", "cc", "blink", "devtools.timeline", "disabled-by-default-devtools.timeline"] });
+  const { frames } = await stroke(page);
+  const { traceEvents } = JSON.parse(await browser.stopTracing());
+  const threads = new Map();
+  for (const { name, pid, tid, args } of traceEvents) if (name === "thread_name") threads.set(`${pid} ${tid}`, args.name);
+  return Object.entries(PARTS).map(([part, { thread, event }]) => {
+    const own = traceEvents.filter(({ name, pid, tid }) => name === event && threads.get(`${pid} ${tid}`) === thread);
+    const ms = own.reduce((sum, { tdur = 0 }) => sum + tdur / 1000, 0);
+    if (ms === 0) throw new Error(`the trace has no ${event} on ${thread}`);
+    return `${part} ${(ms / frames).toFixed(1)} ms`;
+  });
+}
 
 const server = await startServer({ httpPort: await freePort(), grpcPort: await freePort() });
 const browser = await launchBrowser();
@@ -15,24 +94,29 @@ try {
   const page = await (await browser.newContext({ viewport: { width, height } })).newPage();
   await page.goto(server.url);
   await rested(page);
-  const summary = page.getByTestId("readout-summary");
-  await page.mouse.move(width / 2, height / 2);
-  await page.mouse.down();
-  const samples = [];
-  const began = Date.now();
-  for (let step = 0; Date.now() - began < 1000 * seconds; step += 1) {
-    const at = Date.now();
-    await page.mouse.move(width / 2 + 0.2 * width * Math.sin(step / 30), height / 2);
-    if (step % 30 === 0 && at - began > WARM_MS) {
-      const { framesPerSecond, latencyMs } = await summary.evaluate((element) => ({ ...element.dataset }));
-      samples.push({ fps: Number(framesPerSecond), ms: Number(latencyMs) });
-    }
-    await setTimeout(Math.max(0, STEP_MS - (Date.now() - at)));
+  await page.evaluate(record);
+  // Warm-up: the first pictures that move are not representative.
+  await stroke(page);
+  const strokes = [];
+  const total = (what) => strokes.reduce((sum, each) => sum + each[what], 0);
+  await until("drags", async () => {
+    strokes.push(await stroke(page));
+    return total("ms") >= 1000 * seconds;
+  }, 20_000 * seconds);
+  const sorted = strokes.flatMap(({ latenciesMs }) => latenciesMs).sort((a, b) => a - b);
+  const [medianMs, lateMs] = [0.5, 0.95].map((share) => sorted[Math.floor(share * sorted.length)]);
+  const framesPerSecond = (1000 * total("frames")) / total("ms");
+  console.log(
+    `${width} x ${height}, ${(total("ms") / 1000).toFixed(0)} s: ${framesPerSecond.toFixed(1)} frames/s, ` +
+      `${medianMs.toFixed(0)} ms from pointer to picture (median; 95th percentile ${lateMs.toFixed(0)} ms); ` +
+      `the machine's load ${loadavg()[0].toFixed(1)}`,
+  );
+  if (process.argv[5] === "trace") console.log(`CPU time a picture: ${(await costsOfPicture(page)).join(", ")}`);
+  const isOfAim = width === AIM.widthPx && height === AIM.heightPx;
+  if (isOfAim && (framesPerSecond < AIM.framesPerSecond || medianMs > AIM.medianMs)) {
+    console.error(`The aims are ${AIM.framesPerSecond} frames/s and ${AIM.medianMs} ms`);
+    process.exitCode = 1;
   }
-  await page.mouse.up();
-  const middle = (values) => values.sort((a, b) => a - b)[values.length >> 1];
-  const [fps, ms] = [middle(samples.map((one) => one.fps)), middle(samples.map((one) => one.ms))];
-  console.log(`${width} x ${height}, ${seconds} s: ${fps} frames/s, ${ms} ms from pointer to picture (medians)`);
 } finally {
   await browser.close();
   await server.stop();
