@@ -8,9 +8,6 @@
 namespace thunderhead::access {
 namespace {
 
-// Identities whose requests are counted; beyond these, those that rest are forgotten.
-constexpr std::size_t kMaxBudgets = 4096;
-
 // People leave one after another.
 constexpr std::chrono::seconds kStreamRetry{10};
 
@@ -34,51 +31,27 @@ absl::Status TooManyAnswers(std::size_t maximum, const char* whose) {
        .retry_after = kStreamRetry});
 }
 
-double Seconds(std::chrono::steady_clock::duration time) {
-  return std::chrono::duration<double>(time).count();
-}
-
-}  // namespace
-
-double RequestBudget::LeftAt(double per_second, Time now) const {
-  return std::min(kBurst_s * per_second, left_ + per_second * Seconds(now - at_));
-}
-
-bool RequestBudget::IsFull(double per_second, Time now) const {
-  return LeftAt(per_second, now) >= kBurst_s * per_second;
-}
-
-absl::Status RequestBudget::Take(double per_second, Time now) {
-  if (per_second <= 0.0) return absl::OkStatus();
-  left_ = LeftAt(per_second, now);
-  at_ = now;
-  if (left_ >= 1.0) {
-    left_ -= 1.0;
-    return absl::OkStatus();
-  }
-  const std::chrono::duration<double, std::milli> wait_ms(1000.0 * (1.0 - left_) / per_second);
+// OK where none has to be waited for.
+absl::Status TooManyRequests(double per_second, std::optional<std::chrono::milliseconds> wait) {
+  if (!wait.has_value()) return absl::OkStatus();
   return base::WithDetails(
       absl::ResourceExhaustedError(
           absl::StrCat("more than ", per_second, " requests a second; send them more slowly")),
       {.reason = "TOO_MANY_REQUESTS",
        .metadata = {{"maximum", absl::StrCat(per_second)}, {"unit", "requests/s"}},
-       .retry_after = std::max(std::chrono::milliseconds(100),
-                               std::chrono::ceil<std::chrono::milliseconds>(wait_ms))});
+       .retry_after = std::max(std::chrono::milliseconds(100), *wait)});
+}
+
+}  // namespace
+
+absl::Status RequestBudget::Take(Time now) {
+  if (per_second_ <= 0.0) return absl::OkStatus();
+  return TooManyRequests(per_second_, left_.Take(now));
 }
 
 absl::Status Quotas::TakeRequest(const std::string& identity, Time now) {
-  const double per_second = limits_.requests_per_second;
-  if (per_second <= 0.0) return absl::OkStatus();
   const std::lock_guard lock(mutex_);
-  auto budget = budgets_.find(identity);
-  if (budget == budgets_.end()) {
-    if (budgets_.size() >= kMaxBudgets) {
-      std::erase_if(budgets_,
-                    [&](const auto& entry) { return entry.second.IsFull(per_second, now); });
-    }
-    budget = budgets_.emplace(identity, RequestBudget(per_second, now)).first;
-  }
-  return budget->second.Take(per_second, now);
+  return TooManyRequests(requests_.PerSecond(), requests_.Take(identity, now));
 }
 
 absl::StatusOr<std::shared_ptr<const void>> Quotas::TakeStream(const std::string& identity) {

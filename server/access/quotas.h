@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/allowance.h"
 
 namespace thunderhead::access {
 
@@ -27,30 +28,25 @@ struct QuotaLimits {
 // Requests that are allowed now: they come back with time.
 class RequestBudget {
  public:
-  using Time = std::chrono::steady_clock::time_point;
+  using Time = base::Allowance::Time;
 
   // `per_second` 0: no limit.
-  RequestBudget(double per_second, Time now) : left_(kBurst_s * per_second), at_(now) {}
+  RequestBudget(double per_second, Time now) : per_second_(per_second), left_(per_second, now) {}
 
   // RESOURCE_EXHAUSTED if there is none left.
-  absl::Status Take(double per_second, Time now);
-  // How many there are now.
-  double LeftAt(double per_second, Time now) const;
-  // True if nothing was taken for so long that the bucket is as full as a new one.
-  bool IsFull(double per_second, Time now) const;
+  absl::Status Take(Time now);
 
  private:
-  static constexpr double kBurst_s = 2.0;
-
-  double left_;
-  Time at_;
+  const double per_second_;
+  base::Allowance left_;
 };
 
 class Quotas {
  public:
   using Time = RequestBudget::Time;
 
-  explicit Quotas(const QuotaLimits& limits) : limits_(limits) {}
+  explicit Quotas(const QuotaLimits& limits)
+      : limits_(limits), requests_(limits.requests_per_second) {}
 
   absl::Status TakeRequest(const std::string& identity, Time now);
 
@@ -77,9 +73,9 @@ class Quotas {
 
   const QuotaLimits limits_;
   std::mutex mutex_;
+  base::Allowances requests_;
   Count streams_;
   Count answers_;
-  std::map<std::string, RequestBudget> budgets_;
 };
 
 }  // namespace thunderhead::access

@@ -11,6 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/file_stamp.h"
+#include "base/looks.h"
 
 namespace thunderhead::access {
 
@@ -19,8 +20,8 @@ namespace thunderhead::access {
 absl::StatusOr<std::string> ReadSecretFile(const std::string& path);
 
 // The text of a file, read again when it has changed. The error of a changed file is logged,
-// and the last good contents stay valid: a slip of the editor locks nobody out. Safe from any
-// thread.
+// and the last good contents stay valid: a slip of the editor locks nobody out. So they do while
+// the file's storage hangs. Safe from any thread.
 template <typename Value>
 class KeptFile {
  public:
@@ -31,14 +32,23 @@ class KeptFile {
   std::shared_ptr<const Value> Current();
 
  private:
-  KeptFile(std::string path, Parse parse) : path_(std::move(path)), parse_(std::move(parse)) {}
-  absl::Status Read();
+  // Looked at and changed by the thread that looks alone, but for the value.
+  struct State {
+    absl::Status Read();
+    void Look();
 
-  const std::string path_;
-  const Parse parse_;
-  std::mutex mutex_;
-  std::shared_ptr<const Value> value_;
-  std::optional<base::FileStamp> stamp_;
+    const std::string path;
+    const Parse parse;
+    std::optional<base::FileStamp> stamp;
+    std::mutex mutex;
+    std::shared_ptr<const Value> value;
+  };
+
+  explicit KeptFile(const std::shared_ptr<State>& state)
+      : state_(state), looks_(state->path, [state] { state->Look(); }) {}
+
+  const std::shared_ptr<State> state_;
+  base::Looks looks_;
 };
 
 // Logs that the file at `path` has been read again, or why not.
@@ -47,30 +57,34 @@ void TellOfReload(const std::string& path, const absl::Status& status);
 template <typename Value>
 absl::StatusOr<std::unique_ptr<KeptFile<Value>>> KeptFile<Value>::Open(const std::string& path,
                                                                        Parse parse) {
-  std::unique_ptr<KeptFile> file(new KeptFile(path, std::move(parse)));
-  if (absl::Status status = file->Read(); !status.ok()) return status;
-  return file;
+  std::shared_ptr<State> state(new State{.path = path, .parse = std::move(parse)});
+  if (absl::Status status = state->Read(); !status.ok()) return status;
+  return std::unique_ptr<KeptFile>(new KeptFile(state));
 }
 
 template <typename Value>
 std::shared_ptr<const Value> KeptFile<Value>::Current() {
-  const std::lock_guard lock(mutex_);
-  // A look at every call, which costs a microsecond, so that a token that was taken away is
-  // refused from then on.
-  const std::optional<base::FileStamp> stamp = base::StampOf(path_);
-  if (stamp != stamp_) TellOfReload(path_, Read());
-  return value_;
+  // At every call, so that a token that was taken away is refused from then on.
+  looks_.LookAgain();
+  const std::lock_guard lock(state_->mutex);
+  return state_->value;
 }
 
 template <typename Value>
-absl::Status KeptFile<Value>::Read() {
+void KeptFile<Value>::State::Look() {
+  if (base::StampOf(path) != stamp) TellOfReload(path, Read());
+}
+
+template <typename Value>
+absl::Status KeptFile<Value>::State::Read() {
   // Before reading, so that a change meanwhile is seen by the next look.
-  stamp_ = base::StampOf(path_);
-  const absl::StatusOr<std::string> text = ReadSecretFile(path_);
+  stamp = base::StampOf(path);
+  const absl::StatusOr<std::string> text = ReadSecretFile(path);
   if (!text.ok()) return text.status();
-  absl::StatusOr<Value> value = parse_(*text);
-  if (!value.ok()) return value.status();
-  value_ = std::make_shared<const Value>(*std::move(value));
+  absl::StatusOr<Value> read = parse(*text);
+  if (!read.ok()) return read.status();
+  const std::lock_guard lock(mutex);
+  value = std::make_shared<const Value>(*std::move(read));
   return absl::OkStatus();
 }
 

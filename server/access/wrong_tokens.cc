@@ -8,7 +8,7 @@
 namespace thunderhead::access {
 namespace {
 
-// Networks and tokens that are remembered.
+// Tokens that are remembered.
 constexpr std::size_t kMax = 4096;
 
 std::string DigestOf(const std::string& token) {
@@ -21,10 +21,9 @@ std::string DigestOf(const std::string& token) {
 }  // namespace
 
 absl::Status WrongTokens::MayShow(const Credentials& shown, Time now) {
-  if (per_second_ <= 0.0 || shown.token.empty()) return absl::OkStatus();
+  if (!Counts(shown)) return absl::OkStatus();
   const std::lock_guard lock(mutex_);
-  const auto left = left_.find(base::NetworkOf(shown.peer));
-  if (left == left_.end() || left->second.LeftAt(per_second_, now) >= 1.0) return absl::OkStatus();
+  if (left_.HasAny(base::NetworkOf(shown.peer), now)) return absl::OkStatus();
   if (right_.contains(DigestOf(shown.token))) return absl::OkStatus();
   return base::WithDetails(
       absl::ResourceExhaustedError(
@@ -33,7 +32,7 @@ absl::Status WrongTokens::MayShow(const Credentials& shown, Time now) {
 }
 
 void WrongTokens::WasRight(const Credentials& shown) {
-  if (per_second_ <= 0.0 || shown.token.empty()) return;
+  if (!Counts(shown)) return;
   std::string digest = DigestOf(shown.token);
   const std::lock_guard lock(mutex_);
   if (right_.size() >= kMax) right_.clear();
@@ -41,16 +40,11 @@ void WrongTokens::WasRight(const Credentials& shown) {
 }
 
 void WrongTokens::WasWrong(const Credentials& shown, Time now) {
-  if (per_second_ <= 0.0 || shown.token.empty()) return;
+  if (!Counts(shown)) return;
   const std::lock_guard lock(mutex_);
   // A token that was right and is not any more is tried like any other.
   right_.erase(DigestOf(shown.token));
-  if (left_.size() >= kMax) {
-    std::erase_if(left_, [&](const auto& entry) { return entry.second.IsFull(per_second_, now); });
-  }
-  const auto [left, is_new] =
-      left_.try_emplace(base::NetworkOf(shown.peer), RequestBudget(per_second_, now));
-  (void)left->second.Take(per_second_, now);
+  (void)left_.Take(base::NetworkOf(shown.peer), now);
 }
 
 }  // namespace thunderhead::access

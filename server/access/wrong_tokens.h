@@ -4,14 +4,13 @@
 #pragma once
 
 #include <chrono>
-#include <map>
 #include <mutex>
 #include <set>
 #include <string>
 
 #include "absl/status/status.h"
 #include "access/identity.h"
-#include "access/quotas.h"
+#include "base/allowance.h"
 
 namespace thunderhead::access {
 
@@ -20,7 +19,7 @@ class WrongTokens {
   using Time = std::chrono::steady_clock::time_point;
 
   // Of one network; twice as many at once after a second of rest. 0: no limit.
-  explicit WrongTokens(double per_second) : per_second_(per_second) {}
+  explicit WrongTokens(double per_second) : left_(per_second) {}
 
   // RESOURCE_EXHAUSTED with the time after which to try again if the token is not to be looked at.
   absl::Status MayShow(const Credentials& shown, Time now);
@@ -29,10 +28,13 @@ class WrongTokens {
   void WasWrong(const Credentials& shown, Time now);
 
  private:
-  const double per_second_;
+  bool Counts(const Credentials& shown) const {
+    return left_.PerSecond() > 0.0 && !shown.token.empty();
+  }
+
   std::mutex mutex_;
-  std::map<std::string, RequestBudget> left_;  // by network, of those with wrong ones
-  std::set<std::string> right_;                // their digests, not the tokens
+  base::Allowances left_;        // by network
+  std::set<std::string> right_;  // their digests, not the tokens
 };
 
 }  // namespace thunderhead::access

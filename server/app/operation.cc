@@ -230,6 +230,22 @@ std::jthread EndIfToldWhileStarting(const sigset_t& signals) {
   });
 }
 
+std::jthread EndAnywayAfter(std::chrono::seconds patience, std::function<int()> code,
+                            std::function<void()> last) {
+  return std::jthread([=](const std::stop_token& ended) {
+    std::mutex unshared;
+    std::unique_lock lock(unshared);
+    std::condition_variable_any told;
+    if (told.wait_for(lock, ended, patience, [&] { return ended.stop_requested(); })) return;
+    spdlog::error(
+        "calls have not ended for {} s, as where their storage hangs: ending without them",
+        patience.count());
+    last();
+    spdlog::default_logger()->flush();
+    _exit(code());
+  });
+}
+
 void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server,
                              const std::function<void()>& last) {
   int signal = 0;

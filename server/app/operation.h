@@ -1,6 +1,7 @@
 // An operator's side of `thunderhead serve`: its log, its operator's port, and its end.
 #pragma once
 
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <functional>
@@ -36,6 +37,11 @@ void SetLogFormat(const std::string& format);
 // While the thread runs, one of `signals`, which all threads must block, ends the process at once
 // with 0.
 std::jthread EndIfToldWhileStarting(const sigset_t& signals);
+
+// Ends the process with what `code` gives, after `last`, unless the thread is told to stop within
+// `patience`: a call that hangs with its storage would keep its server from ending for ever.
+std::jthread EndAnywayAfter(std::chrono::seconds patience, std::function<int()> code,
+                            std::function<void()> last);
 
 // The operator's port of the flags, null without one, and what systemd is told. The port serves at
 // once, and says that the server starts until it is given one.

@@ -19,6 +19,7 @@
 #include "app/catalogue_flags.h"
 #include "app/clouds_folder.h"
 #include "app/commands.h"
+#include "app/exit_codes.h"
 #include "app/operation.h"
 #include "app/serve_flags.h"
 #include "app/state_folder.h"
@@ -37,6 +38,9 @@ namespace {
 
 // For the audit, before a second signal ends the process.
 constexpr std::chrono::seconds kLastLines{1};
+
+// For calls to end after the grace, and for what is saved last; systemd's kill is later.
+constexpr std::chrono::seconds kEndPatience{12};
 
 // The installed page, or the one in the build tree; empty if there is neither.
 std::string DefaultPageFolder() {
@@ -206,7 +210,10 @@ absl::Status Serve(ServeFlags flags) {
             << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
   std::thread warm_up([channel, door] { WarmUp(channel, *door); });
   operation->SetServer(server.get(), {budgets.memory, budgets.gpu, state.calls});
-  operation->WaitAndDrain(signals, *server, [door] { door->FlushAudit(kLastLines); });
+  const auto last = [door] { door->FlushAudit(kLastLines); };
+  operation->WaitAndDrain(signals, *server, last);
+  const std::jthread ends_anyway = EndAnywayAfter(
+      kEndPatience, [given_up] { return static_cast<int>(ExitCodeOf(*given_up)); }, last);
   operation->SetServer(nullptr);
   // First, because its calls to the service must end before the service does.
   gateway.reset();

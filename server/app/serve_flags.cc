@@ -95,6 +95,9 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "Connections of each port");
   AddLimit(serve, "--max-connections-each", flags.gateway.max_connections_per_address, 1, 1e5,
            "Those from one address");
+  AddLimit(serve, "--max-handshakes-each", flags.gateway.max_handshakes_per_address, 0, 1e5,
+           "Connections of each port that one address begins by TLS, a second, twice as many at "
+           "once; 0: no limit");
   AddLimit(serve, "--max-streams", flags.quotas.max_streams, 1, 1e6,
            "Calls that stay open, and as many answers that clients have not taken yet");
   AddLimit(serve, "--max-streams-each", flags.quotas.max_streams_per_identity, 1, 1e6,
@@ -247,6 +250,7 @@ absl::Status CompleteFlags(ServeFlags& flags) {
   flags.limits.grpc_memory_bytes = static_cast<std::size_t>(flags.grpc_memory_mib) << 20;
   flags.limits.max_connections = flags.gateway.max_connections;
   flags.limits.max_connections_per_address = flags.gateway.max_connections_per_address;
+  flags.limits.max_handshakes_per_address = flags.gateway.max_handshakes_per_address;
   flags.gateway.max_unsent_bytes = static_cast<std::size_t>(flags.max_unsent_mib) << 20;
   flags.gateway.max_message_bytes = flags.limits.max_request_bytes;
   flags.gateway.tls_certificate = flags.tls.certificate;

@@ -85,4 +85,9 @@ absl::Status TooManyConnections() {
                      {.reason = "TOO_MANY_CONNECTIONS"});
 }
 
+absl::Status TooManyHandshakes() {
+  return WithDetails(absl::ResourceExhaustedError("your address begins TLS too often"),
+                     {.reason = "TOO_MANY_HANDSHAKES"});
+}
+
 }  // namespace thunderhead::base

@@ -39,5 +39,7 @@ absl::Status ShuttingDown();
 
 // RESOURCE_EXHAUSTED for a connection beyond the limits, which is closed.
 absl::Status TooManyConnections();
+// The same for one whose address begins TLS too often.
+absl::Status TooManyHandshakes();
 
 }  // namespace thunderhead::base

@@ -15,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/allowance.h"
 #include "base/error_details.h"
 #include "base/line_limit.h"
 #include "base/out_of_memory.h"
@@ -74,11 +75,12 @@ absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error
 class Gateway::Listener {
  public:
   Listener(const GatewayOptions& options, StaticFiles files, HttpPolicy policy,
-           std::shared_ptr<grpc::Channel> channel, std::optional<TlsContexts> tls)
+           std::shared_ptr<grpc::Channel> channel, std::unique_ptr<TlsContexts> tls)
       : site_{options, std::make_shared<const StaticFiles>(std::move(files)), std::move(policy),
               grpc::GenericStub(std::move(channel))},
         acceptor_(io_),
         tls_(std::move(tls)),
+        handshakes_(site_.options.max_handshakes_per_address),
         links_(site_.options.max_connections, site_.options.max_connections_per_address,
                site_.options.trusted_proxies) {}
 
@@ -102,7 +104,7 @@ class Gateway::Listener {
   }
 
   const tcp::endpoint& Endpoint() const { return endpoint_; }
-  bool IsEncrypted() const { return tls_.has_value(); }
+  bool IsEncrypted() const { return tls_ != nullptr; }
 
  private:
   net::awaitable<void> Accept() {
@@ -134,14 +136,22 @@ class Gateway::Listener {
     }
   }
 
+  bool MayShakeHands(const ClientLink& link) {
+    return tls_ == nullptr || site_.options.trusted_proxies.Holds(link.Peer()) ||
+           !handshakes_.Take(link.Network(), std::chrono::steady_clock::now()).has_value();
+  }
+
   void Admit(tcp::socket socket) {
-    auto tls = tls_.has_value() ? tls_->Current() : nullptr;
+    auto tls = tls_ != nullptr ? tls_->Current() : nullptr;
     auto link = std::make_shared<ClientLink>(std::move(socket), std::move(tls),
                                              site_.options.write_stall_timeout);
-    if (!links_.MakeRoom(*link)) {
-      TellOfRefusal(site_.options, link->Peer(), "Connect", base::TooManyConnections());
-      return;
+    absl::Status refused;
+    if (!MayShakeHands(*link)) {
+      refused = base::TooManyHandshakes();
+    } else if (!links_.MakeRoom(*link)) {
+      refused = base::TooManyConnections();
     }
+    if (!refused.ok()) return TellOfRefusal(site_.options, link->Peer(), "Connect", refused);
     links_.Add(link);
     net::co_spawn(io_, ServeConnection(link, site_),
                   [this, link](const std::exception_ptr&) { links_.Remove(link); });
@@ -160,7 +170,8 @@ class Gateway::Listener {
   net::io_context io_{1};
   tcp::acceptor acceptor_;
   tcp::endpoint endpoint_;
-  std::optional<TlsContexts> tls_;
+  const std::unique_ptr<TlsContexts> tls_;  // null: connections are plain
+  base::Allowances handshakes_;             // by network
   OpenLinks links_;
   base::LineLimit accept_errors_{1};  // without descriptors left there are ten a second
   bool stopping_ = false;
@@ -171,7 +182,7 @@ absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& op
                                                         std::shared_ptr<grpc::Channel> channel) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const net::ip::address address, ParseAddress(options.address));
   THUNDERHEAD_ASSIGN_OR_RETURN(StaticFiles files, StaticFiles::Open(options.page_directory));
-  std::optional<TlsContexts> tls;
+  std::unique_ptr<TlsContexts> tls;
   if (!options.tls_certificate.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(tls, TlsContexts::Open(options.tls_certificate, options.tls_key));
   }

@@ -73,6 +73,9 @@ struct GatewayOptions {
   // are calls, the new connection is refused.
   size_t max_connections = 768;
   size_t max_connections_per_address = 512;
+  // By TLS a new connection costs the processor a signature. One address may open so many a second,
+  // twice as many at once; further ones are refused. 0: no limit. Trusted proxies have none.
+  double max_handshakes_per_address = 256.0;
   // Closes a connection without a call on which no request begins within this time.
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(60);
   // A request's header, and a TLS handshake, must be complete within this time, a WebSocket's first

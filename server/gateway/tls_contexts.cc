@@ -1,6 +1,12 @@
 #include "gateway/tls_contexts.h"
 
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <utility>
+
 #include "absl/strings/str_cat.h"
+#include "base/file_stamp.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 
@@ -10,6 +16,8 @@ namespace {
 namespace ssl = boost::asio::ssl;
 using boost::system::error_code;
 
+constexpr std::chrono::seconds kPause{1};
+
 absl::Status CannotLoad(const std::string& what, const std::string& path, const error_code& error) {
   return absl::InvalidArgumentError(
       absl::StrCat("cannot take ", path, " as the ", what, " of TLS: ", error.message(),
@@ -18,44 +26,66 @@ absl::Status CannotLoad(const std::string& what, const std::string& path, const 
 
 }  // namespace
 
-absl::StatusOr<TlsContexts> TlsContexts::Open(std::string certificate, std::string key) {
-  TlsContexts contexts(std::move(certificate), std::move(key));
-  contexts.stamps_ = contexts.Look();
-  THUNDERHEAD_RETURN_IF_ERROR(contexts.Load());
-  return contexts;
+// Used by the thread that looks alone, but for the newest context.
+struct TlsContexts::State {
+  using Stamps = std::pair<std::optional<base::FileStamp>, std::optional<base::FileStamp>>;
+
+  Stamps StampsNow() const { return {base::StampOf(certificate), base::StampOf(key)}; }
+  absl::Status Load();
+  void Look();
+
+  const std::string certificate;
+  const std::string key;
+  Stamps stamps;
+  std::mutex mutex;
+  std::shared_ptr<ssl::context> newest;
+};
+
+absl::StatusOr<std::unique_ptr<TlsContexts>> TlsContexts::Open(std::string certificate,
+                                                               std::string key) {
+  std::shared_ptr<State> state(
+      new State{.certificate = std::move(certificate), .key = std::move(key)});
+  state->stamps = state->StampsNow();
+  THUNDERHEAD_RETURN_IF_ERROR(state->Load());
+  return std::unique_ptr<TlsContexts>(new TlsContexts(state));
 }
 
-TlsContexts::Stamps TlsContexts::Look() const {
-  return {base::StampOf(certificate_), base::StampOf(key_)};
-}
+TlsContexts::TlsContexts(const std::shared_ptr<State>& state)
+    : state_(state),
+      looks_(base::Looks::Every(kPause, state->certificate, [state] { state->Look(); })) {}
 
-absl::Status TlsContexts::Load() {
+absl::Status TlsContexts::State::Load() {
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);
   error_code error;
   context->set_options(ssl::context::default_workarounds | ssl::context::no_tlsv1 |
                            ssl::context::no_tlsv1_1 | ssl::context::no_compression,
                        error);
-  context->use_certificate_chain_file(certificate_, error);
-  if (error) return CannotLoad("certificate", certificate_, error);
+  context->use_certificate_chain_file(certificate, error);
+  if (error) return CannotLoad("certificate", certificate, error);
   // Fails for the key of another certificate.
-  context->use_private_key_file(key_, ssl::context::pem, error);
-  if (error) return CannotLoad("key", key_, error);
-  newest_ = std::move(context);
+  context->use_private_key_file(key, ssl::context::pem, error);
+  if (error) return CannotLoad("key", key, error);
+  const std::lock_guard lock(mutex);
+  newest = std::move(context);
   return absl::OkStatus();
 }
 
-std::shared_ptr<ssl::context> TlsContexts::Current() {
+void TlsContexts::State::Look() {
   // One of the two files is replaced before the other: until they match, the old ones are used.
-  if (const Stamps stamps = Look(); stamps != stamps_) {
-    stamps_ = stamps;
-    const absl::Status loaded = Load();
-    if (loaded.ok()) {
-      spdlog::info("{} has changed and was loaded", certificate_);
-    } else {
-      spdlog::warn("TLS goes on with the former certificate: {}", std::string(loaded.message()));
-    }
+  const Stamps now = StampsNow();
+  if (now == stamps) return;
+  stamps = now;
+  const absl::Status loaded = Load();
+  if (loaded.ok()) {
+    spdlog::info("{} has changed and was loaded", certificate);
+  } else {
+    spdlog::warn("TLS goes on with the former certificate: {}", std::string(loaded.message()));
   }
-  return newest_;
+}
+
+std::shared_ptr<ssl::context> TlsContexts::Current() {
+  const std::lock_guard lock(state_->mutex);
+  return state_->newest;
 }
 
 }  // namespace thunderhead::gateway

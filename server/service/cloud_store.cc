@@ -1,5 +1,6 @@
 #include "service/cloud_store.h"
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <utility>
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 
 // The file of a cloud takes up to a few megabytes.
 constexpr std::size_t kMaxClouds = 64;
+constexpr std::size_t kMaxCloudsEach = 32;
 // Of the grid: its water, and again as it is written.
 constexpr std::size_t kBytesPerCell = 8;
 
@@ -22,13 +24,13 @@ constexpr std::chrono::seconds kRetryWhenBusy{3};  // the time to generate one
 // Somebody must delete one first.
 constexpr std::chrono::minutes kRetryWhenFull{1};
 
-absl::Status TooManyClouds() {
-  return base::WithDetails(absl::ResourceExhaustedError(
-                               absl::StrCat("this server already has the maximum of ", kMaxClouds,
-                                            " clouds; delete some, or use `thunderhead generate`")),
-                           {.reason = "TOO_MANY_CLOUDS",
-                            .metadata = {{"maximum", absl::StrCat(kMaxClouds)}, {"unit", "clouds"}},
-                            .retry_after = kRetryWhenFull});
+absl::Status TooManyClouds(const char* who, std::size_t maximum) {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(absl::StrCat(
+          who, " the maximum of ", maximum, " clouds; delete some, or use `thunderhead generate`")),
+      {.reason = "TOO_MANY_CLOUDS",
+       .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", "clouds"}},
+       .retry_after = kRetryWhenFull});
 }
 
 bool LiesIn(const std::string& folder, const std::string& file) {
@@ -46,14 +48,15 @@ CloudStore::CloudStore(std::string path, volume::StormStore& store,
   if (path_.empty()) return;
   for (const volume::StormInfoPtr& storm : store_.Storms()) {
     if (storm->files.size() != 1 || !LiesIn(path_, storm->files[0])) continue;
-    if (clouds::IsGenerated(storm->files[0])) files_[storm->id] = storm->files[0];
+    if (clouds::IsGenerated(storm->files[0])) files_[storm->id] = {storm->files[0], ""};
   }
 }
 
 absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& shape,
                                                       const clouds::CloudOrigin& origin,
                                                       const clouds::GenerateObserver& observer,
-                                                      const std::stop_token& stop) {
+                                                      const std::stop_token& stop,
+                                                      const std::string& owner) {
   if (path_.empty()) {
     return base::WithDetails(
         absl::FailedPreconditionError(
@@ -66,14 +69,16 @@ absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& 
         absl::UnavailableError("another cloud is being generated; try again in a few seconds"),
         {.reason = "CLOUD_BEING_MADE", .retry_after = kRetryWhenBusy});
   }
-  std::string path;
   {
     const std::lock_guard files(mutex_);
-    if (files_.size() >= kMaxClouds) {
-      return TooManyClouds();
+    if (files_.size() >= kMaxClouds) return TooManyClouds("this server already has", kMaxClouds);
+    const auto own = std::ranges::count_if(
+        files_, [&](const auto& cloud) { return cloud.second.owner == owner; });
+    if (!owner.empty() && static_cast<std::size_t>(own) >= kMaxCloudsEach) {
+      return TooManyClouds("you already have", kMaxCloudsEach);
     }
-    path = NewPath(origin);
   }
+  const std::string path = NewPath(origin);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const base::MemoryReservation reserved,
       memory_->Reserve(base::MemoryUse::kReading, shape.grid.CellCount() * kBytesPerCell,
@@ -81,7 +86,7 @@ absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& 
   THUNDERHEAD_RETURN_IF_ERROR(clouds::WriteGenerated(shape, origin, path, observer, stop));
   THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm, store_.Add(path));
   const std::lock_guard files(mutex_);
-  files_[storm->id] = path;
+  files_[storm->id] = {path, owner};
   used_ids_.insert(storm->id);
   return storm;
 }
@@ -92,6 +97,22 @@ bool CloudStore::Holds(const std::string& storm_id) const {
 }
 
 absl::Status CloudStore::Delete(const std::string& storm_id) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string path, PathOf(storm_id));
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) {
+    return absl::PermissionDeniedError(
+        absl::StrCat("cannot remove the file of cloud '", storm_id, "': ", error.message(),
+                     "; check the permissions of the server's folder of clouds"));
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    files_.erase(storm_id);
+  }
+  return store_.Remove(storm_id);
+}
+
+absl::StatusOr<std::string> CloudStore::PathOf(const std::string& storm_id) const {
   const std::lock_guard lock(mutex_);
   const auto file = files_.find(storm_id);
   if (file == files_.end()) {
@@ -106,23 +127,19 @@ absl::Status CloudStore::Delete(const std::string& storm_id) {
             "clouds that it generated; remove its files yourself")),
         {.reason = "STORM_NOT_DELETABLE", .metadata = {{"storm_id", storm_id}}});
   }
-  std::error_code error;
-  fs::remove(file->second, error);
-  if (error) {
-    return absl::PermissionDeniedError(
-        absl::StrCat("cannot remove the file of cloud '", storm_id, "': ", error.message(),
-                     "; check the permissions of the server's folder of clouds"));
-  }
-  files_.erase(file);
-  return store_.Remove(storm_id);
+  return file->second.path;
 }
 
-// A path whose name no file or storm has, and no deleted cloud had.
+bool CloudStore::WasUsed(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  return used_ids_.contains(id);
+}
+
 std::string CloudStore::NewPath(const clouds::CloudOrigin& origin) const {
   const std::string first = absl::StrCat(origin.preset, "-", origin.seed);
   std::string name = first;
   std::error_code error;
-  for (int i = 2; store_.Find(name) != nullptr || used_ids_.contains(name) ||
+  for (int i = 2; store_.Find(name) != nullptr || WasUsed(name) ||
                   fs::exists(fs::path(path_) / (name + ".nc"), error);
        ++i) {
     name = absl::StrCat(first, "-", i);

@@ -25,13 +25,15 @@ class CloudStore {
   CloudStore(std::string path, volume::StormStore& store,
              std::shared_ptr<base::MemoryBudget> memory = nullptr);
 
-  // Generates the cloud into a file of its own and adds it to the storm store. FAILED_PRECONDITION
-  // without a folder, RESOURCE_EXHAUSTED at the maximum number or without memory, UNAVAILABLE
-  // during another call.
+  // Generates the cloud into a file of its own and adds it to the storm store, for the identity
+  // `owner` (empty: nobody's). FAILED_PRECONDITION without a folder, RESOURCE_EXHAUSTED at the
+  // maximum number, in all or of one identity since the server started, or without memory,
+  // UNAVAILABLE during another call.
   absl::StatusOr<volume::StormInfoPtr> Make(const clouds::CloudShape& shape,
                                             const clouds::CloudOrigin& origin,
                                             const clouds::GenerateObserver& observer,
-                                            const std::stop_token& stop);
+                                            const std::stop_token& stop,
+                                            const std::string& owner = "");
 
   // True if the storm is one of these clouds.
   bool Holds(const std::string& storm_id) const;
@@ -41,15 +43,23 @@ class CloudStore {
   absl::Status Delete(const std::string& storm_id);
 
  private:
+  // A path whose name no file or storm has, and no deleted cloud had.
   std::string NewPath(const clouds::CloudOrigin& origin) const;
+  // The file of a cloud; errors as of Delete.
+  absl::StatusOr<std::string> PathOf(const std::string& storm_id) const;
+  bool WasUsed(const std::string& id) const;
 
   const std::string path_;
   volume::StormStore& store_;
   const std::shared_ptr<base::MemoryBudget> memory_;
-  std::mutex making_;  // held while a cloud is generated
-  mutable std::mutex mutex_;
-  std::map<std::string, std::string> files_;  // of the clouds, by storm id
-  std::set<std::string> used_ids_;            // not reused: a viewer may still show a deleted cloud
+  std::mutex making_;         // held while a cloud is generated
+  mutable std::mutex mutex_;  // never while the storage is asked, which may hang
+  struct File {
+    std::string path;
+    std::string owner;
+  };
+  std::map<std::string, File> files_;  // of the clouds, by storm id
+  std::set<std::string> used_ids_;     // not reused: a viewer may still show a deleted cloud
 };
 
 }  // namespace thunderhead::service

@@ -107,7 +107,6 @@ class InteractCall : public InteractReactor,
                std::shared_ptr<const access::Caller> caller, double requests_per_second)
       : engine_(engine),
         caller_(std::move(caller)),
-        requests_per_second_(requests_per_second),
         budget_(requests_per_second, Clock::now()),
         delivery_(std::in_place, context, engine.limits) {}
 
@@ -328,7 +327,7 @@ class InteractCall : public InteractReactor,
     THUNDERHEAD_RETURN_IF_ERROR(caller_->StillKnown());
     session_->Touch();
     session_->audience().Heard(person_id_);
-    absl::Status status = budget_.Take(requests_per_second_, Clock::now());
+    absl::Status status = budget_.Take(Clock::now());
     if (status.ok()) status = CheckLimits(request);
     if (status.ok()) status = Obey(request);
     if (const char* act = PrivilegedAct(request); act != nullptr) {
@@ -734,7 +733,6 @@ class InteractCall : public InteractReactor,
 
   Engine& engine_;
   const std::shared_ptr<const access::Caller> caller_;
-  const double requests_per_second_;
   access::RequestBudget budget_;  // used by the reading thread alone
   grpc::Alarm join_alarm_;
   std::shared_ptr<InteractCall> held_by_grpc_;

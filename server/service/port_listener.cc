@@ -10,6 +10,9 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/allowance.h"
+#include "base/client_network.h"
+#include "base/error_details.h"
 #include "base/status.h"
 
 namespace thunderhead::service {
@@ -101,24 +104,31 @@ absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
       ": it is not an address of this machine, or the port is in use; choose another"));
 }
 
-absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open,
-                                 std::chrono::milliseconds unused, Refused refused) {
+absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, const Options& options,
+                                 Refused refused) {
   // Shared, as functions have to be copyable.
   const auto sockets = std::make_shared<OpenSockets>(std::move(open));
-  auto take = [acceptor = std::shared_ptr(std::move(acceptor)), sockets,
+  const auto handshakes = std::make_shared<base::Allowances>(options.handshakes_per_address);
+  auto take = [acceptor = std::shared_ptr(std::move(acceptor)), sockets, handshakes,
+               proxies = options.proxies,
                refused = std::move(refused)](base::FileDescriptor connection) {
     const auto peer = OpenSockets::PeerOf(connection.Get());
     if (!peer.has_value()) return;  // gone already
-    if (!sockets->Take(connection.Get(), *peer)) return refused(*peer);
+    if (!proxies.Holds(*peer) &&
+        handshakes->Take(base::NetworkOf(*peer), std::chrono::steady_clock::now()).has_value()) {
+      return refused(*peer, base::TooManyHandshakes());
+    }
+    if (!sockets->Take(connection.Get(), *peer)) return refused(*peer, base::TooManyConnections());
     grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters handed;
     handed.fd = connection.Release();
     acceptor->HandleNewConnection(&handed);
   };
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      loop_, AcceptLoop::Start(std::move(sockets_), std::move(take),
-                               AcceptLoop::Chore{unused / kLooks, [sockets, unused] {
-                                                   sockets->CloseUnused(unused);
-                                                 }}));
+      loop_, AcceptLoop::Start(
+                 std::move(sockets_), std::move(take),
+                 AcceptLoop::Chore{options.unused / kLooks, [sockets, unused = options.unused] {
+                                     sockets->CloseUnused(unused);
+                                   }}));
   return absl::OkStatus();
 }
 

@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/file_descriptor.h"
+#include "base/trusted_proxies.h"
 #include "service/accept_loop.h"
 #include "service/open_sockets.h"
 
@@ -20,8 +21,14 @@ namespace thunderhead::service {
 class PortListener {
  public:
   using Acceptor = std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>;
-  // Told of a newcomer that was closed as there are too many; on the listener's thread.
-  using Refused = std::function<void(const std::string& peer)>;
+  // Told of a newcomer that was closed, and why; on the listener's thread.
+  using Refused = std::function<void(const std::string& peer, const absl::Status& why)>;
+
+  struct Options {
+    std::chrono::milliseconds unused;     // those without a call for so long are closed
+    double handshakes_per_address = 0.0;  // as Limits has it; 0: no limit
+    base::TrustedProxies proxies;         // which have none
+  };
 
   // Listens on "HOST:PORT", port 0 for a free one; connections wait until Start. 0.0.0.0 and [::]
   // are all of this machine's addresses, of IPv4 and IPv6. What has been sent on a connection must
@@ -32,9 +39,8 @@ class PortListener {
   int Port() const { return port_; }
 
   // Hands connections to `acceptor` until this is destroyed, which must be before its server shuts
-  // down. Closes those that have been without a call for `unused`.
-  absl::Status Start(Acceptor acceptor, OpenSockets open, std::chrono::milliseconds unused,
-                     Refused refused);
+  // down.
+  absl::Status Start(Acceptor acceptor, OpenSockets open, const Options& options, Refused refused);
 
  private:
   PortListener(std::vector<base::FileDescriptor> sockets, int port)

@@ -152,9 +152,13 @@ class RunningServer final : public Server {
           port_->Start(std::move(acceptor),
                        OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
                                    door_->Proxies(), connection_calls_),
-                       limits_.unused_connection, [this](const std::string& peer) {
-                         telemetry::Counted().refusals.Of("TOO_MANY_CONNECTIONS").Add();
-                         door_->ReportBeforeCall(peer, "Connect", base::TooManyConnections());
+                       {.unused = limits_.unused_connection,
+                        .handshakes_per_address =
+                            tls.certificate.empty() ? 0.0 : limits_.max_handshakes_per_address,
+                        .proxies = door_->Proxies()},
+                       [this](const std::string& peer, const absl::Status& why) {
+                         telemetry::Counted().refusals.Of(base::DetailsOf(why).reason).Add();
+                         door_->ReportBeforeCall(peer, "Connect", why);
                        }));
     }
     SetServing(true);

@@ -1,7 +1,10 @@
 // The gateway's port by TLS: page, calls, WebSockets, and a certificate that changes.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <atomic>
 #include <boost/asio/connect.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/stream.hpp>
@@ -9,11 +12,16 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
+#include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <thread>
 
 #include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/file_descriptor.h"
 #include "tests/gateway/echo_service.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/support/self_signed.h"
@@ -106,6 +114,18 @@ class TlsTest : public ::testing::Test {
   void WriteSelfSigned(const std::string& certificate, const std::string& key, long serial) {
     testing::WriteSelfSigned(certificate, key, serial);
   }
+  // Waits until new connections see the certificate of that number, which is in the file.
+  bool AwaitSerial(long serial, const std::string& file) {
+    for (int i = 0; i < 200; ++i) {
+      try {
+        if (TlsClient(site_->Port(), file).Serial() == serial) return true;
+      } catch (const boost::system::system_error&) {
+        // It does not trust what it sees.
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return false;
+  }
   std::string Certificate() const { return folder_.File("certificate.pem"); }
   std::string Key() const { return folder_.File("key.pem"); }
 
@@ -152,10 +172,62 @@ TEST_F(TlsTest, ANewCertificateIsForNewConnections) {
   old.Upgrade();
   // The new key alone does not fit the old certificate, so that stays.
   testing::WriteSelfSigned(folder_.File("new.pem"), Key(), 2);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   EXPECT_EQ(TlsClient(site_->Port(), Certificate()).Serial(), 1);
   std::filesystem::rename(folder_.File("new.pem"), Certificate());
-  EXPECT_EQ(TlsClient(site_->Port(), Certificate()).Serial(), 2);
+  EXPECT_TRUE(AwaitSerial(2, Certificate()));
   EXPECT_GT(old.Converse(10), 10U);
+}
+
+TEST_F(TlsTest, ACertificateWhoseStorageHangsHoldsUpNobody) {
+  TlsClient old(site_->Port(), Certificate());
+  testing::WriteSelfSigned(folder_.File("kept.pem"), folder_.File("kept_key.pem"), 2);
+  std::filesystem::copy_file(Certificate(), folder_.File("trusted.pem"));
+  std::filesystem::copy_file(folder_.File("kept.pem"), folder_.File("next.pem"));
+  // A pipe that nobody writes to hangs as it is opened.
+  std::filesystem::remove(Certificate());
+  ASSERT_EQ(mkfifo(Certificate().c_str(), 0600), 0);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(TlsClient(site_->Port(), folder_.File("trusted.pem")).Serial(), 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+  EXPECT_EQ(old.Get("/").result(), http::status::ok);
+  // It answers again, and the next certificate counts.
+  { const base::FileDescriptor writer(open(Certificate().c_str(), O_RDWR | O_NONBLOCK)); }
+  std::filesystem::rename(folder_.File("kept_key.pem"), Key());
+  std::filesystem::rename(folder_.File("kept.pem"), Certificate());
+  EXPECT_TRUE(AwaitSerial(2, folder_.File("next.pem")));
+}
+
+TEST_F(TlsTest, OneAddressHasSoManyHandshakesASecond) {
+  site_.reset();
+  std::atomic<int> refused{0};
+  options_.max_handshakes_per_address = 5.0;
+  options_.on_refusal = [&](const GatewayRefusal& refusal) {
+    EXPECT_EQ(refusal.act, "Connect");
+    EXPECT_EQ(base::DetailsOf(refusal.why).reason, "TOO_MANY_HANDSHAKES");
+    ++refused;
+  };
+  site_ = EchoSite::Start(options_);
+  int shaken = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 40; ++i) {
+    try {
+      TlsClient client(site_->Port(), Certificate());
+      ++shaken;
+    } catch (const boost::system::system_error&) {
+      // It was closed.
+    }
+  }
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(shaken, 10);
+  EXPECT_LE(shaken, 10.0 + 5.0 * took.count() + 1.0);
+  EXPECT_EQ(refused, 40 - shaken);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(TlsClient(site_->Port(), Certificate()).Get("/").result(), http::status::ok);
+  site_.reset();
 }
 
 TEST_F(TlsTest, FilesThatDoNotFitAreNamed) {

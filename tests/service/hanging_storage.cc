@@ -9,6 +9,7 @@
 
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
 #include <string>
 
 namespace {
@@ -108,6 +109,11 @@ int mkdir(const char* path, mode_t mode) noexcept {
   return Real<int(const char*, mode_t)>("mkdir")(path, mode);
 }
 
+int remove(const char* path) noexcept {
+  HangIfTold(path);
+  return Real<int(const char*)>("remove")(path);
+}
+
 int unlink(const char* path) noexcept {
   HangIfTold(path);
   return Real<int(const char*)>("unlink")(path);
@@ -115,6 +121,10 @@ int unlink(const char* path) noexcept {
 
 int statx(int folder, const char* path, int flags, unsigned int mask,
           struct statx* status) noexcept {
+  // Of a file that is marked itself the status still comes.
+  if (const char* const name = path == nullptr ? nullptr : strrchr(path, '/'); name != nullptr) {
+    HangIfTold(std::string(path, name).c_str());
+  }
   const int result = Real<int(int, const char*, int, unsigned int, struct statx*)>("statx")(
       folder, path, flags, mask, status);
   if (result == 0 && IsMounted(path)) status->stx_dev_minor += 1000;

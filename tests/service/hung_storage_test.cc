@@ -64,7 +64,8 @@ class HungStorageTest : public ::testing::Test {
 #endif
   }
 
-  void Start(const std::vector<std::string>& data, const std::string& state = "none") {
+  void Start(const std::vector<std::string>& data, const std::string& state = "none",
+             const std::vector<std::string>& more = {}) {
     setenv("LD_PRELOAD", HANGING_STORAGE, 1);
     std::vector<std::string> arguments{
         "serve",       "--device",        "software",    "--http",
@@ -73,6 +74,7 @@ class HungStorageTest : public ::testing::Test {
         "0",           "--read-deadline", "1",           "--drain-seconds",
         "2",           "--data"};
     arguments.insert(arguments.end(), data.begin(), data.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
     program_ = std::make_unique<RunningProgram>(PROGRAM, arguments, out_, err_);
     unsetenv("LD_PRELOAD");
   }
@@ -263,6 +265,62 @@ TEST_F(HungStorageTest, AStateFolderThatHangsFromTheStartSaysSoAndTheProgramEnds
       << Contents(err_);
   EXPECT_EQ(CodeOf(operators_port_, "/readyz"), 503);
   EXPECT_EQ(CodeAfterSigterm(seconds(10)), 0) << Contents(err_);
+}
+
+TEST_F(HungStorageTest, AFileOfTokensThatHangsLocksNobodyOutAndHoldsUpNobody) {
+  fs::create_directory(folder_.File("etc"));
+  const std::string tokens = folder_.File("etc/tokens");
+  // The SHA-256 of kToken.
+  std::ofstream(tokens)
+      << "anna operator 3eb1bd439947eb762998e566ccc2e099c791118b2f40579cc4f7da2b5061b7f9\n";
+  fs::permissions(tokens, fs::perms::owner_read | fs::perms::owner_write);
+  WriteStorm(folder_.File("anvil.nc"));
+  Start({folder_.File("anvil.nc")}, "none", {"--auth", "tokens", tokens});
+  AwaitReady();
+  ASSERT_FALSE(HasFatalFailure());
+  const auto list = [&](const std::string& token) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + seconds(20));
+    context.AddMetadata("authorization", "Bearer " + token);
+    v1::ListStormsResponse storms;
+    return stub_->ListStorms(&context, {}, &storms).error_code();
+  };
+  constexpr char kToken[] = "0123456789abcdef0123456789abcdef";
+  EXPECT_EQ(list(kToken), grpc::StatusCode::OK);
+  HangAt(folder_.File("etc"));
+  const auto begin = steady_clock::now();
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(list(kToken), grpc::StatusCode::OK);
+  EXPECT_EQ(list("another"), grpc::StatusCode::UNAUTHENTICATED);
+  EXPECT_LT(steady_clock::now() - begin, seconds(10));
+  EXPECT_EQ(CodeOf(http_port_, "/healthz"), 200);
+  EXPECT_EQ(CodeAfterSigterm(seconds(20)), 0) << Contents(err_);
+}
+
+TEST_F(HungStorageTest, ACloudThatIsDeletedWhereItsStorageHangsHoldsUpNoList) {
+  fs::create_directory(folder_.File("clouds"));
+  WriteStorm(folder_.File("anvil.nc"));
+  Start({folder_.File("anvil.nc")}, "none", {"--clouds", folder_.File("clouds")});
+  AwaitReady();
+  ASSERT_FALSE(HasFatalFailure());
+  v1::GenerateCloudResponse generated;
+  const grpc::Status made =
+      Call(*stub_, &Stub::GenerateCloud, v1::GenerateCloudRequest(), &generated);
+  ASSERT_TRUE(made.ok()) << made.error_message();
+  HangAt(folder_.File("clouds"));
+  std::thread deleting([&] {
+    v1::DeleteCloudRequest request;
+    request.set_storm_id(generated.storm().id());
+    v1::DeleteCloudResponse response;
+    EXPECT_FALSE(Call(*stub_, &Stub::DeleteCloud, request, &response).ok());
+  });
+  std::this_thread::sleep_for(seconds(1));
+  v1::ListStormsResponse storms;
+  EXPECT_TRUE(Call(*stub_, &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
+  EXPECT_EQ(storms.storms_size(), 2);
+  // Though the call does not end.
+  EXPECT_EQ(CodeAfterSigterm(seconds(40)), 0) << Contents(err_);
+  EXPECT_THAT(Contents(err_), HasSubstr("ending without them"));
+  deleting.join();
 }
 
 }  // namespace

@@ -38,9 +38,8 @@ std::string ReadFile(const std::string& path) {
 
 class TlsPort {
  public:
-  TlsPort() {
+  explicit TlsPort(service::ServerOptions options = {}) {
     WriteSelfSigned(Certificate(), Key(), 1);
-    service::ServerOptions options;
     options.address = "127.0.0.1:0";
     options.tls = {Certificate(), Key(), 1};
     service_.emplace(options);
@@ -70,6 +69,19 @@ bool Answers(Stub& stub) {
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(3));
   return stub.ListStorms(&context, v1::ListStormsRequest(), &response).ok();
+}
+
+TEST(PortsTest, OneAddressBeginsTlsOnlySoOften) {
+  service::ServerOptions options;
+  options.limits.max_handshakes_per_address = 1.0;
+  TlsPort port(options);
+  const std::string certificate = ReadFile(port.Certificate());
+  int answers = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 20; ++i) answers += Answers(*port.Trust(certificate)) ? 1 : 0;
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(answers, 2);
+  EXPECT_LE(answers, 3.0 + took.count());
 }
 
 TEST(PortsTest, GrpcIsServedByTls) {

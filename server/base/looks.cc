@@ -1,0 +1,63 @@
+#include "base/looks.h"
+
+#include <new>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/slow_calls.h"
+
+namespace thunderhead::base {
+
+Looks::Looks(const std::string& path, std::function<void()> look,
+             std::chrono::milliseconds patience, std::optional<std::chrono::milliseconds> pause)
+    : patience_(patience),
+      shared_(new Shared{.look = std::move(look), .path = path, .pause = pause}),
+      thread_(absl::StrCat("a look at ", path), [shared = shared_] { Run(shared); }) {}
+
+Looks::~Looks() {
+  bool hangs = false;
+  {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->stopping = true;
+    hangs = shared_->hangs;
+  }
+  shared_->changed.notify_all();
+  if (hangs) thread_.LetGo();
+}
+
+void Looks::LookAgain() {
+  std::unique_lock lock(shared_->mutex);
+  if (shared_->hangs) return;
+  const std::uint64_t asked = ++shared_->asked;
+  shared_->changed.notify_all();
+  if (!shared_->changed.wait_for(lock, patience_, [&] { return shared_->done >= asked; })) {
+    shared_->hangs = true;
+  }
+}
+
+void Looks::Run(const std::shared_ptr<Shared>& shared) {
+  std::unique_lock lock(shared->mutex);
+  while (true) {
+    const auto is_due = [&] { return shared->stopping || shared->asked > shared->done; };
+    if (shared->pause.has_value()) {
+      shared->changed.wait_for(lock, *shared->pause, is_due);
+    } else {
+      shared->changed.wait(lock, is_due);
+    }
+    if (shared->stopping) return;
+    const std::uint64_t asked = shared->asked;
+    lock.unlock();
+    try {
+      const SlowCall slow(shared->path);
+      shared->look();
+    } catch (const std::bad_alloc&) {
+      // The next look may have memory.
+    }
+    lock.lock();
+    shared->done = asked;
+    shared->hangs = false;
+    shared->changed.notify_all();
+  }
+}
+
+}  // namespace thunderhead::base
