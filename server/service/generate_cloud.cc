@@ -16,7 +16,7 @@ absl::StatusOr<clouds::CloudShape> Check(const v1::GenerateCloudRequest& request
   return ShapeOf(request);
 }
 
-absl::Status Make(Engine& engine, const clouds::CloudShape& shape,
+absl::Status Make(Engine& engine, const std::string& owner, const clouds::CloudShape& shape,
                   const v1::GenerateCloudRequest& request, grpc::CallbackServerContext& context,
                   v1::GenerateCloudResponse& response) {
   std::stop_source stop;
@@ -25,7 +25,7 @@ absl::Status Make(Engine& engine, const clouds::CloudShape& shape,
   };
   THUNDERHEAD_ASSIGN_OR_RETURN(
       volume::StormInfoPtr storm,
-      engine.clouds.Make(shape, OriginOf(request), observe, stop.get_token()));
+      engine.clouds.Make(shape, OriginOf(request), observe, stop.get_token(), owner));
   ToMessage(*storm, *response.mutable_storm());
   response.mutable_storm()->set_deletable(true);
   return absl::OkStatus();
@@ -40,15 +40,15 @@ grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerCont
   auto shape = Check(*request);
   if (!shape.ok()) return Refused(context, *caller, shape.status());
   auto* const answer = new Answer(context, engine.limits, caller, *response);
-  engine.executor.Submit(caller->identity().name,
-                         [=, &engine, shape = *std::move(shape)](const absl::Status& status) {
-                           const absl::Status made = status.ok() ? base::OrOutOfMemory([&] {
-                             return Make(engine, shape, *request, *context, *response);
-                           })
-                                                                 : status;
-                           caller->Report("GenerateCloud", made);
-                           answer->Give(made);
-                         });
+  engine.executor.Submit(
+      caller->identity().name, [=, &engine, shape = *std::move(shape)](const absl::Status& status) {
+        const absl::Status made = status.ok() ? base::OrOutOfMemory([&] {
+          return Make(engine, caller->identity().name, shape, *request, *context, *response);
+        })
+                                              : status;
+        caller->Report("GenerateCloud", made);
+        answer->Give(made);
+      });
   return answer;
 }
 

@@ -324,7 +324,10 @@ class InteractCall : public InteractReactor,
       if (!joined.ok()) caller_->Report("Interact/join", joined);
       return joined;
     }
-    THUNDERHEAD_RETURN_IF_ERROR(caller_->StillKnown());
+    if (const absl::Status unknown = caller_->StillKnown(); !unknown.ok()) {
+      caller_->Report("Interact", unknown);
+      return unknown;
+    }
     session_->Touch();
     session_->audience().Heard(person_id_);
     absl::Status status = budget_.Take(Clock::now());
@@ -590,7 +593,8 @@ class InteractCall : public InteractReactor,
       const std::uint64_t opened_for = looked_;
       const scene::Camera first = *camera_;
       lock.unlock();
-      const std::shared_ptr<session::OwnView> opened = engine_.sessions.OpenView(session_, first);
+      const std::shared_ptr<session::OwnView> opened =
+          engine_.sessions.OpenView(session_, first, caller_->identity().name);
       lock.lock();
       if (own_view_ == nullptr) own_view_ = opened;
       if (own_view_ == opened && opened_for == looked_) {

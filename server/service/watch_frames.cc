@@ -71,10 +71,13 @@ class FrameStream : public FramesReactor,
 
   void OnWriteDone(bool ok) override {
     delivery_->Taken();
+    absl::Status known = ok ? caller_->StillKnown() : absl::OkStatus();
+    if (!known.ok()) caller_->Report("WatchFrames", known);
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
       disconnected_ = disconnected_ || !ok;
+      known_ = std::move(known);
     }
     Wake();
   }
@@ -100,6 +103,7 @@ class FrameStream : public FramesReactor,
   // The status to end the stream with, if it must end now. Needs mutex_.
   std::optional<grpc::Status> End() {
     if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the viewer disconnected");
+    if (!known_.ok()) return ToGrpcStatus(known_);
     const absl::Status closed = session_->hub().ClosedBecause();
     if (closed.ok()) return std::nullopt;
     return ToGrpcStatus(closed);
@@ -136,6 +140,7 @@ class FrameStream : public FramesReactor,
   std::uint64_t viewer_id_ = 0;
   bool writing_ = false;
   bool disconnected_ = false;
+  absl::Status known_;  // why the caller may watch no longer
   bool finished_ = false;
   std::optional<DeliveryDeadline> delivery_;
 };

@@ -215,7 +215,9 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
                                [bytes](const auto& budget) { return budget->HasRoom(bytes); });
   });
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
-                       *tracer_, light_tracer, session_lane);
+                       *tracer_, light_tracer, session_lane,
+                       {.picture_bytes = options_.memory->Bytes() / 2,
+                        .references = std::max<std::size_t>(1, options_.max_traced_sessions / 2)});
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
                            {lanes->quick_images, lanes->images});
   Turns turns;

@@ -45,6 +45,34 @@ std::shared_ptr<Session> FindById(const std::vector<std::shared_ptr<Session>>& s
   return found != sessions.end() && (*found)->id() == id ? *found : nullptr;
 }
 
+// Somebody must close something first.
+constexpr std::chrono::seconds kShareRetry{10};
+
+// That a frame holds until there is a newer one.
+std::size_t BytesOf(const DisplayFrame& picture) {
+  return picture.memory == nullptr ? 0 : picture.memory->Bytes();
+}
+
+absl::Status PicturesBeyondShare(std::size_t bytes) {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(absl::StrCat(
+          "the pictures of all your sessions and views would take more than ", base::InWords(bytes),
+          " of memory, which is the most for one; close some, or show them smaller")),
+      {.reason = "MEMORY_SHARE",
+       .metadata = {{"maximum", absl::StrCat(bytes)}, {"unit", "bytes"}},
+       .retry_after = kShareRetry});
+}
+
+absl::Status ReferencesBeyondShare(std::size_t references) {
+  return base::WithDetails(
+      absl::ResourceExhaustedError(absl::StrCat(
+          "the reference already traces ", references,
+          " pictures for you, which is the most for one; choose another technique in one of them")),
+      {.reason = "TOO_MANY_REFERENCES",
+       .metadata = {{"maximum", absl::StrCat(references)}, {"unit", "pictures"}},
+       .retry_after = kShareRetry});
+}
+
 // The time at which to try again, if the failure is temporary.
 std::optional<Clock::time_point> TryAgainAt(const absl::Status& why) {
   const auto after = base::DetailsOf(why).retry_after;
@@ -56,19 +84,20 @@ std::optional<Clock::time_point> TryAgainAt(const absl::Status& why) {
 
 SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
                              MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer,
-                             LightTracer& light_tracer, SessionLane& lane)
+                             LightTracer& light_tracer, SessionLane& lane, const Share& share)
     : targets_(targets),
       fields_(fields),
       source_(source),
       encoder_(encoder),
       tracer_(tracer),
       light_tracer_(light_tracer),
-      lane_(lane) {}
+      lane_(lane),
+      share_(share) {}
 
 SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session) {
   const std::optional<NewestScene> newest = session->Newest();
   if (!newest.has_value() || !session->hub().HasViewers()) return {};
-  const Turn turn{session, KeptFor(session->id())};
+  const Turn turn{session, KeptFor(*session)};
   turn.kept.work = WaitUntil{};
   TakeRead(turn);
   turn.kept.reference.EndUnless(*newest->scene);
@@ -102,7 +131,7 @@ std::optional<SessionDrawer::Wish> SessionDrawer::LookInLane(const Turn& turn,
 }
 
 void SessionDrawer::TakeTurn(const std::shared_ptr<Session>& session) {
-  const Turn turn{session, KeptFor(session->id())};
+  const Turn turn{session, KeptFor(*session)};
   const SessionWork work = std::exchange(turn.kept.work, WaitUntil{});
   if (std::exchange(turn.kept.gives_turn, false)) return lane_.GiveTurn();
   if (std::exchange(turn.kept.in_lane, false)) return BeginInLane(turn, work);
@@ -175,12 +204,14 @@ void SessionDrawer::Show(const Turn& turn, const InLane& drawn, SessionLane::Pic
   turn.kept.fields.PrepareNext(*shown.scene);
 }
 
-SessionDrawer::Kept& SessionDrawer::KeptFor(const std::string& session_id) {
+SessionDrawer::Kept& SessionDrawer::KeptFor(const Session& session) {
+  const std::string& session_id = session.id();
   const auto found = kept_.find(session_id);
   if (found != kept_.end()) return found->second;
   return kept_
       .emplace(session_id,
-               Kept{SessionView(targets_, source_.Costs(), source_.Offers(), session_id),
+               Kept{session.owner(),
+                    SessionView(targets_, source_.Costs(), source_.Offers(), session_id),
                     SessionFields(fields_, session_id), SessionReference(tracer_, session_id)})
       .first->second;
 }
@@ -344,8 +375,9 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const ShowLight& /
 }
 
 SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const ShowReference& work) {
+  const absl::Status beyond = CheckReference(turn);
   const absl::StatusOr<bool> news =
-      turn.kept.reference.Trace(work.shown, turn.kept.fields.Fields());
+      beyond.ok() ? turn.kept.reference.Trace(work.shown, turn.kept.fields.Fields()) : beyond;
   if (!news.ok()) {
     turn.kept.reference.Release();
     Fail(turn, work.shown.revision, news.status());
@@ -441,6 +473,10 @@ std::optional<frame::FineImage> SessionDrawer::FineOf(const Turn& turn,
 void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refined,
                          DisplayFrame picture, std::optional<frame::FineImage> fine,
                          std::optional<Refinement> refinement) {
+  if (const absl::Status beyond = CheckPicture(turn, picture); !beyond.ok()) {
+    return Fail(turn, shown.revision, beyond);
+  }
+  turn.kept.picture_bytes = BytesOf(picture);
   turn.kept.losses = 0;
   turn.kept.refused = false;
   turn.kept.tells = picture.accuracy.has_value();
@@ -456,6 +492,28 @@ void SessionDrawer::Send(const Turn& turn, const NewestScene& shown, bool refine
                    .view = scene::ViewOf(*shown.scene, *turn.kept.fields.Fields())};
   frame.picture = std::move(picture);
   encoder_.Encode(std::move(frame));
+}
+
+absl::Status SessionDrawer::CheckPicture(const Turn& turn, const DisplayFrame& picture) const {
+  const std::string& owner = turn.kept.owner;
+  if (owner.empty()) return absl::OkStatus();
+  std::size_t bytes = BytesOf(picture);
+  for (const auto& [id, other] : kept_) {
+    if (other.owner == owner && &other != &turn.kept) bytes += other.picture_bytes;
+  }
+  return bytes <= share_.picture_bytes ? absl::OkStatus()
+                                       : PicturesBeyondShare(share_.picture_bytes);
+}
+
+absl::Status SessionDrawer::CheckReference(const Turn& turn) const {
+  const std::string& owner = turn.kept.owner;
+  if (owner.empty() || turn.kept.reference.IsTraced()) return absl::OkStatus();
+  const auto traced = std::ranges::count_if(kept_, [&](const auto& other) {
+    return other.second.owner == owner && other.second.reference.IsTraced();
+  });
+  return static_cast<std::size_t>(traced) < share_.references
+             ? absl::OkStatus()
+             : ReferencesBeyondShare(share_.references);
 }
 
 void SessionDrawer::Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why) {

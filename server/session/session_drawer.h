@@ -3,6 +3,8 @@
 // device it does while it looks for work. Used by the render loop's thread only.
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,10 +25,16 @@ namespace thunderhead::session {
 
 class SessionDrawer {
  public:
+  // How much the sessions and own views of one identity may hold.
+  struct Share {
+    std::size_t picture_bytes = std::numeric_limits<std::size_t>::max();  // their newest frames
+    std::size_t references = std::numeric_limits<std::size_t>::max();     // that are traced
+  };
+
   // All references must outlive it.
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
                 FrameEncoder& encoder, TruthTracer& tracer, LightTracer& light_tracer,
-                SessionLane& lane);
+                SessionLane& lane, const Share& share);
 
   struct Wish {
     std::optional<TurnClass> work;  // to be done in a turn
@@ -54,6 +62,7 @@ class SessionDrawer {
  private:
   // The state kept for a session.
   struct Kept {
+    std::string owner;
     SessionView view;
     SessionFields fields;
     SessionReference reference;
@@ -66,6 +75,7 @@ class SessionDrawer {
     bool tells = false;              // the last frame said its error
     bool refused = false;            // memory for its fields, since the last frame
     std::uint64_t device_bytes = 0;  // of the last frame
+    std::size_t picture_bytes = 0;   // of it as well
     // The revision whose frame at rest had no room in the lane; it is drawn whole.
     std::uint64_t whole_revision = 0;
   };
@@ -83,7 +93,11 @@ class SessionDrawer {
     Kept& kept;
   };
 
-  Kept& KeptFor(const std::string& session_id);
+  Kept& KeptFor(const Session& session);
+  // RESOURCE_EXHAUSTED if its owner's other frames leave no room for this picture, or other
+  // references none for one.
+  absl::Status CheckPicture(const Turn& turn, const DisplayFrame& picture) const;
+  absl::Status CheckReference(const Turn& turn) const;
   void TakeRead(const Turn& turn);
   SessionWork NextWork(const Turn& turn, const NewestScene& newest);
   // The wish of a session whose frame is in the lane; none if that is not what it shows any more.
@@ -132,6 +146,7 @@ class SessionDrawer {
   TruthTracer& tracer_;
   LightTracer& light_tracer_;
   SessionLane& lane_;
+  const Share share_;
   bool alone_ = true;                 // at most one session is watched
   std::optional<InLane> in_lane_;     // the lane's, until its outcome was taken
   std::map<std::string, Kept> kept_;  // by session id

@@ -31,6 +31,9 @@ class SessionReference {
     return *traced_->picture;
   }
 
+  // True while something is traced, or was and is shown.
+  bool IsTraced() const { return traced_.has_value(); }
+
   void Release();
 
  private:

@@ -194,9 +194,10 @@ SessionRecord Session::Record() const {
 }
 
 std::shared_ptr<OwnView> OwnView::Of(const std::shared_ptr<Session>& session, std::string id,
-                                     const scene::Camera& camera) {
-  auto drawn = std::make_shared<Session>(std::move(id), SessionKeys{}, Rules{}, Board{},
-                                         AudienceFormat{}, session->signals_);
+                                     const scene::Camera& camera, std::string owner) {
+  auto drawn =
+      std::make_shared<Session>(std::move(id), SessionKeys{}, Rules{}, Board{}, AudienceFormat{},
+                                session->signals_, RosterTimeouts{}, std::move(owner));
   std::shared_ptr<OwnView> view(new OwnView(std::move(drawn)));
   view->camera_ = camera;
   {
@@ -344,10 +345,10 @@ void Sessions::CloseAll(const absl::Status& why) {
 }
 
 std::shared_ptr<OwnView> Sessions::OpenView(const std::shared_ptr<Session>& session,
-                                            const scene::Camera& camera) {
+                                            const scene::Camera& camera, const std::string& owner) {
   const std::lock_guard lock(mutex_);
   std::string id = absl::StrCat(session->id(), "/", ++view_count_);
-  auto view = OwnView::Of(session, id, camera);
+  auto view = OwnView::Of(session, id, camera, owner);
   views_[std::move(id)] = view;
   return view;
 }

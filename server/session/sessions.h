@@ -148,9 +148,9 @@ class Session {
 // as another session, which nobody can find by a key.
 class OwnView {
  public:
-  // Of the session's newest scene from then on.
+  // Of the session's newest scene from then on, for the identity `owner`.
   static std::shared_ptr<OwnView> Of(const std::shared_ptr<Session>& session, std::string id,
-                                     const scene::Camera& camera);
+                                     const scene::Camera& camera, std::string owner);
 
   // The session that draws it.
   const std::shared_ptr<Session>& drawn() const { return drawn_; }
@@ -215,9 +215,10 @@ class Sessions {
   // Ends every session with `why`; none can be created or found afterwards.
   void CloseAll(const absl::Status& why);
 
-  // A view of the session's scene from a camera of its own, which is drawn while somebody holds it.
+  // A view of the session's scene from a camera of its own, for the identity `owner`, which is
+  // drawn while somebody holds it.
   std::shared_ptr<OwnView> OpenView(const std::shared_ptr<Session>& session,
-                                    const scene::Camera& camera);
+                                    const scene::Camera& camera, const std::string& owner);
 
   // The sessions that have not expired, in order of id.
   std::vector<std::shared_ptr<Session>> All();

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <set>
 #include <thread>
 #include <vector>
@@ -30,6 +31,7 @@ namespace thunderhead::testing {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -479,6 +481,61 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
     const std::lock_guard lock(mutex);
     ASSERT_FALSE(lines.empty());
     EXPECT_THAT(lines.front(), HasSubstr(trusted ? "192.0.2.7:0" : "127.0.0.1:"));
+  }
+}
+
+TEST(AccessTest, ATokenThatIsTakenAwayEndsStreamsAndTheAuditSaysSo) {
+  GuardedService guarded;
+  const v1::CreateSessionResponse session = guarded.Create();
+  const auto viewer = [] {
+    auto context = std::make_unique<grpc::ClientContext>();
+    context->set_deadline(std::chrono::system_clock::now() + 2 * kPatience);
+    context->AddMetadata("authorization", "Bearer " + TokenOf("viewer"));
+    return context;
+  };
+  const auto interacting = viewer();
+  const auto interact = guarded.stub().Interact(interacting.get());
+  v1::InteractRequest join;
+  join.mutable_join()->set_session_key(session.viewer_key());
+  ASSERT_TRUE(interact->Write(join));
+  v1::InteractResponse joined;
+  ASSERT_TRUE(interact->Read(&joined));
+  v1::WatchFramesRequest watch;
+  watch.set_session_id(session.viewer_key());
+  const auto watching = viewer();
+  const auto frames = guarded.stub().WatchFrames(watching.get(), watch);
+  v1::WatchFramesResponse event;
+  ASSERT_TRUE(frames->Read(&event));
+  guarded.TakeAwayToken("viewer");
+
+  // Frames come only while something changes, and somebody takes them.
+  v1::UpdateSceneRequest update;
+  update.set_session_id(session.session_id());
+  *update.mutable_scene() = SmallScene();
+  do {
+    v1::AcknowledgeFrameRequest taken;
+    taken.set_session_id(session.session_id());
+    taken.set_viewer_id(event.viewer_id());
+    taken.set_sequence(event.frame().sequence());
+    v1::AcknowledgeFrameResponse acknowledged;
+    guarded.Call("presenter", &Stub::AcknowledgeFrame, taken, &acknowledged);
+    v1::Sun& sun = *update.mutable_scene()->mutable_sun();
+    sun.set_azimuth_deg(sun.azimuth_deg() + 1.0F);
+    v1::UpdateSceneResponse updated;
+    guarded.Call("presenter", &Stub::UpdateScene, update, &updated);
+    std::this_thread::sleep_for(milliseconds(20));
+  } while (frames->Read(&event));
+  EXPECT_EQ(frames->Finish().error_code(), grpc::StatusCode::UNAUTHENTICATED);
+
+  v1::InteractRequest alive;
+  alive.mutable_alive();
+  while (interact->Write(alive)) std::this_thread::sleep_for(milliseconds(50));
+  while (interact->Read(&joined)) {
+  }
+  EXPECT_EQ(interact->Finish().error_code(), grpc::StatusCode::UNAUTHENTICATED);
+  for (const char* call : {"act=Interact ", "act=WatchFrames "}) {
+    EXPECT_THAT(guarded.Audit(), Contains(AllOf(HasSubstr(call), HasSubstr("identity=\"a-viewer\""),
+                                                HasSubstr("reason=\"TOKEN_UNKNOWN\""))));
   }
 }
 

@@ -296,20 +296,46 @@ TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
   EXPECT_EQ(Decode(busy).retry_s, 3.0);
 }
 
+// Made quickly.
+clouds::CloudShape CoarseCloud() {
+  auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
+  EXPECT_TRUE(shape.ok());
+  shape->grid.cells = {8, 8, 8};
+  shape->grid.spacing_m *= 8.0;
+  shape->noise.octaves = 1;
+  return *shape;
+}
+
+TEST(ErrorDetailsTest, NobodyMakesMoreCloudsThanTheirShare) {
+  const TemporaryFolder folder;
+  FakeStormStore store;
+  service::CloudStore clouds(folder.Path().string(), store);
+  const clouds::CloudShape shape = CoarseCloud();
+  std::uint64_t seed = 0;
+  const auto make = [&](const std::string& owner) {
+    return clouds.Make(shape, {"a", ++seed}, {}, {}, owner);
+  };
+  const auto first = make("anna");
+  ASSERT_TRUE(first.ok()) << first.status();
+  for (int i = 1; i < 32; ++i) ASSERT_TRUE(make("anna").ok());
+  const grpc::Status full = service::ToGrpcStatus(make("anna").status());
+  ExpectRefusal(full, grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CLOUDS");
+  EXPECT_EQ(Decode(full).metadata.at("maximum"), "32");
+  EXPECT_TRUE(make("ben").ok());
+  ASSERT_TRUE(clouds.Delete((*first)->id).ok());
+  EXPECT_TRUE(make("anna").ok());
+}
+
 TEST(ErrorDetailsTest, NoMoreCloudsThanTheMaximum) {
   const TemporaryFolder folder;
   FakeStormStore store;
   service::CloudStore clouds(folder.Path().string(), store);
-  auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
-  ASSERT_TRUE(shape.ok());
-  shape->grid.cells = {8, 8, 8};
-  shape->grid.spacing_m *= 8.0;
-  shape->noise.octaves = 1;
+  const clouds::CloudShape shape = CoarseCloud();
   for (int i = 0; i < 64; ++i) {
-    const auto made = clouds.Make(*shape, {"a", static_cast<std::uint64_t>(i)}, {}, {});
+    const auto made = clouds.Make(shape, {"a", static_cast<std::uint64_t>(i)}, {}, {});
     ASSERT_TRUE(made.ok()) << made.status();
   }
-  const grpc::Status full = service::ToGrpcStatus(clouds.Make(*shape, {"a", 64}, {}, {}).status());
+  const grpc::Status full = service::ToGrpcStatus(clouds.Make(shape, {"a", 64}, {}, {}).status());
   ExpectRefusal(full, grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CLOUDS");
   EXPECT_EQ(Decode(full).metadata.at("maximum"), "64");
   EXPECT_EQ(Decode(full).retry_s, 60.0);

@@ -52,6 +52,20 @@ class GuardedService {
     service_.emplace(options);
   }
 
+  // From now on nobody knows that role's token.
+  void TakeAwayToken(const std::string& role) {
+    const std::string next = folder_.File("next");
+    {
+      std::ofstream file(next);
+      for (const std::string& other : kRoles) {
+        if (other == role) continue;
+        file << "a-" << other << " " << other << " " << Sha256OfToken(TokenOf(other)) << "\n";
+      }
+    }
+    std::filesystem::permissions(next, std::filesystem::perms::owner_read);
+    std::filesystem::rename(next, folder_.File("tokens"));
+  }
+
   FakeService& service() { return *service_; }
   v1::ThunderheadService::Stub& stub() { return service_->stub(); }
 

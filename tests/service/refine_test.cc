@@ -1,10 +1,13 @@
 // Sessions that show the reference, over gRPC: pictures that improve while the scene rests, start
 // again when it changes and stop when nobody watches; other sessions are not delayed.
+#include <grpcpp/create_channel.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "frame/image_codec.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -34,6 +37,7 @@ class RefineTest : public ::testing::Test {
     service::ServerOptions options;
     options.render_loop.make_truth_source = FakeTruthSources(truth);
     options.render_loop.max_traced_sessions = 2;
+    options.address = "127.0.0.1:0";
     return options;
   }
 
@@ -204,6 +208,29 @@ TEST_F(RefineTest, SessionsTakeTurnsAndOneTooManyIsTold) {
   Watcher three(service_.stub(), service_.Open(TracedFrom(180.0F)));
   ASSERT_TRUE(three.Await([](const Messages& messages) { return !messages.empty(); }));
   EXPECT_THAT(three.Messages().front().problem().message(), HasSubstr("choose another renderer"));
+}
+
+TEST_F(RefineTest, OneIdentityHasHalfOfThePlaces) {
+  // By the port, all are of one address.
+  const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
+      absl::StrCat("127.0.0.1:", service_.server().Port()), grpc::InsecureChannelCredentials()));
+  const auto open = [&](float azimuth_deg) {
+    v1::CreateSessionRequest request;
+    *request.mutable_scene() = TracedFrom(azimuth_deg);
+    v1::CreateSessionResponse response;
+    EXPECT_TRUE(Call(*stub, &v1::ThunderheadService::Stub::CreateSession, request, &response).ok());
+    return response.session_id();
+  };
+  Watcher first(*stub, open(10.0F));
+  ASSERT_TRUE(AwaitSamples(first, 1, 64));
+  Watcher second(*stub, open(20.0F));
+  EXPECT_TRUE(second.Await([](const Messages& messages) {
+    return std::ranges::any_of(messages, [](const auto& message) {
+      return message.problem().message().find("pictures for you") != std::string::npos;
+    });
+  }));
+  Watcher others(service_.stub(), service_.Open(TracedFrom(30.0F)));
+  EXPECT_TRUE(AwaitSamples(others, 1, 64));
 }
 
 TEST_F(RefineTest, WhatCannotBeTracedIsAProblemUntilTheSceneChanges) {

@@ -591,6 +591,34 @@ TEST_F(RenderLoopTest, TheFrameOfASessionThatNobodyWatchesMakesRoomForAPicture) 
   EXPECT_TRUE(again->Await(revision, true)) << "it is drawn once more";
 }
 
+TEST_F(RenderLoopTest, PicturesOfOneIdentityTakeNoMoreThanHalfOfTheBudget) {
+  RenderLoopOptions options;
+  options.memory = base::MemoryBudget::Make({.bytes = std::size_t{4} << 20});
+  options.device_memory = {options.memory};
+  Start(options);
+  scene::Scene large = Small(0.0);
+  large.output = {400, 300, 88};  // 720 kB, so that two are below 2 MiB
+  const auto open = [&](const std::string& owner) { return *sessions_.Create({}, owner); };
+  const auto shows = [&](const std::shared_ptr<Session>& session) {
+    const std::uint64_t revision = Show(*session, large);
+    return Watch(session)->Await(revision, true);
+  };
+  const auto first = open("anna");
+  ASSERT_TRUE(shows(first));
+  ASSERT_TRUE(shows(open("anna")));
+  const auto third = open("anna");
+  const std::uint64_t revision = Show(*third, large);
+  const auto viewer = Watch(third);
+  for (int i = 0; i < 2000 && viewer->ProblemCount() == 0; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_GE(viewer->ProblemCount(), 1U);
+  EXPECT_FALSE(viewer->Has(revision, [](const EncodedFrame& frame) { return frame.refined; }));
+  EXPECT_TRUE(shows(open("ben"))) << "others have theirs";
+  ASSERT_TRUE(sessions_.Close(first->keys().presenter).ok());
+  EXPECT_TRUE(viewer->Await(revision, true)) << "it is tried again by itself";
+}
+
 TEST_F(RenderLoopTest, ManyHandsManyViewersComingAndGoing) {
   machine_->ms_per_mega_sample = 20.0;
   store_.FailAt(3, absl::DataLossError("broken"));
