@@ -38,6 +38,8 @@ if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   # The libraries that it opens by name, the fonts of its products, and who makes its user.
   set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS
     "ca-certificates, fontconfig, fonts-dejavu-core, libegl1, libegl-mesa0, libgdal32, libgl1-mesa-dri, systemd | systemd-standalone-sysusers")
+  # Coasts and borders.
+  set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "gmt-gshhg-high, gmt-gshhg-low")
   set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
     ${CMAKE_SOURCE_DIR}/deploy/debian/postinst ${CMAKE_SOURCE_DIR}/deploy/debian/prerm ${CMAKE_SOURCE_DIR}/deploy/debian/conffiles)
 

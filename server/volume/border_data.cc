@@ -161,9 +161,6 @@ class BinnedFile {
       }
     }
     if (end <= first) return absl::OkStatus();
-    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape,
-                                 file_.Shape("Relative_longitude_from_SW_corner_of_bin"));
-    if (shape.size() != 1 || end > shape[0]) return Damaged();
     THUNDERHEAD_ASSIGN_OR_RETURN(
         const std::vector<float> east,
         file_.ReadPart("Relative_longitude_from_SW_corner_of_bin", {first}, {end - first}));

@@ -94,7 +94,7 @@ TEST_F(BorderDataTest, LinesAreWhereTheirPlacesAreProjected) {
   EXPECT_GT(PaintedAt(*Map(pacific), {-120e3, -80e3}), 0.99F);
 }
 
-// A parallel is a curve on a conic map: 0.4 km off the straight line between meridians 5 degrees
+// A parallel is a curve on a conic map: 3 km off the straight line between meridians 5 degrees
 // apart, though its segment has two points.
 TEST_F(BorderDataTest, ParallelsAreCurves) {
   Write({}, {SegmentThrough({{-99.0, 36.7}, {-94.0, 36.7}})});
