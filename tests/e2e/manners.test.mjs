@@ -26,11 +26,11 @@ after(async () => {
   await server?.stop();
 });
 
-async function visit(options) {
+async function visit(options, address = server.url) {
   // The page lets no scripts in but its own; axe-core is one of the test.
   const context = await browser.newContext({ bypassCSP: true, ...options });
   const page = await context.newPage();
-  await page.goto(server.url);
+  await page.goto(address);
   await rested(page);
   return page;
 }
@@ -188,7 +188,7 @@ async function unreadable(page) {
         .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect(), covers: element.matches(".drawer") }))
         .filter(({ box }) => box.width > 0);
     const texts = boxes("[data-testid=annotations] text");
-    const bars = boxes(".top-bar, .time-line, .rail, .truth, aside, .compared-name");
+    const bars = boxes(".top-bar, .time-line, .session-bar, .rail, .truth, aside, .compared-name");
     const all = [...texts, ...bars];
     const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
     const mayMeet = (one, other) => bars.includes(one) && bars.includes(other) && (one.covers || other.covers);
@@ -252,6 +252,28 @@ for (const [name, options] of [
     }
     await page.context().close();
   });
+
+// Who steers is in a bar of its own there.
+test("all that is written over the picture is read on a student's phone", async () => {
+  const teacher = await visit({ viewport: { width: 900, height: 700 } });
+  await openTool(teacher, "look");
+  await teacher.getByTestId("colours").getByText("False colours").click();
+  const page = await visit(PHONE, teacher.url().replace(/#.*/, ""));
+  await page.getByTestId("who-steers").waitFor();
+  await page.locator("[data-testid=annotations] rect").first().waitFor();
+  assert.deepEqual(await unreadable(page), []);
+  for (const tool of TOOLS) {
+    await openTool(page, tool);
+    assert.deepEqual(await unreadable(page), [], `with ${tool} open`);
+  }
+  await openTool(page, undefined);
+  await openPanel(page, "compare");
+  await page.getByTestId("compare-time").selectOption("0");
+  await page.keyboard.press("Escape");
+  await page.getByTestId("compared-canvas").waitFor();
+  assert.deepEqual(await unreadable(page), [], "a comparison");
+  for (const each of [page, teacher]) await each.context().close();
+});
 
 test("a panel of the bar leaves the time line free on a desktop", async () => {
   const page = await visit({ viewport: { width: 1920, height: 1080 } });
