@@ -75,7 +75,10 @@ async function setRule(name, on) {
 
 async function setRuleOf(presenter, name, on) {
   await presenter.getByTestId("share").click();
-  await presenter.getByTestId(`rule-${name}`).setChecked(on);
+  // It shows the session's rule: a presence that was on its way may set it back for a moment.
+  const rule = presenter.getByTestId(`rule-${name}`);
+  if ((await rule.isChecked()) !== on) await rule.click();
+  await until(`the rule ${name}`, async () => (await rule.isChecked()) === on);
   await presenter.keyboard.press("Escape");
 }
 
