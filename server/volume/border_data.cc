@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
-#include <utility>
-#include <vector>
+#include <limits>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
@@ -64,7 +65,8 @@ struct Bins {
     return row * columns + column;
   }
   EarthPlace SouthWestOf(int bin) const {
-    return {90.0 - side_deg * (bin / columns + 1), side_deg * (bin % columns)};
+    const int row = bin / columns;
+    return {90.0 - side_deg * (row + 1), side_deg * (bin % columns)};
   }
 };
 

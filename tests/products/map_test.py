@@ -208,6 +208,15 @@ class MapTest(ProductTest):
         self.assertIn("install Debian's package libgdal32", done.stderr)
         self.assertFalse((self.folder / "a.tif").exists())
 
+    def test_a_real_place_has_its_borders_or_says_that_it_has_not(self) -> None:
+        storm, _ = self.storm("lambert")
+        command = (PROGRAM, "render", storm, "-o", self.folder / "a.png", "--camera", "top-down", "--size", "64x36", "--quality", "fast",
+                   "--device", "software", "--json")
+        modelled = json.loads(run(*command).stdout)["modelled"]
+        there = pathlib.Path("/usr/share/gmt-gshhg").exists()
+        self.assertEqual(modelled["ground"].get("borders", False), there)
+        self.assertEqual("CODE_BORDERS" in [each["code"] for each in modelled.get("notShown", [])], not there)
+
     def test_a_run_of_maps_is_resumed_with_their_world_files(self) -> None:
         storm, _ = self.storm("lambert")
         view = self.scene("above.json", VIEW)
