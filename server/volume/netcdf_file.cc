@@ -9,13 +9,16 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
+#include <streambuf>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "volume/classic_file_size.h"
+#include "volume/classic_header.h"
 #include "volume/memory_fit.h"
 #include "volume/netcdf_lock.h"
 
@@ -152,6 +155,19 @@ std::optional<MemoryFile>& InMemory() {
   return file;
 }
 
+// Bytes in memory as a stream, which does not write to them.
+class BytesBuffer final : public std::streambuf {
+ public:
+  explicit BytesBuffer(std::span<const std::byte> bytes) {
+    char* const first = reinterpret_cast<char*>(const_cast<std::byte*>(bytes.data()));
+    setg(first, first, first + bytes.size());
+  }
+};
+
+absl::Status CheckHeader(const std::string& path, std::istream& file) {
+  return base::Annotate(CheckClassicHeader(file), path);
+}
+
 // NetCDF-C neither writes to the bytes nor frees them.
 int OpenMemory(const MemoryFile& file, int& handle) {
   constexpr std::size_t kMagicBytes = 8;  // with fewer netCDF-C speaks of an invalid argument
@@ -166,6 +182,9 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   if (const std::optional<MemoryFile>& file = InMemory(); file.has_value()) {
     if (path != file->path) return OpenError(path, EACCES);
     if (file->bytes.empty()) return OpenError(path, NC_EHDFERR);
+    BytesBuffer buffer(file->bytes);
+    std::istream header(&buffer);
+    THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
     int handle = kNoHandle;
     const NetcdfLock lock(path);
     if (const int code = OpenMemory(*file, handle); code != NC_NOERR) return OpenError(path, code);
@@ -176,6 +195,8 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
   // An empty file has just been created by its writer; HDF5 would call it "unknown format".
   if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
+  std::ifstream header(path, std::ios::binary);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
   int handle = kNoHandle;
   const NetcdfLock lock(path);
   if (const int code = nc_open(path.c_str(), NC_NOWRITE, &handle); code != NC_NOERR) {

@@ -20,12 +20,12 @@ const char* const kSample = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
 constexpr int kNx = 200;
 constexpr int kNy = 160;
 constexpr int kLevels = 60;
-constexpr std::size_t kColumns = std::size_t{kNx} * kNy;
+constexpr std::size_t kSampleColumns = std::size_t{kNx} * kNy;
 
 std::vector<float> Raw(const char* name, std::size_t record, std::size_t levels) {
   int file = 0;
   int variable = 0;
-  std::vector<float> values(levels * kColumns);
+  std::vector<float> values(levels * kSampleColumns);
   const std::size_t start[] = {record, 0, 0, 0};
   const std::size_t count[] = {1, levels, kNy, kNx};
   EXPECT_EQ(nc_open(kSample, NC_NOWRITE, &file), NC_NOERR);
@@ -50,13 +50,13 @@ std::vector<Layer> LayersOf(std::size_t record) {
   const auto pb = Raw("PB", record, kLevels);
   const auto t = Raw("T", record, kLevels);
   const auto qv = Raw("QVAPOR", record, kLevels);
-  std::vector<Layer> layers(kLevels * kColumns);
+  std::vector<Layer> layers(kLevels * kSampleColumns);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     const double pressure = double{p[i]} + pb[i];
     const double temperature = (double{t[i]} + 300.0) * std::pow(pressure / 1e5, 2.0 / 7.0);
     const double density = pressure / (287.0 * temperature * (1.0 + 1.608 * qv[i]));
     const double bottom = (double{ph[i]} + phb[i]) / 9.81;
-    const double top = (double{ph[i + kColumns]} + phb[i + kColumns]) / 9.81;
+    const double top = (double{ph[i + kSampleColumns]} + phb[i + kSampleColumns]) / 9.81;
     layers[i] = {density, temperature, top - bottom};
   }
   return layers;
@@ -72,15 +72,15 @@ std::vector<double> AirMass(std::size_t record) {
 std::vector<double> PathInFile(const char* name, std::size_t record,
                                const std::vector<double>& air_mass) {
   const auto q = Raw(name, record, kLevels);
-  std::vector<double> path(kColumns, 0.0);
-  for (std::size_t i = 0; i < q.size(); ++i) path[i % kColumns] += q[i] * air_mass[i];
+  std::vector<double> path(kSampleColumns, 0.0);
+  for (std::size_t i = 0; i < q.size(); ++i) path[i % kSampleColumns] += q[i] * air_mass[i];
   return path;
 }
 
 std::vector<double> PathOnGrid(const HydrometeorFields& fields, const HydrometeorField& field) {
-  std::vector<double> path(kColumns, 0.0);
+  std::vector<double> path(kSampleColumns, 0.0);
   for (std::size_t i = 0; i < field.concentration_kg_per_m3.size(); ++i) {
-    path[i % kColumns] += field.concentration_kg_per_m3[i] * fields.grid.spacing_m.z;
+    path[i % kSampleColumns] += field.concentration_kg_per_m3[i] * fields.grid.spacing_m.z;
   }
   return path;
 }
@@ -120,7 +120,7 @@ TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
       const std::vector<double> actual = PathOnGrid(*fields, field);
       double worst = 0.0;
       double total = 0.0;
-      for (std::size_t i = 0; i < kColumns; ++i) {
+      for (std::size_t i = 0; i < kSampleColumns; ++i) {
         // Below this a column holds nothing but the tails of denormals.
         constexpr double kNothing_kg_per_m2 = 1e-30;
         worst = std::max(
@@ -129,7 +129,7 @@ TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
       }
       EXPECT_LT(worst, 3e-5) << field.variable << " at record " << record;
       EXPECT_GT(total, 0.0);
-      EXPECT_NEAR(field.statistics.mean_water_path_kg_per_m2 / (total / kColumns), 1.0, 1e-5);
+      EXPECT_NEAR(field.statistics.mean_water_path_kg_per_m2 / (total / kSampleColumns), 1.0, 1e-5);
       EXPECT_NEAR(field.statistics.maximum_water_path_kg_per_m2 /
                       *std::max_element(expected.begin(), expected.end()),
                   1.0, 1e-5);
@@ -171,11 +171,11 @@ TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
     EXPECT_EQ(field.sizes.origin, SizeOrigin::kScheme);
     EXPECT_EQ(field.sizes.name, "WSM6");
     const auto q = Raw(field.variable.c_str(), kRecord, kLevels);
-    std::vector<double> expected(kColumns, 0.0);
+    std::vector<double> expected(kSampleColumns, 0.0);
     for (std::size_t i = 0; i < q.size(); ++i) {
       const Layer& layer = layers[i];
       if (q[i] <= 0.0F) continue;
-      expected[i % kColumns] +=
+      expected[i % kSampleColumns] +=
           layer.thickness *
           Wsm6Extinction_per_m(field.variable, layer.density * q[i], layer.temperature);
     }
@@ -183,11 +183,11 @@ TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
     const auto mass_extinction = MassExtinctionOf(field, physics::DefaultOptics(field.hydrometeor),
                                                   physics::SizeSource::kModel);
     AddExtinction(field, mass_extinction, 0, extinction.size(), extinction.data());
-    std::vector<double> actual(kColumns, 0.0);
+    std::vector<double> actual(kSampleColumns, 0.0);
     for (std::size_t i = 0; i < extinction.size(); ++i) {
-      actual[i % kColumns] += extinction[i] * fields->grid.spacing_m.z;
+      actual[i % kSampleColumns] += extinction[i] * fields->grid.spacing_m.z;
     }
-    for (std::size_t i = 0; i < kColumns; ++i) {
+    for (std::size_t i = 0; i < kSampleColumns; ++i) {
       // Below this a column holds nothing but traces.
       if (expected[i] < 1e-3) continue;
       ASSERT_NEAR(actual[i] / expected[i], 1.0, 1e-3) << field.variable << " " << i;
@@ -206,11 +206,11 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
   ASSERT_EQ(map.size_px, glm::ivec2(kNx, kNy));
   const std::vector<double> air_mass = AirMass(kRecord);
   const std::vector<Layer> layers = LayersOf(kRecord);
-  std::vector<double> all(kColumns, 0.0);
+  std::vector<double> all(kSampleColumns, 0.0);
   for (const FieldPeak& peak : map.peaks) {
     const std::string& variable = fields->fields[peak.index].variable;
     const std::vector<double> path = PathInFile(variable.c_str(), kRecord, air_mass);
-    for (std::size_t i = 0; i < kColumns; ++i) all[i] += path[i];
+    for (std::size_t i = 0; i < kSampleColumns; ++i) all[i] += path[i];
     const auto at = static_cast<int>(std::ranges::max_element(path) - path.begin());
     const glm::dvec2 column_m((at % kNx - kNx / 2 + 0.5) * 1000.0,
                               (at / kNx - kNy / 2 + 0.5) * 1000.0);
@@ -227,7 +227,7 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
     double water = 0.0;
     double air = 0.0;
     double bottom_m = 0.0;
-    for (std::size_t i = peak_column; i < q.size(); i += kColumns) {
+    for (std::size_t i = peak_column; i < q.size(); i += kSampleColumns) {
       const double top_m = bottom_m + layers[i].thickness;
       const double shared_m = std::min(top_m, peak.position_m.z + cell_m / 2.0) -
                               std::max(bottom_m, peak.position_m.z - cell_m / 2.0);
@@ -252,16 +252,16 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
     const auto largest = static_cast<std::size_t>(std::ranges::max_element(q) - q.begin());
     EXPECT_NEAR(peak.value / q[largest], 0.97, 0.05) << variable;
     double height_m = 0.0;
-    for (std::size_t i = largest % kColumns; i < largest; i += kColumns) {
+    for (std::size_t i = largest % kSampleColumns; i < largest; i += kSampleColumns) {
       height_m += layers[i].thickness;
     }
     height_m += layers[largest].thickness / 2.0;
-    const auto column = static_cast<int>(largest % kColumns);
+    const auto column = static_cast<int>(largest % kSampleColumns);
     EXPECT_EQ(peak.position_m.x, (column % kNx - kNx / 2 + 0.5) * 1000.0) << variable;
     EXPECT_EQ(peak.position_m.y, (column / kNx - kNy / 2 + 0.5) * 1000.0) << variable;
     EXPECT_NEAR(peak.position_m.z, height_m, fields->grid.spacing_m.z) << variable;
   }
-  for (std::size_t i = 0; i < kColumns; ++i) {
+  for (std::size_t i = 0; i < kSampleColumns; ++i) {
     if (all[i] <= 1e-6) continue;
     ASSERT_NEAR(map.values[i] / all[i], 1.0, 3e-5) << i;
   }
@@ -280,9 +280,9 @@ TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
   double worst = 0.0;
   double squares = 0.0;
   std::size_t count = 0;
-  for (std::size_t column = 0; column < kColumns; column += 7) {
+  for (std::size_t column = 0; column < kSampleColumns; column += 7) {
     double bottom_m = 0.0;
-    for (std::size_t i = column; i < layers.size(); i += kColumns) {
+    for (std::size_t i = column; i < layers.size(); i += kSampleColumns) {
       const double middle_m = bottom_m + layers[i].thickness / 2.0;
       bottom_m += layers[i].thickness;
       const auto z =
@@ -338,12 +338,12 @@ TEST(SampleStorm, LiesOnOneGridThatIsCentredAndSmall) {
   EXPECT_GT(grid.HighCorner_m().z, 19'900.0);
   EXPECT_LT(grid.HighCorner_m().z, 20'900.0);
   EXPECT_THAT((*first)->terrain_height_m, ::testing::Each(0.0F));
-  EXPECT_EQ((*first)->terrain_height_m.size(), kColumns);
+  EXPECT_EQ((*first)->terrain_height_m.size(), kSampleColumns);
   for (int time = 0; time < 4; ++time) {
     const auto fields = (*store)->Get("supercell", time, {});
     ASSERT_TRUE(fields.ok()) << fields.status();
     EXPECT_EQ((*fields)->grid, grid);
-    constexpr std::size_t kRawBytes = 5 * kLevels * kColumns * sizeof(float);
+    constexpr std::size_t kRawBytes = 5 * kLevels * kSampleColumns * sizeof(float);
     std::size_t size_bytes = 0;
     for (const HydrometeorField& field : (*fields)->fields) {
       size_bytes += field.sizes.inverse_radius.size() * sizeof(std::uint16_t);
@@ -365,7 +365,7 @@ TEST(SampleStorm, BoxesItsCondensateTightly) {
   for (const HydrometeorField& field : fields->fields) {
     for (std::size_t i = 0; i < field.concentration_kg_per_m3.size(); ++i) {
       if (field.concentration_kg_per_m3[i] == 0.0F) continue;
-      const glm::ivec3 cell(i % kNx, i / kNx % kNy, i / kColumns);
+      const glm::ivec3 cell(i % kNx, i / kNx % kNy, i / kSampleColumns);
       low = glm::min(low, cell);
       high = glm::max(high, cell + 1);
     }
