@@ -51,10 +51,11 @@ absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
 
 absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
                                  std::shared_ptr<const DrawnPicture> picture) const {
+  const std::string path = PathOf(job_id, place, picture->extension);
   return calls_->Ask(
       path_,
       [folder = path_, job = absl::StrCat(path_, "/", job_id),
-       about_path = AboutPathOf(job_id, place), path = PathOf(job_id, place, picture->extension),
+       about_path = AboutPathOf(job_id, place), path,
        picture = std::move(picture)]() -> absl::Status {
         const base::SlowCall slow(folder);
         std::error_code error;
