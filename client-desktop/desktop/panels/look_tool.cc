@@ -129,6 +129,7 @@ void LookTool(Ui& ui) {
   Setting(ui, "ground.cover", "Ground");
   Setting(ui, "sky.ground_albedo", "Albedo of the ground");
   Setting(ui, "display.white_balance", "White balance");
+  ImGui::SameLine();
   Setting(ui, "ground.borders", "Coasts and borders");
   Setting(ui, "ground.rings", "Rings every 10 km");
   DrawGoal(ui);
