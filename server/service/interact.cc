@@ -324,7 +324,7 @@ class InteractCall : public InteractReactor,
       if (!joined.ok()) caller_->Report("Interact/join", joined);
       return joined;
     }
-    if (const absl::Status unknown = caller_->StillKnown(); !unknown.ok()) {
+    if (absl::Status unknown = caller_->StillKnown(); !unknown.ok()) {
       caller_->Report("Interact", unknown);
       return unknown;
     }

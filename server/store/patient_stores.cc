@@ -46,7 +46,7 @@ class Patient {
   // `call` must own all that it uses but the store.
   template <typename Call>
   absl::Status Do(Call call) const {
-    const absl::Status done = calls_->Ask(folder_, [store = store_, folder = folder_, call] {
+    absl::Status done = calls_->Ask(folder_, [store = store_, folder = folder_, call] {
       const base::SlowCall slow(folder);
       return call(*store);
     });
