@@ -11,24 +11,27 @@ namespace {
 // People leave one after another.
 constexpr std::chrono::seconds kStreamRetry{10};
 
+absl::Status TooMany(std::size_t maximum, const std::string& message, const char* reason,
+                     const char* unit) {
+  return base::WithDetails(absl::ResourceExhaustedError(message),
+                           {.reason = reason,
+                            .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", unit}},
+                            .retry_after = kStreamRetry});
+}
+
 absl::Status TooManyStreams(std::size_t maximum, const char* whose) {
-  return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat(whose, " ", maximum,
-                                                " open calls, which is the maximum; end one, or "
-                                                "try again later")),
-      {.reason = "TOO_MANY_STREAMS",
-       .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", "streams"}},
-       .retry_after = kStreamRetry});
+  return TooMany(maximum,
+                 absl::StrCat(whose, " ", maximum,
+                              " open calls, which is the maximum; end one, or try again later"),
+                 "TOO_MANY_STREAMS", "streams");
 }
 
 absl::Status TooManyAnswers(std::size_t maximum, const char* whose) {
-  return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat(whose, " ", maximum,
-                                                " answers that were not taken yet, which is the "
-                                                "maximum; take one, or try again later")),
-      {.reason = "ANSWERS_NOT_TAKEN",
-       .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", "answers"}},
-       .retry_after = kStreamRetry});
+  return TooMany(maximum,
+                 absl::StrCat(whose, " ", maximum,
+                              " answers that were not taken yet, which is the maximum; take one, "
+                              "or try again later"),
+                 "ANSWERS_NOT_TAKEN", "answers");
 }
 
 // OK where none has to be waited for.
@@ -63,12 +66,12 @@ absl::StatusOr<std::shared_ptr<const void>> Quotas::TakeAnswer(const std::string
 }
 
 absl::StatusOr<std::shared_ptr<const void>> Quotas::Take(const std::string& identity, Count& count,
-                                                         TooMany too_many) {
+                                                         Refusal refusal) {
   const std::lock_guard lock(mutex_);
-  if (count.all >= limits_.max_streams) return too_many(limits_.max_streams, "the server has");
+  if (count.all >= limits_.max_streams) return refusal(limits_.max_streams, "the server has");
   std::size_t& own = count.by_identity[identity];
   if (own >= limits_.max_streams_per_identity) {
-    return too_many(limits_.max_streams_per_identity, "you have");
+    return refusal(limits_.max_streams_per_identity, "you have");
   }
   ++own;
   ++count.all;

@@ -65,10 +65,10 @@ class Quotas {
     std::size_t all = 0;
     std::map<std::string, std::size_t> by_identity;
   };
-  using TooMany = absl::Status (*)(std::size_t maximum, const char* whose);
+  using Refusal = absl::Status (*)(std::size_t maximum, const char* whose);
 
   absl::StatusOr<std::shared_ptr<const void>> Take(const std::string& identity, Count& count,
-                                                   TooMany too_many);
+                                                   Refusal refusal);
   void GiveBack(const std::string& identity, Count& count);
 
   const QuotaLimits limits_;

@@ -1,4 +1,4 @@
-// What measuring a scene's pictures has told of the tables' errors. A plain value.
+// Corrections of the tables' errors, by what was measured on a scene's pictures. A plain value.
 #pragma once
 
 #include <vector>

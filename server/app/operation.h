@@ -55,7 +55,7 @@ class Operation {
   Operation(const Operation&) = delete;
   Operation& operator=(const Operation&) = delete;
 
-  // What a server uses; each may be null.
+  // Memory and storage that a server uses; each may be null.
   struct Resources {
     std::shared_ptr<const base::MemoryBudget> memory;
     std::shared_ptr<const base::MemoryBudget> gpu_memory;

@@ -18,7 +18,7 @@ class AcceptLoop {
   // Takes over `connection`, which does not block; on the loop's thread.
   using Take = std::function<void(base::FileDescriptor connection)>;
 
-  // What else the loop's thread does, that often at least.
+  // Another task of the loop's thread, run at least that often.
   struct Chore {
     std::chrono::milliseconds pause;
     std::function<void()> run;

@@ -15,7 +15,7 @@ struct Limits {
   // Of gRPC's port, in all and from one address (trusted proxies have no limit of their own).
   std::size_t max_connections = 768;
   std::size_t max_connections_per_address = 512;
-  // That begin TLS, a second; twice as many at once. 0: no limit.
+  // TLS handshakes a second from one address; twice as many at once. 0: no limit.
   double max_handshakes_per_address = 256.0;
   // By Interact and by WatchFrames each; presenters are let in beyond it.
   std::size_t max_viewers_per_session = 256;

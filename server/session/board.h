@@ -66,7 +66,7 @@ class Board {
   // Those of other domains, too.
   const std::vector<Mark>& marks() const { return marks_; }
   std::vector<Mark> MarksShown() const;
-  // What has happened to the marks shown since the last call.
+  // The marks shown that were drawn or erased since the last call.
   MarksChange TakeMarksChange();
   // The largest id of those who drew them; 0 without marks.
   std::uint64_t LastPerson() const;

@@ -65,9 +65,8 @@ bool DecidedSetting::DecideAnew(const NewestScene& asked) {
 
 bool DecidedSetting::Measured(const accuracy::MeasuredError& error, const NewestScene& asked) {
   if (scene_ == nullptr || refuted_ >= kMaxRefuted) return false;
-  if (!offers_.Refutes(*scene_, accuracy::SettingOf(*scene_), error, &measured_) ||
-      !DecideAnew(asked))
-    return false;
+  const accuracy::Setting drawn = accuracy::SettingOf(*scene_);
+  if (!offers_.Refutes(*scene_, drawn, error, &measured_) || !DecideAnew(asked)) return false;
   settled_ = false;
   ++refuted_;
   return true;

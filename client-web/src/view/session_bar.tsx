@@ -106,7 +106,7 @@ function whoSteers(session: SessionState): string {
     : `Waiting for ${session.nameOf(awaited)} to come back`;
 }
 
-// What becomes of control meanwhile.
+// Words on what happens while control waits for somebody; undefined where it waits for nobody.
 function whyWaiting(session: SessionState): string | undefined {
   if (session.awaited.value === undefined) return undefined;
   const who = "Whoever steered and has left or lost the connection has some seconds to come back.";

@@ -248,6 +248,23 @@ class UnwrittenPictures : public ::testing::Test {
     return created.get_future().get();
   }
 
+  // The first result of a job hangs as it is written. Gives the job's id, and the pipe whose reader
+  // lets it go on.
+  void HangFirstResult(std::string& id, std::string& pipe) {
+    patience_ = std::chrono::milliseconds(200);
+    Open();
+    may_take_ = false;
+    id = Create(1);
+    ASSERT_TRUE(Await([this] { return begun_ > 0; }));
+    // A pipe that nobody reads hangs as it is opened, once.
+    pipe = results_ + "/" + id + "/000000.about.partial";
+    std::filesystem::create_directory(results_ + "/" + id);
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    may_take_ = true;
+    may_take_.notify_all();
+    ASSERT_TRUE(Await([this] { return jobs_->Load().stalled_s > 0.3; }));
+  }
+
   template <typename Condition>
   static bool Await(const Condition& condition) {
     for (int i = 0; i < 4000 && !condition(); ++i) {
@@ -309,18 +326,9 @@ TEST_F(UnwrittenPictures, OfOneJobWhoseFolderIsSomebodyElsesHoldUpNoOtherJob) {
 }
 
 TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
-  patience_ = std::chrono::milliseconds(200);
-  Open();
-  may_take_ = false;
-  const std::string id = Create(1);
-  ASSERT_TRUE(Await([this] { return begun_ > 0; }));
-  // A pipe that nobody reads hangs as it is opened, once.
-  const std::string pipe = results_ + "/" + id + "/000000.about.partial";
-  std::filesystem::create_directory(results_ + "/" + id);
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  may_take_ = true;
-  may_take_.notify_all();
-  ASSERT_TRUE(Await([this] { return jobs_->Load().stalled_s > 0.3; }));
+  std::string id;
+  std::string pipe;
+  ASSERT_NO_FATAL_FAILURE(HangFirstResult(id, pipe));
   EXPECT_FALSE(Create(1).empty()) << "the job's record is another matter";
   std::promise<bool> forgotten;
   jobs_->Cancel(id, {.name = "night"}, true,
@@ -336,17 +344,9 @@ TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
 }
 
 TEST_F(UnwrittenPictures, OfAFolderThatHangsAreLeftBehindAtTheEnd) {
-  patience_ = std::chrono::milliseconds(200);
-  Open();
-  may_take_ = false;
-  const std::string id = Create(1);
-  ASSERT_TRUE(Await([this] { return begun_ > 0; }));
-  const std::string pipe = results_ + "/" + id + "/000000.about.partial";
-  std::filesystem::create_directory(results_ + "/" + id);
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  may_take_ = true;
-  may_take_.notify_all();
-  ASSERT_TRUE(Await([this] { return jobs_->Load().stalled_s > 0.3; }));
+  std::string id;
+  std::string pipe;
+  ASSERT_NO_FATAL_FAILURE(HangFirstResult(id, pipe));
   const base::Stopwatch ending;
   jobs_.reset();
   EXPECT_LT(ending.ElapsedMs(), 5000.0);
