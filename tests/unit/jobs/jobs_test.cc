@@ -1,6 +1,7 @@
 #include "jobs/jobs.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -350,7 +351,10 @@ TEST_F(UnwrittenPictures, OfAFolderThatHangsAreLeftBehindAtTheEnd) {
   const base::Stopwatch ending;
   jobs_.reset();
   EXPECT_LT(ending.ElapsedMs(), 5000.0);
-  const base::FileDescriptor reader(open(pipe.c_str(), O_RDWR | O_NONBLOCK));
+  // The thread that was left behind writes and closes the pipe, or it would write to no reader.
+  const base::FileDescriptor reader(open(pipe.c_str(), O_RDONLY | O_NONBLOCK));
+  pollfd written = {.fd = reader.Get(), .events = 0, .revents = 0};
+  EXPECT_EQ(poll(&written, 1, 20000), 1);
 }
 
 }  // namespace
