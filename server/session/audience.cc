@@ -134,9 +134,10 @@ absl::Status Audience::Point(std::uint64_t id, const std::optional<Ray>& ray, Ti
   return absl::OkStatus();
 }
 
-void Audience::RestoreFreeControl() {
-  const std::lock_guard lock(mutex_);
-  roster_.RestoreFreeControl();
+void Audience::RestoreControl(const KeptControl& kept, Time now) {
+  std::unique_lock lock(mutex_);
+  roster_.RestoreControl(kept, now);
+  Settle(std::move(lock), now);
 }
 
 void Audience::SceneChanged(std::uint64_t revision, const std::optional<std::string>& domain,
@@ -172,9 +173,9 @@ Rules Audience::CurrentRules() const {
   return roster_.rules();
 }
 
-bool Audience::ControlIsFree() const {
+KeptControl Audience::ControlToKeep() const {
   const std::lock_guard lock(mutex_);
-  return roster_.control_is_free();
+  return roster_.ControlToKeep();
 }
 
 std::uint64_t Audience::MarksRevision() const {

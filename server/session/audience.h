@@ -100,8 +100,8 @@ class Audience {
   // it goes.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
 
-  // Control is free, as it was before the server started again; called before anybody has joined.
-  void RestoreFreeControl();
+  // Control is as it was before the server started again; called before anybody has joined.
+  void RestoreControl(const KeptControl& kept, Time now);
   // The session shows a scene of that revision, which everybody is to be sent, and a storm of that
   // domain; absent: of the one before, as far as is known.
   void SceneChanged(std::uint64_t revision, const std::optional<std::string>& domain, Time now);
@@ -113,7 +113,7 @@ class Audience {
   // Copies.
   Board Drawn() const;
   Rules CurrentRules() const;
-  bool ControlIsFree() const;
+  KeptControl ControlToKeep() const;
   std::uint64_t MarksRevision() const;
   absl::Status MaySteer(std::uint64_t id) const;
   absl::Status PresenterMaySteer() const;

@@ -28,6 +28,26 @@ std::string NameOf(const Person& person) {
 
 }  // namespace
 
+void Roster::RestoreControl(const KeptControl& kept, Time now) {
+  if (kept.is_free) return Free();
+  if (kept.viewer_key.empty()) return;
+  away_since_.reset();
+  count_ = std::max(count_, kept.viewer_id);
+  awaited_ = {.left = {.id = kept.viewer_id,
+                       .name = kept.viewer_name,
+                       .role = Role::kViewer,
+                       .key = kept.viewer_key},
+              .left_at = now,
+              .until = now + timeouts_.come_back_to_new_server};
+}
+
+KeptControl Roster::ControlToKeep() const {
+  if (control_is_free()) return {.is_free = true};
+  const Person* const steers = awaited_.has_value() ? &awaited_->left : Find(steering_);
+  if (steers == nullptr || steers->role != Role::kViewer || steers->key.empty()) return {};
+  return {.viewer_key = steers->key, .viewer_name = steers->name, .viewer_id = steers->id};
+}
+
 std::uint64_t Roster::Join(Role role, std::string name, Time now, std::string key, bool answers) {
   ++revision_;
   std::erase_if(asked_and_left_, [&](const auto& asked) {
@@ -75,7 +95,7 @@ void Roster::Leave(std::uint64_t id, Time now) {
   if (heir != nullptr) return Give(*heir);
   if (left.key.empty()) return GiveBack(now);
   steering_ = 0;
-  awaited_ = {left, now};
+  awaited_ = {.left = left, .left_at = now, .until = now + timeouts_.come_back};
 }
 
 void Roster::Heard(std::uint64_t id) {
@@ -255,7 +275,7 @@ std::vector<std::uint64_t> Roster::Advance(Time now) {
     if (person.doubted_at.has_value() && now >= DoubtEnds(person)) silent.push_back(person.id);
   }
   for (const std::uint64_t id : silent) Leave(id, now);
-  if (awaited_.has_value() && now >= awaited_->left_at + timeouts_.come_back) {
+  if (awaited_.has_value() && now >= awaited_->until) {
     GiveBack(awaited_->left_at);
     ++revision_;
   }
@@ -282,7 +302,7 @@ std::optional<Roster::Time> Roster::NextDeadline() const {
   std::optional<Time> next;
   const auto wait_for = [&](Time time) { next = std::min(next.value_or(time), time); };
   if (FreesWhenAway()) wait_for(*away_since_ + timeouts_.away);
-  if (awaited_.has_value()) wait_for(awaited_->left_at + timeouts_.come_back);
+  if (awaited_.has_value()) wait_for(awaited_->until);
   for (const Person& person : people_) {
     if (person.asks) wait_for(*person.asked_at + timeouts_.answer);
     if (person.doubted_at.has_value()) wait_for(DoubtEnds(person));

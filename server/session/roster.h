@@ -55,6 +55,17 @@ struct Person {
   bool operator==(const Person&) const = default;
 };
 
+// Whose control is, as far as it outlives the server: a viewer's, kept for the presenters, or free.
+struct KeptControl {
+  bool is_free = false;
+  // Of the viewer who steers, or for whom control waits. Without a key: nobody.
+  std::string viewer_key;
+  std::string viewer_name;
+  std::uint64_t viewer_id = 0;
+
+  bool operator==(const KeptControl&) const = default;
+};
+
 // How long people wait for one another.
 struct RosterTimeouts {
   std::chrono::milliseconds answer = std::chrono::seconds(20);    // to a request for control
@@ -62,6 +73,8 @@ struct RosterTimeouts {
   std::chrono::milliseconds away = std::chrono::seconds(60);      // until control becomes free
   // For how long control waits for a person whose connection was lost, before others get it.
   std::chrono::milliseconds come_back = std::chrono::seconds(10);
+  // The same from when the server started again: clients that found none wait longer each time.
+  std::chrono::milliseconds come_back_to_new_server = std::chrono::seconds(30);
   // In which a person whose connection is doubted must answer: from when the question was sent on,
   // and in all, since it may wait behind a large picture on a slow link.
   std::chrono::milliseconds sign_of_life = std::chrono::seconds(3);
@@ -78,8 +91,10 @@ class Roster {
          const RosterTimeouts& timeouts = {})
       : timeouts_(timeouts), rules_(rules), away_since_(now), count_(last_id) {}
 
-  // Control is free, as it was before the server started again.
-  void RestoreFreeControl() { Free(); }
+  // Before anybody joins: control is as it was before the server started again. It waits for the
+  // viewer who steered.
+  void RestoreControl(const KeptControl& kept, Time now);
+  KeptControl ControlToKeep() const;
 
   // Adds a person and returns their id. A person with the key and role of somebody whose connection
   // was lost is taken for them: they steer again if control waits for them, and if the other was
@@ -153,6 +168,7 @@ class Roster {
   struct Awaited {
     Person left;
     Time left_at;
+    Time until;
   };
   // A request for control by one who has left.
   struct Request {

@@ -24,7 +24,7 @@ struct SessionRecord {
   SessionKeys keys;
   std::string owner;  // the identity that opened it; empty: nobody's
   Rules rules;
-  bool control_is_free = false;  // else it is kept for the presenters
+  KeptControl control;
   std::string scene;             // as the service serialized it; opaque here
   std::uint64_t scene_revision = 0;
   std::vector<Mark> marks;

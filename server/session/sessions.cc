@@ -135,7 +135,7 @@ bool Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
 
 void Session::ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized,
                            const std::optional<std::string>& domain) {
-  if (record.control_is_free) audience_.RestoreFreeControl();
+  audience_.RestoreControl(record.control, Clock::now());
   {
     const std::lock_guard lock(mutex_);
     revision_count_ = record.scene_revision + kUnsavedRevisions - 1;
@@ -173,7 +173,7 @@ Clock::time_point Session::UsedUntil() const { return IsWatched() ? Clock::now()
 SessionVersion Session::Version() const {
   const std::optional<NewestScene> newest = Newest();
   return {newest.has_value() ? newest->revision : 0, audience_.MarksRevision(),
-          audience_.CurrentRules(), audience_.ControlIsFree()};
+          audience_.CurrentRules(), audience_.ControlToKeep()};
 }
 
 SessionRecord Session::Record() const {
@@ -181,7 +181,7 @@ SessionRecord Session::Record() const {
                        .keys = keys_,
                        .owner = owner_,
                        .rules = audience_.CurrentRules(),
-                       .control_is_free = audience_.ControlIsFree()};
+                       .control = audience_.ControlToKeep()};
   if (const std::optional<NewestScene> newest = Newest(); newest.has_value()) {
     record.scene = *newest->serialized;
     record.scene_revision = newest->revision;

@@ -44,7 +44,7 @@ struct SessionVersion {
   std::uint64_t scene_revision = 0;  // 0: it has no scene yet
   std::uint64_t marks_revision = 0;
   Rules rules;
-  bool control_is_free = false;
+  KeptControl control;
 
   bool operator==(const SessionVersion&) const = default;
 };

@@ -78,6 +78,12 @@ constexpr std::array kSteps = {R"(
                                R"(
   -- As owner_keys: the domain of the storm that it lies on, or nothing.
   ALTER TABLE marks ADD COLUMN domains TEXT NOT NULL DEFAULT '';
+)",
+                               R"(
+  -- Of the viewer who steers, or nothing.
+  ALTER TABLE sessions ADD COLUMN steering_key TEXT NOT NULL DEFAULT '';
+  ALTER TABLE sessions ADD COLUMN steering_name TEXT NOT NULL DEFAULT '';
+  ALTER TABLE sessions ADD COLUMN steering_id INTEGER NOT NULL DEFAULT 0;
 )"};
 
 absl::Status CheckOrigin(Database& database, const std::string& path) {

@@ -22,14 +22,16 @@ using session::SessionRecord;
 constexpr char kSaveSession[] =
     "INSERT INTO sessions (id, presenter_key, viewer_key, viewers_may_steer, control_locked, "
     "following_locked, viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, "
-    "owner, control_is_free) "
-    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
+    "owner, control_is_free, steering_key, steering_name, steering_id) "
+    "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET "
     "presenter_key = excluded.presenter_key, viewer_key = excluded.viewer_key, "
     "viewers_may_steer = excluded.viewers_may_steer, control_locked = excluded.control_locked, "
     "following_locked = excluded.following_locked, viewers_may_mark = excluded.viewers_may_mark, "
     "free_when_away = excluded.free_when_away, scene = excluded.scene, "
     "scene_revision = excluded.scene_revision, last_used_ms = excluded.last_used_ms, "
-    "owner = excluded.owner, control_is_free = excluded.control_is_free";
+    "owner = excluded.owner, control_is_free = excluded.control_is_free, "
+    "steering_key = excluded.steering_key, steering_name = excluded.steering_name, "
+    "steering_id = excluded.steering_id";
 // Written only when they have changed.
 constexpr char kSaveMarks[] =
     "INSERT INTO marks (session_id, marks, owner_keys, domains) VALUES (?, ?, ?, ?) "
@@ -40,7 +42,7 @@ constexpr char kSaveMarks[] =
 constexpr char kLoad[] =
     "SELECT id, presenter_key, viewer_key, viewers_may_steer, control_locked, following_locked, "
     "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks, owner_keys, "
-    "owner, control_is_free, domains "
+    "owner, control_is_free, domains, steering_key, steering_name, steering_id "
     "FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
 
@@ -75,7 +77,10 @@ SessionRecord RecordOf(const Statement& row) {
   record.scene_revision = static_cast<std::uint64_t>(row.Number(9));
   record.last_used = TimeOf(row.Number(10));
   record.owner = row.Bytes(13);
-  record.control_is_free = row.Number(14) != 0;
+  record.control = {.is_free = row.Number(14) != 0,
+                    .viewer_key = row.Bytes(16),
+                    .viewer_name = row.Bytes(17),
+                    .viewer_id = static_cast<std::uint64_t>(row.Number(18))};
   return record;
 }
 
@@ -148,7 +153,10 @@ class OpenSessionStore final : public SqliteSessionStore {
     save.Bind(10, static_cast<std::int64_t>(record.scene_revision));
     save.Bind(11, MillisecondsOf(record.last_used));
     save.Bind(12, record.owner);
-    save.Bind(13, std::int64_t{record.control_is_free});
+    save.Bind(13, std::int64_t{record.control.is_free});
+    save.Bind(14, record.control.viewer_key);
+    save.Bind(15, record.control.viewer_name);
+    save.Bind(16, static_cast<std::int64_t>(record.control.viewer_id));
   }
 
   const std::shared_ptr<StateFile> file_;

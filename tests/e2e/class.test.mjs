@@ -789,6 +789,24 @@ test("the server is killed and comes back: teacher and student have their sessio
   assert.equal(await exposure(student).inputValue(), "0.1");
 });
 
+test("the server is killed while a student steers, who steers again", async () => {
+  await student.getByTestId("ask-control").click();
+  await teacher.getByTestId("asks-give").click();
+  await until("who steers", async () => steers(student));
+  // Kept at most half a second later.
+  await student.waitForTimeout(1200);
+  await server.stop("SIGKILL");
+  for (const page of [teacher, student])
+    await page.getByTestId("connection-lost").waitFor({ timeout: 20_000 });
+  server = await startServer(serverFlags);
+  for (const page of [teacher, student])
+    await page.getByTestId("connection-lost").waitFor({ state: "detached", timeout: 30_000 });
+  await until("who steers", async () => (await steers(student)) && !(await steers(teacher)));
+  await changing(() => setNumber(student, "exposure", 0.4), student);
+  await inStep();
+  assert.equal(await exposure(teacher).inputValue(), "0.4");
+});
+
 test("the teacher ends the session for everybody", async () => {
   await teacher.getByTestId("share").click();
   await teacher.getByTestId("end-session").click();

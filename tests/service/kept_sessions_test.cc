@@ -203,7 +203,7 @@ TEST_F(KeptSessionsTest, ControlThatWasLetGoIsFreeInTheNextServer) {
     presenter.AwaitNewest(Response::kJoined);
     presenter.Send(lets_go);
     ASSERT_TRUE(
-        store_->Await([](const auto& records) { return records.begin()->second.control_is_free; }));
+        store_->Await([](const auto& records) { return records.begin()->second.control.is_free; }));
   }
   Start();
   Interacting viewer(service_->stub(), created.viewer_key());
@@ -215,7 +215,33 @@ TEST_F(KeptSessionsTest, ControlThatWasLetGoIsFreeInTheNextServer) {
     return presence.steering_viewer_id() == viewer.viewer_id();
   }));
   EXPECT_TRUE(
-      store_->Await([](const auto& records) { return !records.begin()->second.control_is_free; }));
+      store_->Await([](const auto& records) { return !records.begin()->second.control.is_free; }));
+}
+
+TEST_F(KeptSessionsTest, AViewerWhoSteeredSteersAgainInTheNextServer) {
+  const auto created = Create();
+  std::string key;
+  {
+    Interacting presenter(service_->stub(), created.session_id());
+    Interacting ana(service_->stub(), created.viewer_key(), {.name = "Ana"});
+    ana.AwaitNewest(Response::kJoined);
+    key = ana.participant_key();
+    v1::InteractRequest gives;
+    gives.mutable_give_control()->set_viewer_id(ana.viewer_id());
+    presenter.AwaitNewest(Response::kJoined);
+    presenter.Send(gives);
+    ASSERT_TRUE(store_->Await(
+        [&](const auto& records) { return records.begin()->second.control.viewer_key == key; }));
+  }
+  Start();
+  Interacting presenter(service_->stub(), created.session_id());
+  EXPECT_TRUE(presenter.AwaitPresence([](const v1::Presence& presence) {
+    return presence.steering_viewer_id() == 0 && presence.awaited().name() == "Ana";
+  }));
+  Interacting ana(service_->stub(), created.viewer_key(), {.name = "Ana", .participant_key = key});
+  EXPECT_TRUE(presenter.AwaitPresence([&](const v1::Presence& presence) {
+    return presence.steering_viewer_id() == ana.viewer_id() && !presence.has_awaited();
+  }));
 }
 
 // Whoever opened them has no more than before.

@@ -334,7 +334,7 @@ TEST(RosterTest, AViewerWhoSteersAndReconnectsSteersAgain) {
 
 TEST(RosterTest, ControlOfAViewerWhoStaysAwayIsKeptForAPresenterWhoIsAwayToo) {
   Roster roster({.free_when_away = true}, kOpenedAt);
-  roster.RestoreFreeControl();
+  roster.RestoreControl({.is_free = true}, kOpenedAt);
   const std::uint64_t ana = roster.Join(Role::kViewer, "Ana", kOpenedAt, "ana");
   ASSERT_TRUE(roster.AskControl(ana, kOpenedAt).ok());
   roster.Leave(ana, kOpenedAt);
@@ -343,6 +343,34 @@ TEST(RosterTest, ControlOfAViewerWhoStaysAwayIsKeptForAPresenterWhoIsAwayToo) {
   EXPECT_EQ(roster.NextDeadline(), kOpenedAt + kTimeouts.away);
   roster.Advance(kOpenedAt + kTimeouts.away);
   EXPECT_TRUE(roster.control_is_free());
+}
+
+TEST(RosterTest, OnANewServerControlWaitsForTheViewerWhoSteered) {
+  ClassWithKeys group;
+  EXPECT_EQ(group.roster.ControlToKeep(), KeptControl()) << "a presenter's is any presenter's";
+  ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
+  const KeptControl kept = group.roster.ControlToKeep();
+  EXPECT_EQ(kept, (KeptControl{.viewer_key = "ana", .viewer_name = "Ana", .viewer_id = group.ana}));
+  group.roster.Leave(group.ana, kOpenedAt);
+  EXPECT_EQ(group.roster.ControlToKeep(), kept) << "while it waits for her";
+
+  Roster roster({}, kOpenedAt);
+  roster.RestoreControl(kept, kOpenedAt);
+  ASSERT_NE(roster.awaited(), nullptr);
+  EXPECT_EQ(roster.awaited()->name, "Ana");
+  EXPECT_FALSE(roster.presenter_away());
+  EXPECT_EQ(roster.ControlToKeep(), kept) << "if the server ends once more";
+  const std::uint64_t teacher = roster.Join(Role::kPresenter, "Teacher", kOpenedAt, "teacher");
+  EXPECT_GT(teacher, kept.viewer_id) << "else the one awaited would be the teacher";
+  EXPECT_EQ(roster.steering(), 0U);
+  const Roster::Time late = kOpenedAt + kTimeouts.come_back_to_new_server;
+  EXPECT_EQ(roster.NextDeadline(), late);
+  Roster waited = roster;
+  const std::uint64_t ana = roster.Join(Role::kViewer, "Ana", late - seconds(1), "ana");
+  EXPECT_EQ(roster.steering(), ana);
+  waited.Advance(late);
+  EXPECT_EQ(waited.steering(), teacher);
+  EXPECT_EQ(waited.awaited(), nullptr);
 }
 
 // As after a change of network: the server has not noticed yet that the first connection is lost.

@@ -113,6 +113,9 @@ TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
                          "DROP TABLE job_pictures; DROP TABLE jobs; "
                          "ALTER TABLE marks DROP COLUMN owner_keys; "
                          "ALTER TABLE marks DROP COLUMN domains; "
+                         "ALTER TABLE sessions DROP COLUMN steering_key; "
+                         "ALTER TABLE sessions DROP COLUMN steering_name; "
+                         "ALTER TABLE sessions DROP COLUMN steering_id; "
                          "ALTER TABLE sessions DROP COLUMN control_is_free; "
                          "ALTER TABLE sessions DROP COLUMN owner; PRAGMA user_version = 1",
                          nullptr, nullptr, nullptr),

@@ -34,7 +34,7 @@ SessionRecord SessionRecordOf(const std::string& id) {
                   .following_locked = false,
                   .viewers_may_mark = true,
                   .free_when_away = true};
-  record.control_is_free = true;
+  record.control = {.viewer_key = "another secret", .viewer_name = "Ana", .viewer_id = 11};
   record.scene = std::string("a\0scene\xff", 8);
   record.scene_revision = 1ULL << 40;
   record.marks = {
@@ -104,6 +104,7 @@ TEST_F(SqliteSessionStoreTest, TheNewestIsKeptAndTheRemovedIsGone) {
   changed.scene = "another";
   changed.scene_revision = 3;
   changed.rules = {};
+  changed.control = {.is_free = true};
   changed.marks.erase(changed.marks.begin());
   changed.last_used += std::chrono::hours(1);
   SessionRecord moved = SessionRecordOf("c");
@@ -123,13 +124,16 @@ TEST_F(SqliteSessionStoreTest, TheNewestIsKeptAndTheRemovedIsGone) {
 TEST_F(SqliteSessionStoreTest, MarksOfAFileWithoutOwnersComeBackWithoutThem) {
   ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
   Execute(path_,
+          "ALTER TABLE sessions DROP COLUMN steering_key; "
+          "ALTER TABLE sessions DROP COLUMN steering_name; "
+          "ALTER TABLE sessions DROP COLUMN steering_id; "
           "ALTER TABLE sessions DROP COLUMN control_is_free; "
           "ALTER TABLE sessions DROP COLUMN owner; ALTER TABLE marks DROP COLUMN owner_keys; "
           "ALTER TABLE marks DROP COLUMN domains; "
           "PRAGMA user_version = 2");
   SessionRecord without_owners = SessionRecordOf("a");
   without_owners.owner.clear();
-  without_owners.control_is_free = false;
+  without_owners.control = {};
   for (session::Mark& mark : without_owners.marks) {
     mark.owner_key.clear();
     mark.domain.clear();
@@ -203,12 +207,12 @@ TEST_F(SqliteSessionStoreTest, WhatWasSavedOutlivesAKilledProcess) {
 
 TEST_F(SqliteSessionStoreTest, ANewerVersionIsRefusedAndLeftAsItIs) {
   ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
-  Execute(path_, "PRAGMA user_version = 7");
+  Execute(path_, "PRAGMA user_version = 8");
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
-              HasSubstr("newer Thunderhead (version 7; this one knows 6)"));
-  Execute(path_, "PRAGMA user_version = 6");
+              HasSubstr("newer Thunderhead (version 8; this one knows 7)"));
+  Execute(path_, "PRAGMA user_version = 7");
   EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
 
