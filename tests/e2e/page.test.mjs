@@ -1,6 +1,7 @@
 // End-to-end test of the page: the real server, a real browser, the sample storm. Screenshots go to output/.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
+import { PNG } from "pngjs";
 import {
   canvasData as canvasDataOf,
   changing as changingOn,
@@ -638,6 +639,40 @@ test("a cloud is made to order and shown, and a bad one is named", async () => {
   await page.keyboard.press("Escape");
 });
 
+// Pixels of the marks' own colour in the middle of the window.
+async function inkInTheMiddle() {
+  const color = await page.getByTestId("mark").evaluate((mark) => getComputedStyle(mark).color);
+  const [red, green, blue] = color.match(/\d+/g).map(Number);
+  const { width, height } = page.viewportSize();
+  const clip = { x: width / 2 - 60, y: height / 2 - 60, width: 120, height: 120 };
+  const { data } = PNG.sync.read(await page.screenshot({ clip }));
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4)
+    if (data[at] === red && data[at + 1] === green && data[at + 2] === blue) count += 1;
+  return count;
+}
+
+// The storm of the marks lies left of the edge, one of another domain right of it; the mark is in the middle.
+async function comparesMarks() {
+  assert.ok((await inkInTheMiddle()) > 20, "the mark is not in the middle of the window");
+  await openPanel(page, "compare");
+  await page.getByTestId("compare-storm").selectOption("fair-weather-cumulus-3");
+  await page.keyboard.press("Escape");
+  const edge = page.getByTestId("swipe");
+  await edge.fill("20");
+  await until("a picture B without A's marks", async () => (await inkInTheMiddle()) === 0);
+  await edge.fill("80");
+  await until("a picture A with its marks", async () => (await inkInTheMiddle()) > 20);
+  await openPanel(page, "compare");
+  await page.getByTestId("compare-storm").selectOption("");
+  await page.keyboard.press("Escape");
+  await edge.fill("20");
+  await until("marks on another picture of the same storm", async () => (await inkInTheMiddle()) > 20);
+  await openPanel(page, "compare");
+  await page.getByTestId("compare-end").click();
+  await page.keyboard.press("Escape");
+}
+
 test("marks are gone while a storm of another domain is shown, and back with their own", async () => {
   const marksAre = (count) => until(`${count} marks`, async () => (await page.getByTestId("mark").count()) === count);
   const show = async (storm) => {
@@ -659,6 +694,7 @@ test("marks are gone while a storm of another domain is shown, and back with the
   await drawTo(2);
   await show("supercell");
   await marksAre(1);
+  await comparesMarks();
   await page.getByTestId("clear-marks").click();
   await marksAre(0);
   await show("fair-weather-cumulus-3");

@@ -10,15 +10,25 @@ import type { StrokePoint } from "../core/stroke";
 import type { Mark, Pointer } from "../gen/thunderhead/v1/interact_pb";
 import type { Position } from "../gen/thunderhead/v1/scene_pb";
 
-export function Overlay({ state, marking }: { state: PageState; marking: Marking }) {
+interface OverlayProps {
+  readonly state: PageState;
+  readonly marking: Marking;
+  // Of the window's width, from the left: where marks and pointers are shown.
+  readonly share: number;
+}
+
+export function Overlay({ state, marking, share }: OverlayProps) {
   const { session } = state;
   const box = state.pictureBox.value;
   const projection = state.frame.value?.projection;
   const stroke = marking.stroke.value;
   return (
     <svg class="overlay" data-testid="overlay" aria-hidden="true">
+      <clipPath id="shared-view">
+        <rect width={`${100 * share}%`} height="100%" />
+      </clipPath>
       {box !== undefined && projection !== undefined && (
-        <>
+        <g clip-path="url(#shared-view)" data-testid="shared-marks">
           {session.marks.value.map((mark) => (
             <MarkLine key={mark.markId} mark={mark} projection={projection} box={box} />
           ))}
@@ -39,7 +49,7 @@ export function Overlay({ state, marking }: { state: PageState; marking: Marking
               box={box}
             />
           ))}
-        </>
+        </g>
       )}
       {box !== undefined && projection !== undefined && (
         <ProbeMarks state={state} projection={projection} box={box} />

@@ -3,6 +3,7 @@ import { ConnectError } from "@connectrpc/connect";
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 import { cameraOfPose, type Pose, poseOfCamera } from "../../core/camera";
 import { type ComparisonChoice, comparedScene, type TimeOfB, timeOfB } from "../../core/comparison";
+import { isSameDomain } from "../../core/domain";
 import type { PictureTool } from "../../core/marking";
 import type { Later } from "../../core/newest";
 import { picturePointAt, placeInBox } from "../../core/picture_box";
@@ -51,6 +52,13 @@ export class Comparing {
     const [scene, choice] = [this.#state.scene.value, this.choice.value];
     if (choice === undefined) return { index: scene.timeIndex ?? 0, awayS: 0 };
     return timeOfB(scene, choice, { storm: this.#state.storm.value, other: this.other.value });
+  });
+  // Share of the window, from the left, in which marks and pointers have meaning: they are places of A's domain, and B may be
+  // swiped over it with a storm of another.
+  readonly sharedView = computed((): number => {
+    const choice = this.choice.value;
+    if (choice?.stormId === undefined || choice.layout !== "swipe") return 1;
+    return isSameDomain(this.#state.storm.value, this.other.value) ? 1 : this.swipe.value;
   });
   readonly #calls: ServerCalls;
   readonly #openInteract: OpenInteract;
