@@ -188,7 +188,10 @@ async function unreadable(page) {
         .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect(), covers: element.matches(".drawer") }))
         .filter(({ box }) => box.width > 0);
     const texts = boxes("[data-testid=annotations] text");
-    const bars = boxes(".top-bar, .time-line, .session-bar, .rail, .truth, aside, .compared-name");
+    // The pill of a movie at work has a place of its own on phones; else it is in the bar.
+    const [pill] = document.querySelectorAll(".at-work");
+    const pillIsABar = pill !== undefined && getComputedStyle(pill).position === "fixed";
+    const bars = boxes(`.top-bar, .time-line, .session-bar, .rail, .truth, aside, .compared-name${pillIsABar ? ", .at-work" : ""}`);
     const all = [...texts, ...bars];
     const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
     const mayMeet = (one, other) => bars.includes(one) && bars.includes(other) && (one.covers || other.covers);
@@ -202,6 +205,17 @@ async function unreadable(page) {
       ),
     ];
   });
+}
+
+async function whileAMovieIsMade(page, look) {
+  await openPanel(page, "keep");
+  await page.getByTestId("keep-movie").locator("summary").click();
+  await page.getByTestId("save-movie").click();
+  await page.keyboard.press("Escape");
+  await page.getByTestId("at-work").waitFor();
+  await look();
+  await page.getByTestId("at-work-cancel").click();
+  await page.getByTestId("at-work").waitFor({ state: "detached" });
 }
 
 for (const [name, options] of [
@@ -226,6 +240,7 @@ for (const [name, options] of [
       assert.deepEqual(await unreadable(page), [], `with ${tool} open`);
     }
     await openTool(page, undefined);
+    await whileAMovieIsMade(page, async () => assert.deepEqual(await unreadable(page), [], "while a movie is made"));
     await openPanel(page, "drawer");
     await page.waitForTimeout(300);
     assert.deepEqual(await unreadable(page), [], "with every setting open");
@@ -267,11 +282,14 @@ test("all that is written over the picture is read on a student's phone", async 
     assert.deepEqual(await unreadable(page), [], `with ${tool} open`);
   }
   await openTool(page, undefined);
+  const looksWell = async (when) => assert.deepEqual(await unreadable(page), [], when);
+  await whileAMovieIsMade(page, () => looksWell("while a movie is made"));
   await openPanel(page, "compare");
   await page.getByTestId("compare-time").selectOption("0");
   await page.keyboard.press("Escape");
   await page.getByTestId("compared-canvas").waitFor();
-  assert.deepEqual(await unreadable(page), [], "a comparison");
+  await looksWell("a comparison");
+  await whileAMovieIsMade(page, () => looksWell("a comparison while a movie is made"));
   for (const each of [page, teacher]) await each.context().close();
 });
 
