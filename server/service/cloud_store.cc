@@ -98,8 +98,7 @@ bool CloudStore::Holds(const std::string& storm_id) const {
 
 absl::Status CloudStore::Delete(const std::string& storm_id) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::string path, PathOf(storm_id));
-  std::error_code error;
-  fs::remove(path, error);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::error_code error, Remove(path));
   if (error) {
     return absl::PermissionDeniedError(
         absl::StrCat("cannot remove the file of cloud '", storm_id, "': ", error.message(),
@@ -110,6 +109,14 @@ absl::Status CloudStore::Delete(const std::string& storm_id) {
     files_.erase(storm_id);
   }
   return store_.Remove(storm_id);
+}
+
+absl::StatusOr<std::error_code> CloudStore::Remove(const std::string& path) {
+  return removals_.Ask(path_, [path]() -> absl::StatusOr<std::error_code> {
+    std::error_code error;
+    fs::remove(path, error);
+    return error;
+  });
 }
 
 absl::StatusOr<std::string> CloudStore::PathOf(const std::string& storm_id) const {

@@ -2,16 +2,19 @@
 // time is added and from which clouds can be deleted. Safe to call from any thread.
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <set>
 #include <stop_token>
 #include <string>
+#include <system_error>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/memory_budget.h"
+#include "base/patient_calls.h"
 #include "clouds/cloud_file.h"
 #include "volume/storm_store.h"
 
@@ -39,12 +42,15 @@ class CloudStore {
   bool Holds(const std::string& storm_id) const;
 
   // Removes a cloud's file, and the cloud from the storm store. NOT_FOUND for an unknown id,
-  // FAILED_PRECONDITION for another storm, PERMISSION_DENIED if the file cannot be removed.
+  // FAILED_PRECONDITION for another storm, PERMISSION_DENIED if the file cannot be removed,
+  // DEADLINE_EXCEEDED if its storage hangs; the file may be removed later, and the cloud is kept.
   absl::Status Delete(const std::string& storm_id);
 
  private:
   // A path whose name no file or storm has, and no deleted cloud had.
   std::string NewPath(const clouds::CloudOrigin& origin) const;
+  // What became of a file's removal; DEADLINE_EXCEEDED if the storage hangs.
+  absl::StatusOr<std::error_code> Remove(const std::string& path);
   // The file of a cloud; errors as of Delete.
   absl::StatusOr<std::string> PathOf(const std::string& storm_id) const;
   bool WasUsed(const std::string& id) const;
@@ -52,6 +58,7 @@ class CloudStore {
   const std::string path_;
   volume::StormStore& store_;
   const std::shared_ptr<base::MemoryBudget> memory_;
+  base::PatientCalls removals_{std::chrono::seconds(10)};
   std::mutex making_;         // held while a cloud is generated
   mutable std::mutex mutex_;  // never while the storage is asked, which may hang
   struct File {

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -24,23 +26,66 @@ using ResultReactor = grpc::ServerWriteReactor<v1::FetchRenderResultResponse>;
 
 constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
 
+// It may have been dropped just now, or somebody was in the folder.
+absl::Status Gone() {
+  return base::WithDetails(absl::NotFoundError("the picture's file is gone; ask for it again"),
+                           {.reason = "NO_SUCH_RESULT"});
+}
+
+// The file of a result from an offset on. One thread at a time uses it.
+class ResultFile {
+ public:
+  ResultFile(jobs::ResultPlace place, std::uint64_t offset)
+      : place_(std::move(place)), offset_(offset) {}
+
+  // The next chunk; the first has what is told of the picture, too.
+  absl::StatusOr<v1::FetchRenderResultResponse> Read() {
+    v1::FetchRenderResultResponse response;
+    if (!file_.is_open()) {
+      file_.open(place_.path, std::ios::binary);
+      file_.seekg(static_cast<std::streamoff>(offset_));
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::string about, base::ReadWholeFile(place_.about_path));
+      if (!response.ParseFromString(about)) return Gone();
+      response.set_total_bytes(place_.bytes);
+      response.set_sha256(place_.sha256);
+    }
+    std::string& chunk = *response.mutable_chunk();
+    chunk.resize(std::min(kChunkBytes, place_.bytes - offset_));
+    if (!file_.read(chunk.data(), static_cast<std::streamsize>(chunk.size()))) return Gone();
+    offset_ += chunk.size();
+    return response;
+  }
+
+  bool AtEnd() const { return offset_ >= place_.bytes; }
+
+  // The folder of all results: its storage answers, or does not.
+  std::string Storage() const {
+    return std::filesystem::path(place_.path).parent_path().parent_path();
+  }
+
+ private:
+  const jobs::ResultPlace place_;
+  std::uint64_t offset_;
+  std::ifstream file_;
+};
+
 // Sends a file, a chunk after another: each is read while none is written. Deletes itself when gRPC
-// calls OnDone, which comes after it has called Finish: never while a chunk is read.
+// calls OnDone, which comes after it has called Finish: never while a chunk is read, but for one
+// that hangs, which has no need of it.
 class ResultStream final : public ResultReactor {
  public:
-  ResultStream(jobs::Jobs& jobs, base::Executor& reading, const Limits& limits,
+  ResultStream(jobs::Jobs& jobs, const ResultReading& reading, const Limits& limits,
                grpc::CallbackServerContext* context, CallerRef caller, jobs::PicturePlace picture,
                jobs::ResultPlace place, std::uint64_t offset)
       : jobs_(jobs),
         reading_(reading),
         caller_(std::move(caller)),
         picture_(std::move(picture)),
-        place_(std::move(place)),
-        offset_(offset),
+        file_(std::make_shared<ResultFile>(std::move(place), offset)),
         delivery_(context, limits) {}
 
   void Next() {
-    reading_.Submit(caller_->identity().name, [this](const absl::Status& status) {
+    reading_.threads.Submit(caller_->identity().name, [this](const absl::Status& status) {
       const absl::Status read =
           status.ok() ? base::OrOutOfMemory([this] { return Read(); }) : status;
       if (!read.ok()) return End(ToGrpcStatus(read));
@@ -52,7 +97,7 @@ class ResultStream final : public ResultReactor {
   void OnWriteDone(bool ok) override {
     delivery_.Taken();
     if (!ok) return End(grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected"));
-    if (offset_ < place_.bytes) return Next();
+    if (!file_->AtEnd()) return Next();
     jobs_.Fetched(picture_);
     End(grpc::Status::OK);
   }
@@ -66,35 +111,16 @@ class ResultStream final : public ResultReactor {
   }
 
   absl::Status Read() {
-    response_.Clear();
-    if (!file_.is_open()) {
-      file_.open(place_.path, std::ios::binary);
-      file_.seekg(static_cast<std::streamoff>(offset_));
-      THUNDERHEAD_ASSIGN_OR_RETURN(const std::string about, base::ReadWholeFile(place_.about_path));
-      if (!response_.ParseFromString(about)) return Gone();
-      response_.set_total_bytes(place_.bytes);
-      response_.set_sha256(place_.sha256);
-    }
-    std::string& chunk = *response_.mutable_chunk();
-    chunk.resize(std::min(kChunkBytes, place_.bytes - offset_));
-    if (!file_.read(chunk.data(), static_cast<std::streamsize>(chunk.size()))) return Gone();
-    offset_ += chunk.size();
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        response_, reading_.calls.Ask(file_->Storage(), [file = file_] { return file->Read(); }));
     return absl::OkStatus();
   }
 
-  // It may have been dropped just now, or somebody was in the folder.
-  static absl::Status Gone() {
-    return base::WithDetails(absl::NotFoundError("the picture's file is gone; ask for it again"),
-                             {.reason = "NO_SUCH_RESULT"});
-  }
-
   jobs::Jobs& jobs_;
-  base::Executor& reading_;
+  const ResultReading reading_;
   const CallerRef caller_;  // has its place while the stream lives
   const jobs::PicturePlace picture_;
-  const jobs::ResultPlace place_;
-  std::uint64_t offset_;
-  std::ifstream file_;
+  const std::shared_ptr<ResultFile> file_;
   v1::FetchRenderResultResponse response_;  // gRPC reads it while it is written
   DeliveryDeadline delivery_;
 };
@@ -112,9 +138,9 @@ absl::StatusOr<jobs::ResultPlace> FindResult(const jobs::Jobs& jobs, const acces
 
 }  // namespace
 
-ResultReactor* FetchRenderResult(jobs::Jobs& jobs, base::Executor& reading, const Limits& limits,
-                                 grpc::CallbackServerContext* context, CallerRef caller,
-                                 const v1::FetchRenderResultRequest* request) {
+ResultReactor* FetchRenderResult(jobs::Jobs& jobs, const ResultReading& reading,
+                                 const Limits& limits, grpc::CallbackServerContext* context,
+                                 CallerRef caller, const v1::FetchRenderResultRequest* request) {
   absl::StatusOr<jobs::ResultPlace> place = FindResult(jobs, *caller, *request);
   if (!place.ok()) return new RefusedStream<ResultReactor>(*caller, place.status());
   auto* stream =

@@ -12,7 +12,8 @@ namespace thunderhead::service {
 
 struct JobFiles {
   std::function<std::optional<base::FileStamp>(const std::string& path)> stamp = base::StampOf;
-  // How long that may take; then the file's storage hangs, and its pictures are tried again later.
+  // How long that may take, and reading a piece of a result; then the file's storage hangs. Its
+  // pictures are tried again later.
   std::chrono::milliseconds patience = std::chrono::seconds(5);
 };
 

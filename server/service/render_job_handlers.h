@@ -4,6 +4,7 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "base/executor.h"
+#include "base/patient_calls.h"
 #include "jobs/jobs.h"
 #include "service/handlers.h"
 #include "service/limits.h"
@@ -34,9 +35,14 @@ grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits
                                           const CallerRef& caller,
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response);
-// Reads files on `reading`.
+
+// Reads files of results on threads of its own, and waits for no storage longer than its patience.
+struct ResultReading {
+  base::Executor& threads;
+  base::PatientCalls& calls;
+};
 grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* FetchRenderResult(
-    jobs::Jobs& jobs, base::Executor& reading, const Limits& limits,
+    jobs::Jobs& jobs, const ResultReading& reading, const Limits& limits,
     grpc::CallbackServerContext* context, CallerRef caller,
     const v1::FetchRenderResultRequest* request);
 

@@ -18,14 +18,15 @@ absl::Status NoJobs() {
 }  // namespace
 
 RenderJobService::RenderJobService(Engine& engine, access::Door& door, ConnectionCalls& calls,
-                                   jobs::Jobs* jobs)
+                                   jobs::Jobs* jobs, std::chrono::milliseconds patience)
     : engine_(engine),
       jobs_(jobs),
       entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
       // A stream waits for one read at a time, and the door counts streams: none is refused here.
       reading_({.threads = kReadingThreads,
                 .max_waiting = door.limits().max_streams,
-                .max_waiting_each = door.limits().max_streams_per_identity}) {}
+                .max_waiting_each = door.limits().max_streams_per_identity}),
+      calls_(patience) {}
 
 grpc::ServerUnaryReactor* RenderJobService::CreateRenderJob(
     grpc::CallbackServerContext* context, const v1::CreateRenderJobRequest* request,
@@ -71,7 +72,7 @@ grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* RenderJobService::Fetch
     grpc::CallbackServerContext* context, const v1::FetchRenderResultRequest* request) {
   return entrance_.Stream<grpc::ServerWriteReactor<v1::FetchRenderResultResponse>>(
       "FetchRenderResult", context, [&](CallerRef caller) {
-        return service::FetchRenderResult(*jobs_, reading_, engine_.limits, context,
+        return service::FetchRenderResult(*jobs_, {reading_, calls_}, engine_.limits, context,
                                           std::move(caller), request);
       });
 }

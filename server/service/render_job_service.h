@@ -2,8 +2,11 @@
 // its handler.
 #pragma once
 
+#include <chrono>
+
 #include "access/door.h"
 #include "base/executor.h"
+#include "base/patient_calls.h"
 #include "jobs/jobs.h"
 #include "service/admission.h"
 #include "service/engine.h"
@@ -13,8 +16,10 @@ namespace thunderhead::service {
 
 class RenderJobService final : public v1::RenderJobService::CallbackService {
  public:
-  // `jobs` is null where the server keeps none; all must outlive this.
-  RenderJobService(Engine& engine, access::Door& door, ConnectionCalls& calls, jobs::Jobs* jobs);
+  // `jobs` is null where the server keeps none; all must outlive this. A result whose storage does
+  // not answer within `patience` is not fetched.
+  RenderJobService(Engine& engine, access::Door& door, ConnectionCalls& calls, jobs::Jobs* jobs,
+                   std::chrono::milliseconds patience);
 
   grpc::ServerUnaryReactor* CreateRenderJob(grpc::CallbackServerContext* context,
                                             const v1::CreateRenderJobRequest* request,
@@ -44,6 +49,7 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
   jobs::Jobs* const jobs_;
   const Entrance entrance_;
   base::Executor reading_;
+  base::PatientCalls calls_;  // to the storage of results
 };
 
 }  // namespace thunderhead::service

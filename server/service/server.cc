@@ -116,8 +116,8 @@ class RunningServer final : public Server {
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
                                               keeper_.get(), *catalogue_, drain_, limits_});
     service_ = MakeThunderheadService(*engine_, *door_, *connection_calls_);
-    job_service_ =
-        std::make_unique<RenderJobService>(*engine_, *door_, *connection_calls_, jobs_.get());
+    job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, *connection_calls_,
+                                                      jobs_.get(), job_files_.patience);
     // A global setting, which applies to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] { grpc::reflection::InitProtoReflectionServerBuilderPlugin(); });

@@ -1,5 +1,8 @@
 // Render jobs on a fake machine: every picture once, each failure by itself, for its owner alone,
 // and again after a restart.
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -12,6 +15,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/file_descriptor.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
@@ -331,6 +335,36 @@ TEST_F(RenderJobTest, AStorageThatHangsHoldsUpOnlyItsOwnPictures) {
   ASSERT_TRUE(Eventually([&] { return jobs.Get(job.id()).job().counts().drawn() == 2; }));
   EXPECT_EQ(jobs.Get(job.id()).job().counts().waiting(), 2U) << "tried again later, none failed";
   storage.set_value();
+}
+
+TEST_F(RenderJobTest, AResultWhoseStorageHangsIsRefusedAndTheNextAtOnce) {
+  service::ServerOptions options = Options();
+  options.job_files.patience = milliseconds(200);
+  FakeService service(options);
+  Jobs jobs(service.server());
+  const v1::RenderJob job = jobs.Create({Picture(0), Picture(1)});
+  ASSERT_TRUE(Eventually([&] { return jobs.Get(job.id()).job().counts().drawn() == 2; }));
+  ASSERT_TRUE(jobs.Fetch(job.id(), 1).status.ok());
+  // A pipe that nobody writes hangs as it is opened.
+  const std::string picture = absl::StrCat(folder_.File("jobs"), "/", job.id(), "/000000.png");
+  std::filesystem::rename(picture, picture + ".kept");
+  ASSERT_EQ(mkfifo(picture.c_str(), 0600), 0);
+  for (int i = 0; i < 2; ++i) {
+    const auto asked = steady_clock::now();
+    const Fetched fetched = jobs.Fetch(job.id(), 0);
+    EXPECT_EQ(fetched.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+    bool retries = false;
+    EXPECT_EQ(ReasonOf(fetched.status, &retries), "STORAGE_HANGS");
+    EXPECT_TRUE(retries);
+    if (i == 1) {
+      EXPECT_LT(MsSince(asked), 150.0);
+    }
+  }
+  // The storage answers: whoever opened the pipe reads its end.
+  std::filesystem::rename(picture, picture + ".pipe");
+  std::filesystem::rename(picture + ".kept", picture);
+  { const base::FileDescriptor writer(open((picture + ".pipe").c_str(), O_RDWR | O_NONBLOCK)); }
+  EXPECT_TRUE(Eventually([&] { return jobs.Fetch(job.id(), 0).status.ok(); }));
 }
 
 TEST_F(RenderJobTest, CancellingFreesTheDeviceWithin200Ms) {
