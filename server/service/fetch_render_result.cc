@@ -97,6 +97,10 @@ class ResultStream final : public ResultReactor {
   void OnWriteDone(bool ok) override {
     delivery_.Taken();
     if (!ok) return End(grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected"));
+    if (const absl::Status known = caller_->StillKnown(); !known.ok()) {
+      caller_->Report("FetchRenderResult", known);
+      return End(ToGrpcStatus(known));
+    }
     if (!file_->AtEnd()) return Next();
     jobs_.Fetched(picture_);
     End(grpc::Status::OK);

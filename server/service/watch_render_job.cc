@@ -66,10 +66,13 @@ class JobStream final : public JobReactor,
 
   void OnWriteDone(bool ok) override {
     delivery_->Taken();
+    absl::Status known = ok ? caller_->StillKnown() : absl::OkStatus();
+    if (!known.ok()) caller_->Report("WatchRenderJob", known);
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
       disconnected_ = disconnected_ || !ok;
+      known_ = std::move(known);
     }
     OnJobChanged();
   }
@@ -92,6 +95,7 @@ class JobStream final : public JobReactor,
   // mutex_.
   std::optional<grpc::Status> Next() {
     if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected");
+    if (!known_.ok()) return ToGrpcStatus(known_);
     const absl::StatusOr<std::optional<jobs::JobNews>> news = jobs_.NewsOf(id_, sent_version_);
     if (!news.ok()) return ToGrpcStatus(news.status());
     if (!news->has_value()) return ToGrpcStatus(Forgotten(id_));
@@ -118,6 +122,7 @@ class JobStream final : public JobReactor,
   bool has_ended_ = false;
   bool writing_ = false;
   bool disconnected_ = false;
+  absl::Status known_;  // why the caller may watch no longer
   bool finished_ = false;
   std::optional<DeliveryDeadline> delivery_;
 };

@@ -386,6 +386,23 @@ TEST_F(RenderJobTest, CancellingFreesTheDeviceWithin200Ms) {
   EXPECT_EQ(ended.counts().drawing() + ended.counts().waiting(), 0U);
 }
 
+TEST_F(RenderJobTest, ATokenThatIsTakenAwayEndsItsWatch) {
+  GuardedService guarded(Options());
+  guarded.service().machine->ms_per_mega_sample = 50.0;
+  Jobs pipeline(guarded.service().server(), "pipeline");
+  const v1::RenderJob job =
+      pipeline.Create(std::vector<v1::RenderJobPicture>(40, LongPicture()));  // some 30 s
+  auto watched = std::async(std::launch::async, [&] {
+    std::map<std::uint32_t, State> pictures;
+    return pipeline.Watch(job.id(), &pictures);
+  });
+  std::this_thread::sleep_for(milliseconds(500));
+  guarded.TakeAwayToken("pipeline");
+  EXPECT_EQ(watched.get().error_code(), grpc::StatusCode::UNAUTHENTICATED);
+  EXPECT_THAT(guarded.Audit(), Contains(::testing::AllOf(HasSubstr("act=WatchRenderJob "),
+                                                         HasSubstr("TOKEN_UNKNOWN"))));
+}
+
 TEST_F(RenderJobTest, IsItsOwnersAlone) {
   GuardedService guarded(Options());
   Jobs pipeline(guarded.service().server(), "pipeline");
