@@ -42,7 +42,7 @@ class PatientCalls {
     const auto answer = std::make_shared<std::optional<std::invoke_result_t<Call>>>();
     THUNDERHEAD_RETURN_IF_ERROR(
         Run(storage, [answer, call = std::move(call)] { answer->emplace(call()); }));
-    return **std::move(answer);
+    return *std::move(*answer);
   }
 
   // Since the oldest call that hangs began; 0 if none hangs.

@@ -58,10 +58,8 @@ class ResultFile {
 
   bool AtEnd() const { return offset_ >= place_.bytes; }
 
-  // The folder of all results: its storage answers, or does not.
-  std::string Storage() const {
-    return std::filesystem::path(place_.path).parent_path().parent_path();
-  }
+  // The job's folder: its storage answers, or does not.
+  std::string Storage() const { return std::filesystem::path(place_.path).parent_path(); }
 
  private:
   const jobs::ResultPlace place_;

@@ -29,7 +29,7 @@ export function App({ page }: { page: Page }) {
       <StormCanvas page={page} />
       <CompareView page={page} />
       <Annotations state={state} comparing={page.comparing.choice.value !== undefined} />
-      <Overlay state={state} marking={page.marking} share={page.comparing.sharedView.value} />
+      <Overlay state={state} marking={page.marking} marked={page.comparing.markedView.value} />
       <p id="storm-keys" class="visually-hidden">
         Arrow keys turn it, with shift they move it, plus and minus come nearer and go farther.
         Question mark lists the keys.

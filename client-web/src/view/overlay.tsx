@@ -9,26 +9,30 @@ import type { PageState } from "../core/state";
 import type { StrokePoint } from "../core/stroke";
 import type { Mark, Pointer } from "../gen/thunderhead/v1/interact_pb";
 import type { Position } from "../gen/thunderhead/v1/scene_pb";
+import type { MarkedView } from "./compare/comparing";
 
 interface OverlayProps {
   readonly state: PageState;
   readonly marking: Marking;
-  // Of the window's width, from the left: where marks and pointers are shown.
-  readonly share: number;
+  readonly marked: MarkedView;
 }
 
-export function Overlay({ state, marking, share }: OverlayProps) {
+export function Overlay({ state, marking, marked }: OverlayProps) {
   const { session } = state;
   const box = state.pictureBox.value;
   const projection = state.frame.value?.projection;
   const stroke = marking.stroke.value;
   return (
     <svg class="overlay" data-testid="overlay" aria-hidden="true">
-      <clipPath id="shared-view">
-        <rect width={`${100 * share}%`} height="100%" />
-      </clipPath>
       {box !== undefined && projection !== undefined && (
-        <g clip-path="url(#shared-view)" data-testid="shared-marks">
+        <g clip-path="url(#marked-view)">
+          <clipPath id="marked-view">
+            {marked === "picture" ? (
+              <rect x={box.left} y={box.top} width={box.width} height={box.height} />
+            ) : (
+              <rect width={`${100 * marked}%`} height="100%" />
+            )}
+          </clipPath>
           {session.marks.value.map((mark) => (
             <MarkLine key={mark.markId} mark={mark} projection={projection} box={box} />
           ))}

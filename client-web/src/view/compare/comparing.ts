@@ -21,6 +21,9 @@ import { attachPointer } from "../pointer";
 import type { SeenPicture } from "../probing";
 import { ComparedSession } from "./compared_session";
 
+// A share of the window's width from the left, or the picture's own box.
+export type MarkedView = number | "picture";
+
 export interface ComparingSteps {
   move(motion: (pose: Pose) => Pose): void;
   // The tool in the hand, which takes places over A.
@@ -53,12 +56,15 @@ export class Comparing {
     if (choice === undefined) return { index: scene.timeIndex ?? 0, awayS: 0 };
     return timeOfB(scene, choice, { storm: this.#state.storm.value, other: this.other.value });
   });
-  // Share of the window, from the left, in which marks and pointers have meaning: they are places of A's domain, and B may be
-  // swiped over it with a storm of another.
-  readonly sharedView = computed((): number => {
-    const choice = this.choice.value;
-    if (choice?.stormId === undefined || choice.layout !== "swipe") return 1;
-    return isSameDomain(this.#state.storm.value, this.other.value) ? 1 : this.swipe.value;
+  // Where marks and pointers are shown. They are places of A's domain, and B may be swiped over A with a storm of another; side by
+  // side they stay in A.
+  readonly markedView = computed((): MarkedView => {
+    if (this.choice.value?.layout === "side") return "picture";
+    return this.#isOfADomain.value ? 1 : this.swipe.value;
+  });
+  readonly #isOfADomain = computed(() => {
+    const stormId = this.choice.value?.stormId;
+    return stormId === undefined || isSameDomain(this.#state.storm.value, this.other.value);
   });
   readonly #calls: ServerCalls;
   readonly #openInteract: OpenInteract;
@@ -180,7 +186,8 @@ export class Comparing {
   // Strokes and pointer places on B are passed on to the same place of A, the picture that others see.
   #toolOverA(): PictureTool | undefined {
     const tool = this.#steps.tool();
-    if (tool === undefined) return undefined;
+    // Places of B are none of A's where it has a storm of another domain.
+    if (tool === undefined || !this.#isOfADomain.peek()) return undefined;
     const overA = (use: (place: StrokePoint) => void) => (place: StrokePoint) => {
       const [point, box] = [this.#pointAt(place), this.#state.pictureBox.peek()];
       if (point !== undefined && box !== undefined) use(placeInBox(box, point));
