@@ -53,6 +53,13 @@ class SilentSockets {
   std::vector<int> sockets_;
 };
 
+// In which another client has the page. ThreadSanitizer makes the gateway some ten times slower.
+#ifdef __SANITIZE_THREAD__
+constexpr milliseconds kSoon{10'000};
+#else
+constexpr milliseconds kSoon{1000};
+#endif
+
 class SlowClientsTest : public ::testing::Test {
  protected:
   SlowClientsTest() {
@@ -86,14 +93,14 @@ class SlowClientsTest : public ::testing::Test {
 TEST_F(SlowClientsTest, HalfOpenSocketsLockNobodyOut) {
   // As many as there may be, and twice as many again.
   const SilentSockets silent(Site().Port(), 768, "");
-  EXPECT_LT(LoadPage(), milliseconds(1000));
+  EXPECT_LT(LoadPage(), kSoon);
   const SilentSockets half_said(Site().Port(), 768, "GET / HTTP/1.1\r\nHo");
-  EXPECT_LT(LoadPage(), milliseconds(1000));
+  EXPECT_LT(LoadPage(), kSoon);
   const SilentSockets half_sent(Site().Port(), 768,
                                 "POST /thunderhead.gateway.test.Echo/Say HTTP/1.1\r\n"
                                 "Host: localhost\r\nContent-Type: application/grpc-web\r\n"
                                 "Content-Length: 100\r\n\r\n");
-  EXPECT_LT(LoadPage(), milliseconds(1000));
+  EXPECT_LT(LoadPage(), kSoon);
 }
 
 TEST_F(SlowClientsTest, SilentWebSocketsLockNobodyOut) {
@@ -103,7 +110,7 @@ TEST_F(SlowClientsTest, SilentWebSocketsLockNobodyOut) {
                              "Sec-WebSocket-Version: 13\r\n"
                              "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
                              "Sec-WebSocket-Protocol: grpc-websocket.v1\r\n\r\n");
-  EXPECT_LT(LoadPage(), milliseconds(1000));
+  EXPECT_LT(LoadPage(), kSoon);
 }
 
 TEST_F(SlowClientsTest, AnAddressThatHasItsShareMakesRoomItself) {
