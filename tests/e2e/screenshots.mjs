@@ -87,6 +87,8 @@ try {
       await prepare(page, name);
       await shoot(name);
     }
+    // Else they lie over all that follows.
+    if (wanted("marks")) await page.getByTestId("clear-marks").click();
     await openTool(page, undefined);
     for (const name of PANELS.filter(wanted)) {
       await openPanel(page, name);
