@@ -24,8 +24,10 @@ chroot "$root" sh -euc '
   test -f /usr/lib/systemd/system/thunderhead.service
   thunderhead serve --data /usr/share/thunderhead/samples --http 127.0.0.1:58080 --grpc 127.0.0.1:58051 --state none >/tmp/serve.log 2>&1 &
   server=$!
-  trap "kill $server" EXIT
-  for _ in $(seq 60); do grep -q http:// /tmp/serve.log && break; sleep 1; done
+  # What the server says counts where something fails.
+  trap "status=\$?; [ \$status = 0 ] || cat /tmp/serve.log; kill $server; exit \$status" EXIT
+  for _ in $(seq 120); do grep -q http:// /tmp/serve.log && break; sleep 1; done
+  grep -q http:// /tmp/serve.log || { echo "the server is not ready after two minutes" >&2; exit 1; }
   python3 -c "
 import thunderhead
 with thunderhead.Client(\"127.0.0.1:58051\") as client:
