@@ -230,8 +230,8 @@ std::jthread EndIfToldWhileStarting(const sigset_t& signals) {
   });
 }
 
-std::jthread EndAnywayAfter(std::chrono::seconds patience, std::function<int()> code,
-                            std::function<void()> last) {
+std::jthread EndAnywayAfter(std::chrono::seconds patience, const std::function<int()>& code,
+                            const std::function<void()>& last) {
   return std::jthread([=](const std::stop_token& ended) {
     std::mutex unshared;
     std::unique_lock lock(unshared);

@@ -40,8 +40,8 @@ std::jthread EndIfToldWhileStarting(const sigset_t& signals);
 
 // Ends the process with what `code` gives, after `last`, unless the thread is told to stop within
 // `patience`: a call that hangs with its storage would keep its server from ending for ever.
-std::jthread EndAnywayAfter(std::chrono::seconds patience, std::function<int()> code,
-                            std::function<void()> last);
+std::jthread EndAnywayAfter(std::chrono::seconds patience, const std::function<int()>& code,
+                            const std::function<void()>& last);
 
 // The operator's port of the flags, null without one, and what systemd is told. The port serves at
 // once, and says that the server starts until it is given one.
