@@ -49,7 +49,7 @@ class CloudStore {
  private:
   // A path whose name no file or storm has, and no deleted cloud had.
   std::string NewPath(const clouds::CloudOrigin& origin) const;
-  // What became of a file's removal; DEADLINE_EXCEEDED if the storage hangs.
+  // Removes a file, and gives the system's error; DEADLINE_EXCEEDED if the storage hangs.
   absl::StatusOr<std::error_code> Remove(const std::string& path);
   // The file of a cloud; errors as of Delete.
   absl::StatusOr<std::string> PathOf(const std::string& storm_id) const;

@@ -55,7 +55,7 @@ struct Person {
   bool operator==(const Person&) const = default;
 };
 
-// Whose control is, as far as it outlives the server: a viewer's, kept for the presenters, or free.
+// Control of a session as it outlives the server: a viewer's, kept for the presenters, or free.
 struct KeptControl {
   bool is_free = false;
   // Of the viewer who steers, or for whom control waits. Without a key: nobody.

@@ -25,7 +25,7 @@ struct SessionRecord {
   std::string owner;  // the identity that opened it; empty: nobody's
   Rules rules;
   KeptControl control;
-  std::string scene;             // as the service serialized it; opaque here
+  std::string scene;  // as the service serialized it; opaque here
   std::uint64_t scene_revision = 0;
   std::vector<Mark> marks;
   std::chrono::system_clock::time_point last_used;
