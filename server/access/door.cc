@@ -56,12 +56,18 @@ absl::Status Caller::StillKnown(std::chrono::steady_clock::time_point now) const
   // Null for this process itself.
   if (authenticator_ == nullptr) return absl::OkStatus();
   if (now < known_at_.load() + kKnownFor) return absl::OkStatus();
-  const absl::StatusOr<Identity> identity = authenticator_->Identify(credentials_);
-  THUNDERHEAD_RETURN_IF_ERROR(identity.status());
-  if (identity->name == identity_.name && identity->role == identity_.role) {
+  absl::Status identified = Identified();
+  if (identified.ok()) {
     known_at_ = now;
-    return absl::OkStatus();
+  } else {
+    Report(method_, identified);
   }
+  return identified;
+}
+
+absl::Status Caller::Identified() const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Identity identity, authenticator_->Identify(credentials_));
+  if (identity.name == identity_.name && identity.role == identity_.role) return absl::OkStatus();
   return base::WithDetails(absl::UnauthenticatedError("the token has another name or role now"),
                            {.reason = "TOKEN_CHANGED"});
 }

@@ -31,12 +31,15 @@ class Caller {
   // The place of an answer of theirs that is ready, until they have taken it; null for this process
   // itself.
   absl::StatusOr<std::shared_ptr<const void>> TakeAnswer() const;
-  // UNAUTHENTICATED once the token has expired or was taken away; looks once a second at most.
+  // UNAUTHENTICATED, which is written to the audit, once the token has expired or was taken away;
+  // looks once a second at most.
   absl::Status StillKnown(
       std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) const;
 
  private:
   friend class Door;
+
+  absl::Status Identified() const;
 
   Identity identity_;
   Credentials credentials_;

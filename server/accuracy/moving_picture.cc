@@ -9,6 +9,7 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/sparse_picture.h"
+#include "gl/pieces.h"
 #include "renderers/chosen_rays.h"
 
 namespace thunderhead::accuracy {
@@ -85,11 +86,13 @@ renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuali
 absl::StatusOr<frame::ToneMapped> CompleteMoving(
     const renderers::LinearFrame& coarse, const scene::Scene& scene, const FrameQuality& quality,
     frame::ToneMapper& tone_mapper, const DrawChosen& draw, renderers::StageTimes* stages) {
+  gl::Pieces& pieces = tone_mapper.Pieces();
   const base::Stopwatch stopwatch;
+  const double waited_ms = pieces.WaitedMs();
   THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped, tone_mapper.Map(*coarse.radiance, scene));
   THUNDERHEAD_ASSIGN_OR_RETURN(frame::FineImage coarsest, tone_mapper.MapFine(*coarse.radiance));
   double drawing_ms = mapped.read_back_ms;
-  const frame::DrawPlaces draw_places =
+  const auto draw_places =
       [&](const std::vector<glm::vec2>& places) -> absl::StatusOr<std::vector<std::uint16_t>> {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::ChosenFrame chosen, draw(places));
     Add(chosen.stages, stages);
@@ -97,11 +100,17 @@ absl::StatusOr<frame::ToneMapped> CompleteMoving(
     return ColorsOf(chosen, places.size(), tone_mapper);
   };
   const double contrast = kMovingContrast / (quality.image_scale * quality.image_scale);
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      mapped.rgb,
-      frame::CompletePicture(std::move(coarsest), {scene.output.width_px, scene.output.height_px},
-                             static_cast<int>(std::lround(contrast)), draw_places));
-  mapped.tone_ms = stopwatch.ElapsedMs() - drawing_ms;
+  // Most of it is the processors' work: others may draw meanwhile.
+  absl::StatusOr<std::vector<std::uint8_t>> completed;
+  THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
+    completed = frame::CompletePicture(
+        std::move(coarsest), {scene.output.width_px, scene.output.height_px},
+        static_cast<int>(std::lround(contrast)), [&](const std::vector<glm::vec2>& places) {
+          return pieces.During([&] { return draw_places(places); });
+        });
+  }));
+  THUNDERHEAD_ASSIGN_OR_RETURN(mapped.rgb, std::move(completed));
+  mapped.tone_ms = stopwatch.ElapsedMs() - (pieces.WaitedMs() - waited_ms) - drawing_ms;
   return mapped;
 }
 

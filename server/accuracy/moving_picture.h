@@ -1,6 +1,6 @@
-// Pictures while something moves: rays where the picture needs them (frame/sparse_picture.h), and
-// light that is solved for less exactly. What is drawn at rest is none of it
-// (docs/decisions/0052-sparse-pictures.md).
+// Pictures while something moves, and the first at rest of a slow machine: rays where the picture
+// needs them (frame/sparse_picture.h), and light that is solved for less exactly. The final picture
+// is none of it (docs/decisions/0052-sparse-pictures.md).
 #pragma once
 
 #include <functional>
@@ -42,7 +42,8 @@ using DrawChosen =
     std::function<absl::StatusOr<renderers::ChosenFrame>(const std::vector<glm::vec2>& places)>;
 
 // The whole picture from `coarse`, which was drawn with MovingQuality and is coarse; `draw` adds
-// to it. Adds the times of the stages of that to `stages`.
+// to it. Adds the times of the stages of that to `stages`. Call it during a drawing of
+// `tone_mapper`'s pieces.
 absl::StatusOr<frame::ToneMapped> CompleteMoving(
     const renderers::LinearFrame& coarse, const scene::Scene& scene, const FrameQuality& quality,
     frame::ToneMapper& tone_mapper, const DrawChosen& draw, renderers::StageTimes* stages);

@@ -48,6 +48,9 @@ class ToneMapper {
   // with the tone of that.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
 
+  // In which it draws.
+  gl::Pieces& Pieces() const { return programs_->Pieces(); }
+
  private:
   // Factors for radiance, and the curve.
   struct Tone {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -78,6 +79,7 @@ absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& 
       return TooManyClouds("you already have", kMaxCloudsEach);
     }
   }
+  THUNDERHEAD_RETURN_IF_ERROR(FolderAnswers());
   const std::string path = NewPath(origin);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const base::MemoryReservation reserved,
@@ -111,8 +113,20 @@ absl::Status CloudStore::Delete(const std::string& storm_id) {
   return store_.Remove(storm_id);
 }
 
+absl::Status CloudStore::FolderAnswers() {
+  return patient_.Ask(path_, [path = path_] {
+    // A file's status may come from a cache. What is wrong with the folder is told by writing.
+    const fs::path asked = fs::path(path) / ".answers";
+    std::ofstream file(asked);
+    file.close();
+    std::error_code error;
+    fs::remove(asked, error);
+    return absl::OkStatus();
+  });
+}
+
 absl::StatusOr<std::error_code> CloudStore::Remove(const std::string& path) {
-  return removals_.Ask(path_, [path]() -> absl::StatusOr<std::error_code> {
+  return patient_.Ask(path_, [path]() -> absl::StatusOr<std::error_code> {
     std::error_code error;
     fs::remove(path, error);
     return error;

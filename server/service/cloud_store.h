@@ -31,7 +31,7 @@ class CloudStore {
   // Generates the cloud into a file of its own and adds it to the storm store, for the identity
   // `owner` (empty: nobody's). FAILED_PRECONDITION without a folder, RESOURCE_EXHAUSTED at the
   // maximum number, in all or of one identity since the server started, or without memory,
-  // UNAVAILABLE during another call.
+  // UNAVAILABLE during another call, DEADLINE_EXCEEDED if the folder's storage hangs as it begins.
   absl::StatusOr<volume::StormInfoPtr> Make(const clouds::CloudShape& shape,
                                             const clouds::CloudOrigin& origin,
                                             const clouds::GenerateObserver& observer,
@@ -47,6 +47,8 @@ class CloudStore {
   absl::Status Delete(const std::string& storm_id);
 
  private:
+  // DEADLINE_EXCEEDED if the storage of the folder hangs.
+  absl::Status FolderAnswers();
   // A path whose name no file or storm has, and no deleted cloud had.
   std::string NewPath(const clouds::CloudOrigin& origin) const;
   // Removes a file, and gives the system's error; DEADLINE_EXCEEDED if the storage hangs.
@@ -58,8 +60,8 @@ class CloudStore {
   const std::string path_;
   volume::StormStore& store_;
   const std::shared_ptr<base::MemoryBudget> memory_;
-  base::PatientCalls removals_{std::chrono::seconds(10)};
-  std::mutex making_;         // held while a cloud is generated
+  base::PatientCalls patient_{std::chrono::seconds(10)};  // for what the storage is asked
+  std::mutex making_;                                     // held while a cloud is generated
   mutable std::mutex mutex_;  // never while the storage is asked, which may hang
   struct File {
     std::string path;

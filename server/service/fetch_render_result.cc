@@ -96,7 +96,6 @@ class ResultStream final : public ResultReactor {
     delivery_.Taken();
     if (!ok) return End(grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected"));
     if (const absl::Status known = caller_->StillKnown(); !known.ok()) {
-      caller_->Report("FetchRenderResult", known);
       return End(ToGrpcStatus(known));
     }
     if (!file_->AtEnd()) return Next();

@@ -324,10 +324,7 @@ class InteractCall : public InteractReactor,
       if (!joined.ok()) caller_->Report("Interact/join", joined);
       return joined;
     }
-    if (absl::Status unknown = caller_->StillKnown(); !unknown.ok()) {
-      caller_->Report("Interact", unknown);
-      return unknown;
-    }
+    THUNDERHEAD_RETURN_IF_ERROR(caller_->StillKnown());
     session_->Touch();
     session_->audience().Heard(person_id_);
     absl::Status status = budget_.Take(Clock::now());

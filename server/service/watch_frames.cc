@@ -72,7 +72,6 @@ class FrameStream : public FramesReactor,
   void OnWriteDone(bool ok) override {
     delivery_->Taken();
     absl::Status known = ok ? caller_->StillKnown() : absl::OkStatus();
-    if (!known.ok()) caller_->Report("WatchFrames", known);
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;

@@ -67,7 +67,6 @@ class JobStream final : public JobReactor,
   void OnWriteDone(bool ok) override {
     delivery_->Taken();
     absl::Status known = ok ? caller_->StillKnown() : absl::OkStatus();
-    if (!known.ok()) caller_->Report("WatchRenderJob", known);
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;

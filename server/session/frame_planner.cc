@@ -117,7 +117,7 @@ Decision FramePlanner::AtRest(const NewestScene& newest, Clock::time_point now,
   if (now < rested_at) return {std::nullopt, rested_at};
   const scene::Stage first_dirty = FirstDirtyAtRest(last_drawn, *newest.scene);
   if (!drawn_.refined) {
-    const FrameQuality quality = Finest(*newest.scene, first_dirty, targets_.refined_ms);
+    const FrameQuality quality = FinestSoon(*newest.scene, first_dirty);
     if (IsFiner(quality)) return {FramePlan{quality, true}, std::nullopt};
   }
   const Clock::time_point settled_at = targets_.SettlesAt(newest);
@@ -171,6 +171,13 @@ void FramePlanner::Again() {
 
 bool FramePlanner::IsFiner(const FrameQuality& quality) const {
   return IsFull(quality) || quality.Scale() > drawn_.quality.Scale();
+}
+
+FrameQuality FramePlanner::FinestSoon(const scene::Scene& scene, scene::Stage first_dirty) const {
+  const bool whole =
+      costs_.FrameMs(view_, scene, FrameQuality{}, first_dirty) <= targets_.refined_ms;
+  const FrameQuality fewer{.sparse = !whole && accuracy::MovesSparsely(scene)};
+  return Finest(scene, first_dirty, targets_.refined_ms, fewer);
 }
 
 FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_dirty,

@@ -118,6 +118,9 @@ class FramePlanner {
   double SpeedScale(const scene::Scene& scene, const FrameQuality& moving) const;
   Decision AtRest(const NewestScene& newest, Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;
+  // Of the first frame at rest: where a ray for each pixel takes longer than refined_ms, rays go
+  // where the picture needs them, as a smaller picture enlarged has the rougher edges.
+  FrameQuality FinestSoon(const scene::Scene& scene, scene::Stage first_dirty) const;
   FrameQuality Finest(const scene::Scene& scene, scene::Stage first_dirty, double budget_ms,
                       const FrameQuality& moving = {}) const;
   bool IsFiner(const FrameQuality& quality) const;  // than the frame drawn last

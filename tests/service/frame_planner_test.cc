@@ -246,6 +246,7 @@ TEST_F(FramePlannerTest, SlowMachineRefinesInTwoSteps) {
   const Decision first = Ask(milliseconds(100));
   ASSERT_TRUE(first.plan.has_value());
   EXPECT_TRUE(first.plan->refined);
+  EXPECT_TRUE(first.plan->quality.sparse) << "a smaller picture enlarged has rougher edges";
   EXPECT_LT(first.plan->quality.image_scale, 1.0);
   EXPECT_GT(first.plan->quality.image_scale, last_plan_.quality.image_scale);
   Draw(machine, *first.plan);

@@ -297,6 +297,30 @@ TEST_F(HungStorageTest, AFileOfTokensThatHangsLocksNobodyOutAndHoldsUpNobody) {
   EXPECT_EQ(CodeAfterSigterm(seconds(20)), 0) << Contents(err_);
 }
 
+TEST_F(HungStorageTest, ACloudIsNotBegunWhereItsStorageHangs) {
+  fs::create_directory(folder_.File("clouds"));
+  WriteStorm(folder_.File("anvil.nc"));
+  Start({folder_.File("anvil.nc")}, "none", {"--clouds", folder_.File("clouds")});
+  AwaitReady();
+  ASSERT_FALSE(HasFatalFailure());
+  HangAt(folder_.File("clouds"));
+  const auto generate = [&] {
+    v1::GenerateCloudResponse response;
+    const grpc::Status made =
+        Call(*stub_, &Stub::GenerateCloud, v1::GenerateCloudRequest(), &response);
+    EXPECT_EQ(made.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
+    EXPECT_THAT(made.error_message(), HasSubstr("its storage does not answer"));
+  };
+  generate();
+  const base::Stopwatch second;
+  generate();
+  EXPECT_LT(second.ElapsedMs(), 5000.0) << "the next does not wait again";
+  v1::ListStormsResponse storms;
+  EXPECT_TRUE(Call(*stub_, &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
+  EXPECT_EQ(storms.storms_size(), 1);
+  EXPECT_EQ(CodeAfterSigterm(seconds(20)), 0) << Contents(err_);
+}
+
 TEST_F(HungStorageTest, ACloudThatIsDeletedWhereItsStorageHangsHoldsUpNoList) {
   fs::create_directory(folder_.File("clouds"));
   WriteStorm(folder_.File("anvil.nc"));

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/error_details.h"
@@ -39,12 +41,19 @@ class LaneTest : public testing::Test {
     return scene;
   }
 
-  void Begin(const scene::Scene& scene) {
+  void Begin(const scene::Scene& scene, const FrameQuality& quality = {}) {
     lane_->Begin(
-        [this, scene](const absl::StatusOr<FrameSource*>& source) {
-          drawn_ = source.ok() ? (*source)->Draw(scene, fields_, {}).status() : source.status();
+        [this, scene, quality](const absl::StatusOr<FrameSource*>& source) {
+          auto picture = source.ok() ? (*source)->Draw(scene, fields_, quality) : source.status();
+          drawn_ = picture.status();
+          if (picture.ok()) rgb_ = std::move(picture->rgb);
         },
         {cancelled_});
+  }
+
+  absl::StatusOr<DisplayFrame> DrawWhole(const scene::Scene& scene, const FrameQuality& quality) {
+    const auto source = GlFrameSources(test_support::Device())(nullptr);
+    return source.ok() ? (*source)->Draw(scene, fields_, quality) : source.status();
   }
 
   // Gives turns until the work has ended; the pieces' milliseconds.
@@ -62,18 +71,15 @@ class LaneTest : public testing::Test {
 
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
   absl::Status drawn_ = absl::UnknownError("not drawn");
+  std::vector<std::uint8_t> rgb_;
   std::unique_ptr<Lane> lane_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
 };
 
 TEST_F(LaneTest, AFrameOfASmallerOutputIsTheSmallerPicture) {
-  const auto drawn = [this](const scene::Scene& scene, const FrameQuality& quality) {
-    const auto source = GlFrameSources(test_support::Device())(nullptr);
-    return source.ok() ? (*source)->Draw(scene, fields_, quality) : source.status();
-  };
   for (const bool sparse : {false, true}) {
-    const auto half = drawn(SceneOf(320, 180, 64), {.sparse = sparse, .output_scale = 0.5});
-    const auto small = drawn(SceneOf(160, 90, 64), {.sparse = sparse});
+    const auto half = DrawWhole(SceneOf(320, 180, 64), {.sparse = sparse, .output_scale = 0.5});
+    const auto small = DrawWhole(SceneOf(160, 90, 64), {.sparse = sparse});
     ASSERT_TRUE(half.ok()) << half.status();
     ASSERT_TRUE(small.ok()) << small.status();
     EXPECT_EQ(half->width_px, 160);
@@ -82,21 +88,42 @@ TEST_F(LaneTest, AFrameOfASmallerOutputIsTheSmallerPicture) {
   }
 }
 
+// 30 ms on a machine of its own; tests share theirs.
+void ExpectShort(std::vector<double> pieces_ms) {
+  std::ranges::sort(pieces_ms);
+  const double p95_ms = pieces_ms[pieces_ms.size() * 95 / 100];
+  testing::Test::RecordProperty("p95_ms", std::to_string(p95_ms));
+  testing::Test::RecordProperty("longest_ms", std::to_string(pieces_ms.back()));
+  EXPECT_LT(p95_ms, 60.0) << "longest: " << pieces_ms.back();
+}
+
 TEST_F(LaneTest, PiecesOfLargePicturesAreShort) {
   Begin(SceneOf(320, 180, 128));
   Finish();
   ASSERT_TRUE(drawn_.ok()) << drawn_;
   // The first picture has compiled the programs and prepared the storm.
   Begin(SceneOf(1920, 1080, 512));
-  std::vector<double> pieces_ms = Finish();
+  const std::vector<double> pieces_ms = Finish();
   ASSERT_TRUE(drawn_.ok()) << drawn_;
   ASSERT_GT(pieces_ms.size(), 20U);
-  std::ranges::sort(pieces_ms);
-  const double p95_ms = pieces_ms[pieces_ms.size() * 95 / 100];
-  RecordProperty("p95_ms", std::to_string(p95_ms));
-  RecordProperty("longest_ms", std::to_string(pieces_ms.back()));
-  // 30 ms on a machine of its own; tests share theirs.
-  EXPECT_LT(p95_ms, 60.0) << "longest: " << pieces_ms.back();
+  ExpectShort(pieces_ms);
+}
+
+// Most of its time the processors complete it, and the device is free for others.
+TEST_F(LaneTest, PiecesOfPicturesWithFewerRaysAreShortToo) {
+  const FrameQuality sparse{.sparse = true};
+  const scene::Scene large = SceneOf(1920, 1080, 256);
+  Begin(SceneOf(320, 180, 128), sparse);
+  Finish();
+  ASSERT_TRUE(drawn_.ok()) << drawn_;
+  Begin(large, sparse);
+  const std::vector<double> pieces_ms = Finish();
+  ASSERT_TRUE(drawn_.ok()) << drawn_;
+  ASSERT_GT(pieces_ms.size(), 10U);
+  ExpectShort(pieces_ms);
+  const auto whole = DrawWhole(large, sparse);
+  ASSERT_TRUE(whole.ok()) << whole.status();
+  EXPECT_TRUE(whole->rgb == rgb_);
 }
 
 TEST_F(LaneTest, WhatNobodyWantsFreesTheDeviceAtOnce) {

@@ -29,6 +29,7 @@ using std::chrono::seconds;
 using std::chrono::system_clock;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 std::string Sha256(const std::string& text) {
@@ -296,16 +297,22 @@ TEST(DoorTest, WhatTheGatewayRefusesIsWrittenWithoutAnIdentity) {
 }
 
 TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
+  std::vector<std::string> lines;
   SecretFile file(LineOf("anna", "viewer", "one"));
-  Door door(*TrustTokens(file.Path()), std::make_shared<Audit>([](const std::string&) {}), {});
+  Door door(*TrustTokens(file.Path()),
+            std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
   const auto caller = door.Admit("Interact", CallKind::kStream, {"one", "192.0.2.7:1"});
   ASSERT_TRUE(caller.ok()) << caller.status();
   const auto now = std::chrono::steady_clock::now();
   EXPECT_TRUE((*caller)->StillKnown(now).ok());
+  EXPECT_THAT(lines, IsEmpty());
   file.Write(LineOf("anna", "operator", "one"));
   EXPECT_TRUE(absl::IsUnauthenticated((*caller)->StillKnown(now + seconds(2))));
   file.Write(LineOf("ben", "viewer", "two"));
   EXPECT_TRUE(absl::IsUnauthenticated((*caller)->StillKnown(now + seconds(4))));
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_THAT(lines[0], HasSubstr("identity=\"anna\" role=viewer peer=\"192.0.2.7:1\" act=Interact "
+                                  "verdict=refused"));
 }
 
 TEST(DoorTest, ItsOwnTokenIsAnOperators) {
