@@ -3,7 +3,6 @@
 #include <grpcpp/alarm.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 
-#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <functional>
@@ -18,18 +17,18 @@
 #include "base/error_details.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
-#include "glm/geometric.hpp"
 #include "service/catalogue_follower.h"
 #include "service/delivery_deadline.h"
 #include "service/frame_messages.h"
 #include "service/interact_messages.h"
+#include "service/looking_around.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"
 #include "service/scene_update.h"
 #include "service/status_table.h"
-#include "service/wire.h"
+#include "service/untold_news.h"
 #include "session/upkeep.h"
 
 namespace thunderhead::service {
@@ -229,36 +228,11 @@ class InteractCall : public InteractReactor,
     }
     Watch(Watched());
     // In turn, so that neither holds up the other on a slow link.
-    std::optional<grpc::ByteBuffer> next = frame_next_ ? NextFrame() : NextNews();
-    if (!next.has_value()) next = frame_next_ ? NextNews() : NextFrame();
+    const auto next_news = [&] { return news_->Next(*session_, engine_.catalogue); };
+    std::optional<grpc::ByteBuffer> next = frame_next_ ? NextFrame() : next_news();
+    if (!next.has_value()) next = frame_next_ ? next_news() : NextFrame();
     frame_next_ = !frame_next_;
     return next;
-  }
-
-  std::optional<grpc::ByteBuffer> NextNews() {
-    session::Audience& audience = session_->audience();
-    if (const session::Told told = audience.Scene(); told.count != told_scene_) {
-      told_scene_ = told.count;
-      if (const auto newest = session_->Newest(); newest.has_value()) return SceneResponse(*newest);
-    }
-    if (const std::uint64_t changes = engine_.catalogue.Changes(); changes != told_catalogue_) {
-      told_catalogue_ = changes;
-      v1::InteractResponse response;
-      response.mutable_catalogue_changed()->set_revision(changes);
-      return ResponseOf(response);
-    }
-    if (auto news = News(audience.Presence(person_id_), &told_presence_); news.has_value())
-      return news;
-    const session::Told marks = audience.Marks(marks_by_changes_ ? told_marks_ : 0);
-    if (auto news = News(marks, &told_marks_); news.has_value()) return news;
-    if (auto news = News(audience.TimesHeld(), &told_times_); news.has_value()) return news;
-    return News(audience.Pointers(), &told_pointers_);
-  }
-
-  static std::optional<grpc::ByteBuffer> News(const session::Told& told, std::uint64_t* count) {
-    if (told.count == *count) return std::nullopt;
-    *count = told.count;
-    return Joined({}, SharedSlice(told.bytes));
   }
 
   std::optional<grpc::ByteBuffer> NextFrame() {
@@ -276,9 +250,13 @@ class InteractCall : public InteractReactor,
 
   // The person's picture: the session's, the own view, or nothing. Needs mutex_.
   std::shared_ptr<session::Session> Watched() {
-    if (own_view_ != nullptr && session_->audience().Follows(person_id_)) own_view_.reset();
+    std::shared_ptr<session::Session> own_view = around_.Drawn();
+    if (own_view != nullptr && session_->audience().Follows(person_id_)) {
+      around_.Close();
+      own_view.reset();
+    }
     if (hidden_) return nullptr;
-    return own_view_ == nullptr ? session_ : own_view_->drawn();
+    return own_view == nullptr ? session_ : own_view;
   }
 
   // Receives the frames of `session` from now on. Needs mutex_.
@@ -372,10 +350,9 @@ class InteractCall : public InteractReactor,
         takes_video_ = takes_video_ || codec == v1::CODEC_VP9;
         takes_stills_ = takes_stills_ || codec == v1::CODEC_AVIF;
       }
-      marks_by_changes_ = join.marks_by_changes();
       wants_ = WantsOf(join.window());
       session_ = found.session;
-      told_catalogue_ = engine_.catalogue.Changes();
+      news_.emplace(person_id_, join.marks_by_changes(), engine_.catalogue.Changes());
     }
     join_alarm_.Cancel();
     if (join.window().hidden()) SetHidden(true);
@@ -526,7 +503,7 @@ class InteractCall : public InteractReactor,
   // storm's fields. Who returns to the session's view meanwhile stays there.
   absl::Status Detach(std::uint64_t request_id, const v1::Detach& detach) {
     const std::uint64_t returns = session_->audience().Returns(person_id_);
-    const std::uint64_t look = BeginLook(true);
+    const std::uint64_t look = around_.Begin(true);
     // Not before there is a view of one's own: who is refused a camera goes on following.
     absl::Status asked = WithCamera(
         request_id, detach.camera(),
@@ -541,69 +518,31 @@ class InteractCall : public InteractReactor,
                 },
                 Clock::now());
           }
-          if (detached) LookFrom(look, *camera, true);
-          EndDetach();
+          if (detached) {
+            around_.LookFrom(look, *camera, [this](const scene::Camera& first) {
+              return engine_.sessions.OpenView(session_, first, caller_->identity().name);
+            });
+            Wake();
+          }
+          around_.EndDetach();
           return status;
         });
-    if (!asked.ok()) EndDetach();
+    if (!asked.ok()) around_.EndDetach();
     return asked;
   }
 
   absl::Status MoveCamera(std::uint64_t request_id, const v1::MoveCamera& move) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (own_view_ == nullptr && detaching_ == 0) {
-        return base::WithDetails(
-            absl::FailedPreconditionError("you follow the session's view; detach from it first"),
-            {.reason = "NOT_DETACHED"});
-      }
+    if (!around_.Looks()) {
+      return base::WithDetails(
+          absl::FailedPreconditionError("you follow the session's view; detach from it first"),
+          {.reason = "NOT_DETACHED"});
     }
-    const std::uint64_t look = BeginLook(false);
+    const std::uint64_t look = around_.Begin(false);
     return WithCamera(request_id, move.camera(),
                       [this, look](const absl::StatusOr<scene::Camera>& camera) {
-                        if (camera.ok()) LookFrom(look, *camera, false);
+                        if (camera.ok()) around_.LookFrom(look, *camera, nullptr);
                         return camera.status();
                       });
-  }
-
-  // The number of a request for a camera of the own view.
-  std::uint64_t BeginLook(bool detaches) {
-    const std::lock_guard lock(mutex_);
-    if (detaches) ++detaching_;
-    return ++looks_;
-  }
-
-  void EndDetach() {
-    const std::lock_guard lock(mutex_);
-    --detaching_;
-  }
-
-  // Moves the own view to the newest camera asked for, which may be a later one than `camera`;
-  // opens the view if it `detaches`. Without a view the camera is kept for the one that is coming.
-  void LookFrom(std::uint64_t look, const scene::Camera& camera, bool detaches) {
-    std::unique_lock lock(mutex_);
-    if (look > looked_) {
-      looked_ = look;
-      camera_ = camera;
-    }
-    if (own_view_ == nullptr && detaches) {
-      const std::uint64_t opened_for = looked_;
-      const scene::Camera first = *camera_;
-      lock.unlock();
-      const std::shared_ptr<session::OwnView> opened =
-          engine_.sessions.OpenView(session_, first, caller_->identity().name);
-      lock.lock();
-      if (own_view_ == nullptr) own_view_ = opened;
-      if (own_view_ == opened && opened_for == looked_) {
-        lock.unlock();
-        return Wake();
-      }
-    }
-    const std::shared_ptr<session::OwnView> own_view = own_view_;
-    const std::optional<scene::Camera> newest = camera_;
-    lock.unlock();
-    if (own_view != nullptr) own_view->MoveCamera(*newest);
-    if (detaches) Wake();
   }
 
   // A request is on its way to its answer.
@@ -705,20 +644,7 @@ class InteractCall : public InteractReactor,
   }
 
   absl::Status Draw(const std::vector<session::Ray>& rays, const std::optional<glm::vec3>& color) {
-    std::vector<double> distances_m;
-    distances_m.reserve(rays.size());
-    for (const session::Ray& ray : rays) {
-      const glm::dvec3 place_m = session::PlaceSeen(*session_, engine_.store, ray);
-      distances_m.push_back(glm::distance(ray.origin_m, place_m));
-    }
-    // A line has one depth, so that it keeps its shape when the camera turns.
-    const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
-    std::nth_element(distances_m.begin(), middle, distances_m.end());
-    std::vector<glm::dvec3> positions_m;
-    positions_m.reserve(rays.size());
-    for (const session::Ray& ray : rays) {
-      positions_m.push_back(ray.origin_m + *middle * ray.direction);
-    }
+    std::vector<glm::dvec3> positions_m = session::LineSeen(*session_, engine_.store, rays);
     return session_->audience().Draw(
         person_id_,
         [&](session::Board& board) {
@@ -761,23 +687,13 @@ class InteractCall : public InteractReactor,
   bool hidden_ = false;
   bool takes_video_ = false;
   bool takes_stills_ = false;
-  bool marks_by_changes_ = false;
   session::ViewerWants wants_;
-  std::shared_ptr<session::OwnView> own_view_;
-  int detaching_ = 0;                          // requests on their way to a view of one's own
-  std::uint64_t looks_ = 0;                    // requests for its camera
-  std::uint64_t looked_ = 0;                   // the newest that has taken effect
-  std::optional<scene::Camera> camera_;        // of that
+  LookingAround around_;                       // safe without mutex_
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
   std::uint64_t told_doubts_ = 0;
   std::optional<std::uint64_t> asking_for_;  // the doubt that the message being written is about
-  std::uint64_t told_scene_ = 0;
-  std::uint64_t told_catalogue_ = 0;
-  std::uint64_t told_presence_ = 0;
-  std::uint64_t told_marks_ = 0;
-  std::uint64_t told_times_ = 0;
-  std::uint64_t told_pointers_ = 0;
+  std::optional<UntoldNews> news_;           // of who has joined
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "glm/geometric.hpp"
 #include "scene/place_seen.h"
@@ -66,6 +67,21 @@ glm::dvec3 PlaceSeen(const Session& session, volume::StormStore& store, const Ra
   }
   // World coordinates begin in the middle of the storm's domain.
   return ray.origin_m + std::max(0.0, -glm::dot(ray.origin_m, ray.direction)) * ray.direction;
+}
+
+std::vector<glm::dvec3> LineSeen(const Session& session, volume::StormStore& store,
+                                 const std::vector<Ray>& rays) {
+  std::vector<double> distances_m;
+  distances_m.reserve(rays.size());
+  for (const Ray& ray : rays) {
+    distances_m.push_back(glm::distance(ray.origin_m, PlaceSeen(session, store, ray)));
+  }
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::ranges::nth_element(distances_m, middle);
+  std::vector<glm::dvec3> positions_m;
+  positions_m.reserve(rays.size());
+  for (const Ray& ray : rays) positions_m.push_back(ray.origin_m + *middle * ray.direction);
+  return positions_m;
 }
 
 }  // namespace thunderhead::session

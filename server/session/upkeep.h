@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <thread>
+#include <vector>
 
 #include "base/wake_signal.h"
 #include "session/sessions.h"
@@ -33,5 +34,9 @@ class Upkeep {
 // Where the ray meets what the session shows: storm, ground, or near the storm's middle in the
 // clear sky and while the storm is not in memory.
 glm::dvec3 PlaceSeen(const Session& session, volume::StormStore& store, const Ray& ray);
+// A line along the rays, of which there must be one: at the middle of the distances to what they
+// meet, so that it keeps its shape when the camera turns.
+std::vector<glm::dvec3> LineSeen(const Session& session, volume::StormStore& store,
+                                 const std::vector<Ray>& rays);
 
 }  // namespace thunderhead::session
