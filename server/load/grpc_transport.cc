@@ -196,16 +196,17 @@ class GrpcTransport final : public Transport {
   }
 
   absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
-                                   double patience_s) override {
+                                   const CallPatience& patience) override {
     grpc::ClientContext context;
     ShowToken(access_, context);
     context.set_deadline(std::chrono::system_clock::now() +
-                         std::chrono::milliseconds(std::llround(1e3 * patience_s)));
+                         std::chrono::milliseconds(std::llround(1e3 * patience.seconds)));
     const grpc::ByteBuffer sent = BufferOf(request);
     grpc::ByteBuffer received;
     std::promise<grpc::Status> ended;
     stub_.UnaryCall(&context, absl::StrCat(kGrpcService, method), {}, &sent, &received,
                     [&](const grpc::Status& status) { ended.set_value(status); });
+    const std::stop_callback stopping(patience.stop, [&context] { context.TryCancel(); });
     const grpc::Status status = ended.get_future().get();
     if (!status.ok()) return FromGrpc(status);
     grpc::Slice slice;

@@ -55,7 +55,7 @@ absl::StatusOr<v1::CreateSessionResponse> CreateSession(Transport& transport,
   request.mutable_scene()->mutable_camera()->mutable_orbit();
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::string answer,
-      transport.Call("CreateSession", request.SerializeAsString(), kPatience_s));
+      transport.Call("CreateSession", request.SerializeAsString(), {kPatience_s}));
   v1::CreateSessionResponse session;
   if (!session.ParseFromString(answer)) {
     return absl::InternalError("the server's answer to CreateSession is malformed");
@@ -81,7 +81,7 @@ class RunningLoad {
         progress_(progress),
         session_id_(session.session_id()),
         viewer_key_(session.viewer_key()),
-        stills_(options.stills, transport, errors_),
+        stills_(options.stills, transport, stop, errors_),
         presenter_(session.scene().camera(), errors_) {
     presenter_.Join(transport, session.session_id());
     AddViewers(ViewerKind::kHealthy, options.viewers - options.looking);
@@ -238,7 +238,7 @@ class RunningLoad {
   void Close() {
     v1::CloseSessionRequest request;
     request.set_session_id(session_id_);
-    const auto closed = transport_.Call("CloseSession", request.SerializeAsString(), kPatience_s);
+    const auto closed = transport_.Call("CloseSession", request.SerializeAsString(), {kPatience_s});
     if (!closed.ok()) {
       errors_.Add(absl::StrCat("closing the session: ", closed.status().ToString()));
     }

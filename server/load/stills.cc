@@ -29,11 +29,11 @@ void Stills::Ask(int index) {
   request.set_format(v1::IMAGE_FORMAT_JPEG);
   const double asked_s = Now_s();
   const auto answer =
-      transport_.Call("RenderImage", request.SerializeAsString(), options_.patience_s);
+      transport_.Call("RenderImage", request.SerializeAsString(), {options_.patience_s, stop_});
   if (answer.ok()) {
     const std::lock_guard lock(mutex_);
     came_ms_.push_back(1e3 * (Now_s() - asked_s));
-  } else {
+  } else if (!stop_.stop_requested()) {
     errors_.Add(absl::StrCat("a picture: ", answer.status().ToString()));
   }
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <mutex>
+#include <stop_token>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "load/recording.h"
@@ -20,9 +22,9 @@ struct StillOptions {
 
 class Stills {
  public:
-  // Both must outlive it.
-  Stills(const StillOptions& options, Transport& transport, Errors& errors)
-      : options_(options), transport_(transport), errors_(errors) {}
+  // A stop ends the waiting. `transport` and `errors` must outlive it.
+  Stills(const StillOptions& options, Transport& transport, std::stop_token stop, Errors& errors)
+      : options_(options), transport_(transport), stop_(std::move(stop)), errors_(errors) {}
   ~Stills() { Join(); }
   Stills(const Stills&) = delete;
   Stills& operator=(const Stills&) = delete;
@@ -30,7 +32,7 @@ class Stills {
   // Asks for all of them. The load's storm and light are the server's defaults, each with the
   // camera turned a little further.
   void Begin();
-  // Waits until each has come or was refused.
+  // Waits until each has come, was refused, or is not waited for any more.
   void Join();
   // From asking to the picture; once joined.
   StillRecord Record() const { return {options_.count, came_ms_}; }
@@ -40,6 +42,7 @@ class Stills {
 
   const StillOptions options_;
   Transport& transport_;
+  const std::stop_token stop_;
   Errors& errors_;
   std::mutex mutex_;
   std::vector<double> came_ms_;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "absl/status/status.h"
@@ -37,6 +38,12 @@ class Link {
   virtual void Close() = 0;
 };
 
+// How long a call may take.
+struct CallPatience {
+  double seconds = 0.0;
+  std::stop_token stop = {};  // ends it at once
+};
+
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -44,9 +51,10 @@ class Transport {
   // Begins to connect. The listener must outlive the link, and the transport both.
   virtual std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) = 0;
   // Calls a unary method of the service with a serialized request; returns the response, or
-  // DEADLINE_EXCEEDED after `patience_s`. Safe from any thread.
+  // DEADLINE_EXCEEDED after the patience's seconds, CANCELLED when it is stopped. Safe from any
+  // thread.
   virtual absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
-                                           double patience_s) = 0;
+                                           const CallPatience& patience) = 0;
 };
 
 // Credentials for a guarded server.

@@ -299,13 +299,13 @@ class WebCall {
     request_.prepare_payload();
   }
 
-  absl::StatusOr<std::string> Run(double patience_s) {
+  absl::StatusOr<std::string> Run(const CallPatience& patience) {
     tcp::resolver resolver(io_);
     error_code error;
     const auto found = resolver.resolve(host_.name, std::to_string(host_.port), error);
     if (error) return Unavailable(host_, "find", error);
     Plain& socket = get_lowest_layer(stream_);
-    socket.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience_s)));
+    socket.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience.seconds)));
     socket.async_connect(found, [this](error_code failed, const tcp::endpoint&) {
       if (failed) return Fail("connect to", failed);
       HandshakeThen(stream_, host_, [this](error_code refused) {
@@ -313,7 +313,12 @@ class WebCall {
         Write();
       });
     });
+    const std::stop_callback stopping(patience.stop,
+                                      [&] { net::post(io_, [&socket] { socket.close(); }); });
     io_.run();
+    if (!result_.ok() && patience.stop.stop_requested()) {
+      return absl::CancelledError(absl::StrCat("the call of ", host_.Url(), " was stopped"));
+    }
     return result_;
   }
 
@@ -368,9 +373,9 @@ class WebSocketTransport final : public Transport {
   }
 
   absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
-                                   double patience_s) override {
-    if (host_.tls == nullptr) return WebCall<Plain>(host_, method, request).Run(patience_s);
-    return WebCall<Secure>(host_, method, request, *host_.tls).Run(patience_s);
+                                   const CallPatience& patience) override {
+    if (host_.tls == nullptr) return WebCall<Plain>(host_, method, request).Run(patience);
+    return WebCall<Secure>(host_, method, request, *host_.tls).Run(patience);
   }
 
  private:

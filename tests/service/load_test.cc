@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "base/stopwatch.h"
 #include "base/whole_file.h"
 #include "gateway/gateway.h"
 #include "gmock/gmock.h"
@@ -219,6 +220,24 @@ TEST_P(LoadTest, InterruptedHasTheFiguresSoFar) {
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_THAT(report->seconds, Le(30.0));
   EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
+}
+
+TEST_P(LoadTest, InterruptedWaitsForNoStill) {
+  options_.seconds = 60.0;
+  // A minute for the picture, some milliseconds for a frame.
+  service_->machine->ms_per_mega_sample = 2.0;
+  options_.stills = {.count = 1, .width_px = 4096, .height_px = 2048, .slices = 4096};
+  std::stop_source stop;
+  const base::Stopwatch stopwatch;
+  const auto report = Run(
+      [&](const Progress& progress) {
+        if (progress.share > 0.01) stop.request_stop();
+      },
+      stop.get_token());
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_LT(stopwatch.ElapsedMs(), 40'000.0);
+  EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
+  EXPECT_THAT(ToText(*report), HasSubstr("stills: 1 asked for at once, 0 came"));
 }
 
 TEST_P(LoadTest, FailsWithoutAServer) {
