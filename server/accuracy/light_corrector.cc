@@ -31,6 +31,11 @@ constexpr double kMaxTransmittance = 0.8;
 // (docs/decisions/0012).
 constexpr double kPeakCut_deg = 20.0;
 
+// Drawing a picture takes as long as tracing it once, so its rays have two paths each; the first
+// pictures one, as they must show the storm from enough sides (docs/decisions/0012).
+constexpr int kPathsOfRay = 2;
+constexpr std::uint64_t kPicturesOfOnePath = 8;
+
 constexpr int kGroundTexels = 64;
 constexpr int kGroundRays = 2048;       // of a pass
 constexpr int kGroundPassesOfStep = 2;  // of the first steps
@@ -199,8 +204,9 @@ void LightCorrector::TraceProbe(const Probe& probe) {
   reference::Surroundings surroundings =
       reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded);
   surroundings.disc.reset();
+  const int paths_of_ray = pictures_ > kPicturesOfOnePath ? kPathsOfRay : 1;
   const std::vector<glm::dvec3> traced = reference::TraceRays(
-      *medium_, surroundings, rays, {pictures_, 1, threads_, reference::kSimilarAfter});
+      *medium_, surroundings, rays, {pictures_, paths_of_ray, threads_, reference::kSimilarAfter});
   const auto value = [](const std::vector<float>& values, std::size_t first) {
     return glm::dvec3(values[first], values[first + 1], values[first + 2]);
   };
@@ -209,7 +215,7 @@ void LightCorrector::TraceProbe(const Probe& probe) {
     storm_fit_.Add({value(probe.places, firsts[i]), rays[i].direction,
                     value(probe.whole, firsts[i]) - behind, traced[i] - behind});
   }
-  progress_.paths += static_cast<std::int64_t>(rays.size());
+  progress_.paths += paths_of_ray * static_cast<std::int64_t>(rays.size());
 }
 
 // Rays from random places on the ground in cosine-distributed directions, so that their mean
