@@ -1,8 +1,8 @@
 // Corrects a scene's light volume progressively by the reference: draws small pictures of the
-// storm, half of them from near the scene's camera and half from all around, traces one path along
-// each of their rays, and fits factors for the drawn radiance. Paths from the ground correct its
-// skylight. The result is the same for any number of threads. Owns GL objects: use it on the
-// context's thread, which draws in pieces (gl/pieces.h) and traces without the device.
+// storm, half of them from near the scene's camera and half from all around, traces one or two
+// paths along each of their rays, and fits factors for the drawn radiance. Paths from the ground
+// correct its skylight. The result is the same for any number of threads. Owns GL objects: use it
+// on the context's thread, which draws in pieces (gl/pieces.h) and traces without the device.
 #pragma once
 
 #include <cstdint>

@@ -83,13 +83,15 @@ renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuali
   return drawn;
 }
 
-absl::StatusOr<frame::ToneMapped> CompleteMoving(
+absl::StatusOr<CompletedPicture> CompleteMoving(
     const renderers::LinearFrame& coarse, const scene::Scene& scene, const FrameQuality& quality,
     frame::ToneMapper& tone_mapper, const DrawChosen& draw, renderers::StageTimes* stages) {
   gl::Pieces& pieces = tone_mapper.Pieces();
   const base::Stopwatch stopwatch;
   const double waited_ms = pieces.WaitedMs();
-  THUNDERHEAD_ASSIGN_OR_RETURN(frame::ToneMapped mapped, tone_mapper.Map(*coarse.radiance, scene));
+  CompletedPicture whole;
+  frame::ToneMapped& mapped = whole.mapped;
+  THUNDERHEAD_ASSIGN_OR_RETURN(mapped, tone_mapper.Map(*coarse.radiance, scene));
   THUNDERHEAD_ASSIGN_OR_RETURN(frame::FineImage coarsest, tone_mapper.MapFine(*coarse.radiance));
   double drawing_ms = mapped.read_back_ms;
   const auto draw_places =
@@ -101,17 +103,18 @@ absl::StatusOr<frame::ToneMapped> CompleteMoving(
   };
   const double contrast = kMovingContrast / (quality.image_scale * quality.image_scale);
   // Most of it is the processors' work: others may draw meanwhile.
-  absl::StatusOr<std::vector<std::uint8_t>> completed;
+  absl::StatusOr<frame::FineImage> completed;
   THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
     completed = frame::CompletePicture(
         std::move(coarsest), {scene.output.width_px, scene.output.height_px},
         static_cast<int>(std::lround(contrast)), [&](const std::vector<glm::vec2>& places) {
           return pieces.During([&] { return draw_places(places); });
         });
+    if (completed.ok()) mapped.rgb = frame::Dithered(*completed);
   }));
-  THUNDERHEAD_ASSIGN_OR_RETURN(mapped.rgb, std::move(completed));
+  THUNDERHEAD_ASSIGN_OR_RETURN(whole.fine, std::move(completed));
   mapped.tone_ms = stopwatch.ElapsedMs() - (pieces.WaitedMs() - waited_ms) - drawing_ms;
-  return mapped;
+  return whole;
 }
 
 }  // namespace thunderhead::accuracy

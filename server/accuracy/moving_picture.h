@@ -19,7 +19,8 @@ namespace thunderhead::accuracy {
 // in proportion to their pixels.
 inline constexpr int kMovingContrast = 18;
 
-// Of the light while the sun or a field changes (renderers::DrawQuality).
+// Of the light while the sun or a field changes, and in the first picture at rest after it
+// (renderers::DrawQuality).
 inline constexpr double kMovingLightTolerance = 4e-3;
 
 // Frames of a moving scene that asks for more pixels have so many: the work that is done for each
@@ -41,10 +42,15 @@ renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuali
 using DrawChosen =
     std::function<absl::StatusOr<renderers::ChosenFrame>(const std::vector<glm::vec2>& places)>;
 
+struct CompletedPicture {
+  frame::ToneMapped mapped;
+  frame::FineImage fine;  // the same with more bits
+};
+
 // The whole picture from `coarse`, which was drawn with MovingQuality and is coarse; `draw` adds
 // to it. Adds the times of the stages of that to `stages`. Call it during a drawing of
 // `tone_mapper`'s pieces.
-absl::StatusOr<frame::ToneMapped> CompleteMoving(
+absl::StatusOr<CompletedPicture> CompleteMoving(
     const renderers::LinearFrame& coarse, const scene::Scene& scene, const FrameQuality& quality,
     frame::ToneMapper& tone_mapper, const DrawChosen& draw, renderers::StageTimes* stages);
 

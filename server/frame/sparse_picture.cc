@@ -120,32 +120,6 @@ FineImage Spread(const FineImage& from, const glm::ivec2& size_px, const Places&
   return to;
 }
 
-// To 8 bits with the noise of post/tone_map.frag, fract(52.9829189 fract(0.06711056 x + 0.00583715
-// y)), in shares of 2^32.
-std::vector<std::uint8_t> Dithered(const FineImage& picture) {
-  constexpr double kWhole = 4294967296.0;
-  constexpr auto kByColumn = static_cast<std::uint32_t>(0.06711056 * kWhole);
-  constexpr auto kByRow = static_cast<std::uint32_t>(0.00583715 * kWhole);
-  constexpr auto kFactor = static_cast<std::uint64_t>(52.9829189 * 16777216.0);
-  const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
-  std::vector<std::uint8_t> rgb(picture.rgb.size());
-  ForRows(picture.height_px, [&](int y) {
-    const std::size_t begin = width * static_cast<std::size_t>(y);
-    const std::uint16_t* in = picture.rgb.data() + begin;
-    std::uint8_t* out = rgb.data() + begin;
-    std::uint32_t inner = kByRow * static_cast<std::uint32_t>(y);
-    for (int x = 0; x < picture.width_px; ++x, inner += kByColumn) {
-      const auto outer = static_cast<std::uint32_t>((inner * kFactor) >> 24U);
-      // From 0 to just below a step of 8 bits.
-      const std::uint32_t noise = (outer >> 16U) * kFineSteps >> 16U;
-      for (std::size_t c = 0; c < kSparseChannels; ++c) {
-        *out++ = static_cast<std::uint8_t>((*in++ + noise) / kFineSteps);
-      }
-    }
-  });
-  return rgb;
-}
-
 // The pixels in the places of rough ones, so that neighbours in the list are neighbours in the
 // picture.
 std::vector<glm::ivec2> ChildrenOf(const std::vector<std::uint8_t>& rough,
@@ -177,9 +151,8 @@ std::vector<glm::ivec2> ChildrenOf(const std::vector<std::uint8_t>& rough,
 
 glm::ivec2 CoarsestOf(const glm::ivec2& size_px) { return (size_px + 3) / 4; }
 
-absl::StatusOr<std::vector<std::uint8_t>> CompletePicture(FineImage coarsest,
-                                                          const glm::ivec2& size_px, int contrast,
-                                                          const DrawPlaces& draw) {
+absl::StatusOr<FineImage> CompletePicture(FineImage coarsest, const glm::ivec2& size_px,
+                                          int contrast, const DrawPlaces& draw) {
   FineImage picture = std::move(coarsest);
   for (const glm::ivec2& finer_px : {(size_px + 1) / 2, size_px}) {
     const glm::ivec2 before_px(picture.width_px, picture.height_px);
@@ -205,7 +178,32 @@ absl::StatusOr<std::vector<std::uint8_t>> CompletePicture(FineImage coarsest,
                   picture.rgb.begin() + static_cast<std::ptrdiff_t>(kSparseChannels * at));
     }
   }
-  return Dithered(picture);
+  return picture;
+}
+
+// The noise is fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), in shares of 2^32.
+std::vector<std::uint8_t> Dithered(const FineImage& picture) {
+  constexpr double kWhole = 4294967296.0;
+  constexpr auto kByColumn = static_cast<std::uint32_t>(0.06711056 * kWhole);
+  constexpr auto kByRow = static_cast<std::uint32_t>(0.00583715 * kWhole);
+  constexpr auto kFactor = static_cast<std::uint64_t>(52.9829189 * 16777216.0);
+  const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
+  std::vector<std::uint8_t> rgb(picture.rgb.size());
+  ForRows(picture.height_px, [&](int y) {
+    const std::size_t begin = width * static_cast<std::size_t>(y);
+    const std::uint16_t* in = picture.rgb.data() + begin;
+    std::uint8_t* out = rgb.data() + begin;
+    std::uint32_t inner = kByRow * static_cast<std::uint32_t>(y);
+    for (int x = 0; x < picture.width_px; ++x, inner += kByColumn) {
+      const auto outer = static_cast<std::uint32_t>((inner * kFactor) >> 24U);
+      // From 0 to just below a step of 8 bits.
+      const std::uint32_t noise = (outer >> 16U) * kFineSteps >> 16U;
+      for (std::size_t c = 0; c < kSparseChannels; ++c) {
+        *out++ = static_cast<std::uint8_t>((*in++ + noise) / kFineSteps);
+      }
+    }
+  });
+  return rgb;
 }
 
 }  // namespace thunderhead::frame

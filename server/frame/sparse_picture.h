@@ -21,12 +21,14 @@ glm::ivec2 CoarsestOf(const glm::ivec2& size_px);
 using DrawPlaces =
     std::function<absl::StatusOr<std::vector<std::uint16_t>>(const std::vector<glm::vec2>&)>;
 
-// The whole picture, 8-bit sRGB with the noise of post/tone_map.frag, from its coarsest. `contrast`
-// is how far a pixel may lie off the middle of its neighbours on both sides, twice, in steps of 255
-// of any colour, for those in its place in the next picture to follow from it. `draw` is called for
-// each of the two finer pictures, unless all of it follows.
-absl::StatusOr<std::vector<std::uint8_t>> CompletePicture(FineImage coarsest,
-                                                          const glm::ivec2& size_px, int contrast,
-                                                          const DrawPlaces& draw);
+// The whole picture from its coarsest. `contrast` is how far a pixel may lie off the middle of its
+// neighbours on both sides, twice, in steps of 255 of any colour, for those in its place in the
+// next picture to follow from it. `draw` is called for each of the two finer pictures, unless all
+// of it follows.
+absl::StatusOr<FineImage> CompletePicture(FineImage coarsest, const glm::ivec2& size_px,
+                                          int contrast, const DrawPlaces& draw);
+
+// With 8 bits and the noise of post/tone_map.frag.
+std::vector<std::uint8_t> Dithered(const FineImage& picture);
 
 }  // namespace thunderhead::frame

@@ -100,10 +100,13 @@ class Frames {
     *times = linear.stages;
     drawn_sparse_ = linear.coarse;
     if (!linear.coarse) return tone_mapper_.Map(*linear.radiance, scene_);
-    return accuracy::CompleteMoving(
-        linear, scene_, quality, tone_mapper_,
-        [this](const std::vector<glm::vec2>& places) { return renderer_.DrawChosen(places); },
-        times);
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        accuracy::CompletedPicture whole,
+        accuracy::CompleteMoving(
+            linear, scene_, quality, tone_mapper_,
+            [this](const std::vector<glm::vec2>& places) { return renderer_.DrawChosen(places); },
+            times));
+    return std::move(whole.mapped);
   }
 
   scene::Scene scene_;

@@ -1,9 +1,12 @@
 #include "service/cloud_store.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -115,12 +118,15 @@ absl::Status CloudStore::Delete(const std::string& storm_id) {
 
 absl::Status CloudStore::FolderAnswers() {
   return patient_.Ask(path_, [path = path_] {
-    // A file's status may come from a cache. What is wrong with the folder is told by writing.
-    const fs::path asked = fs::path(path) / ".answers";
-    std::ofstream file(asked);
-    file.close();
-    std::error_code error;
-    fs::remove(asked, error);
+    // By a new file, as the status of one may come from a cache. Only whether there is an answer
+    // counts: what else is wrong with the folder is told when the cloud is written.
+    const std::string asked = absl::StrCat(path, "/.answers-", ::getpid());
+    const int file =
+        ::open(asked.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, S_IRUSR);
+    if (file >= 0) {
+      ::close(file);
+      ::unlink(asked.c_str());
+    }
     return absl::OkStatus();
   });
 }

@@ -250,11 +250,8 @@ class InteractCall : public InteractReactor,
 
   // The person's picture: the session's, the own view, or nothing. Needs mutex_.
   std::shared_ptr<session::Session> Watched() {
-    std::shared_ptr<session::Session> own_view = around_.Drawn();
-    if (own_view != nullptr && session_->audience().Follows(person_id_)) {
-      around_.Close();
-      own_view.reset();
-    }
+    const std::shared_ptr<session::Session> own_view =
+        around_.Drawn([this] { return session_->audience().Follows(person_id_); });
     if (hidden_) return nullptr;
     return own_view == nullptr ? session_ : own_view;
   }

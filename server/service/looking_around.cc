@@ -41,15 +41,12 @@ void LookingAround::LookFrom(std::uint64_t look, const scene::Camera& camera, co
   if (view != nullptr) view->MoveCamera(newest);
 }
 
-std::shared_ptr<session::Session> LookingAround::Drawn() const {
-  const std::lock_guard lock(mutex_);
-  return view_ == nullptr ? nullptr : view_->drawn();
-}
-
-void LookingAround::Close() {
+std::shared_ptr<session::Session> LookingAround::Drawn(const std::function<bool()>& follows) {
   std::shared_ptr<session::OwnView> closed;  // ends its life without the mutex
+  // In one step: whoever detaches meanwhile has a view of their own afterwards.
   const std::lock_guard lock(mutex_);
-  closed = std::exchange(view_, nullptr);
+  if (view_ != nullptr && follows()) closed = std::exchange(view_, nullptr);
+  return view_ == nullptr ? nullptr : view_->drawn();
 }
 
 }  // namespace thunderhead::service

@@ -27,9 +27,9 @@ class LookingAround {
   // Moves the view to the newest camera asked for, which may be a later one than `camera`. Without
   // a view `open` opens it; if that is null the camera is kept for the one that is coming.
   void LookFrom(std::uint64_t look, const scene::Camera& camera, const Open& open);
-  // The session that draws the view; null without one.
-  std::shared_ptr<session::Session> Drawn() const;
-  void Close();
+  // The session that draws the view; null without one. Closes the view first if its person
+  // `follows` the session's again.
+  std::shared_ptr<session::Session> Drawn(const std::function<bool()>& follows);
 
  private:
   mutable std::mutex mutex_;

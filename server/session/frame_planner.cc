@@ -75,7 +75,11 @@ Decision FramePlanner::Decide(const NewestScene& newest, Clock::time_point now,
 
 FramePlan FramePlanner::Coarse(const scene::Scene& scene,
                                const std::optional<LastDrawn>& last_drawn) const {
-  const scene::Stage first_dirty = FirstDirty(last_drawn, scene);
+  scene::Stage first_dirty = FirstDirty(last_drawn, scene);
+  // Of a sparse picture the pixels that were chosen are not kept: one at rest takes too long for a
+  // moving tone.
+  const bool keeps_rays = last_drawn.has_value() && !(last_drawn->quality.sparse && drawn_.refined);
+  if (!keeps_rays) first_dirty = std::min(first_dirty, scene::Stage::kView);
   if (first_dirty < scene::Stage::kTone) {
     const double whole_ms = costs_.FrameMs(view_, scene, FrameQuality{}, first_dirty);
     const double output_scale = accuracy::MovingOutputScale(scene);
@@ -174,10 +178,13 @@ bool FramePlanner::IsFiner(const FrameQuality& quality) const {
 }
 
 FrameQuality FramePlanner::FinestSoon(const scene::Scene& scene, scene::Stage first_dirty) const {
-  const bool whole =
-      costs_.FrameMs(view_, scene, FrameQuality{}, first_dirty) <= targets_.refined_ms;
-  const FrameQuality fewer{.sparse = !whole && accuracy::MovesSparsely(scene)};
-  return Finest(scene, first_dirty, targets_.refined_ms, fewer);
+  const FrameQuality rayed = Finest(scene, first_dirty, targets_.refined_ms);
+  // Larger pictures take the processors too long for each of their pixels.
+  const bool sparse = accuracy::MovesSparsely(scene) && accuracy::MovingOutputScale(scene) >= 1.0;
+  if (IsFull(rayed) || !sparse) return rayed;
+  const FrameQuality fewer = Finest(scene, first_dirty, targets_.refined_ms, {.sparse = true});
+  // At the full scale it would say that none finer follows.
+  return fewer.image_scale < 1.0 ? fewer : Step(kSteps - 1, fewer);
 }
 
 FrameQuality FramePlanner::Finest(const scene::Scene& scene, scene::Stage first_dirty,

@@ -99,7 +99,7 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       std::int64_t wanted_paths, accuracy::LightClaim* claim) override {
-    tone_mapped_.reset();
+    ForgetDrawn();
     auto progress =
         base::OrOutOfMemory([&] { return correctors_.Trace(scene, fields, claim, wanted_paths); });
     if (absl::Status fault = Look(); !fault.ok()) return fault;
@@ -140,6 +140,7 @@ class GlFrameSource final : public FrameSource {
   }
 
   absl::StatusOr<frame::FineImage> Fine() override {
+    if (completed_.has_value()) return *std::exchange(completed_, std::nullopt);
     if (!tone_mapped_.has_value()) {
       return absl::FailedPreconditionError("no picture was drawn that could be had with more bits");
     }
@@ -148,7 +149,7 @@ class GlFrameSource final : public FrameSource {
   }
 
   void FreeUnused(double unused_s) override {
-    tone_mapped_.reset();
+    ForgetDrawn();
     renderers_.DropUnusedFor(unused_s);
     while (correctors_.DropOldest() || meters_.DropOldest()) {
     }
@@ -174,12 +175,13 @@ class GlFrameSource final : public FrameSource {
     if (!linear.coarse) return Display(linear, scene, correction);
     DisplayFrame frame = Described(linear, scene, correction);
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        frame::ToneMapped mapped,
+        accuracy::CompletedPicture whole,
         accuracy::CompleteMoving(
             linear, scene, quality, tone_mapper_,
             [this](const std::vector<glm::vec2>& places) { return renderers_.DrawChosen(places); },
             &frame.stages));
-    Fill({scene.output.width_px, scene.output.height_px}, std::move(mapped), &frame);
+    Fill({scene.output.width_px, scene.output.height_px}, std::move(whole.mapped), &frame);
+    completed_ = std::move(whole.fine);
     return frame;
   }
 
@@ -188,6 +190,11 @@ class GlFrameSource final : public FrameSource {
     const gl::Texture2D* linear;
     frame::ToneMapper* mapper;
   };
+
+  void ForgetDrawn() {
+    tone_mapped_.reset();
+    completed_.reset();
+  }
 
   // The device's fault since the last look, if any.
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
@@ -212,7 +219,7 @@ class GlFrameSource final : public FrameSource {
   // memory is of no use.
   template <typename Draw>
   auto Watched(const Draw& draw) -> decltype(draw()) {
-    tone_mapped_.reset();
+    ForgetDrawn();
     for (bool again = false;; again = true) {
       auto drawn = base::OrOutOfMemory([&] { return programs_->Pieces().During(draw); });
       if (absl::Status fault = Look(); !fault.ok()) drawn = std::move(fault);
@@ -278,6 +285,7 @@ class GlFrameSource final : public FrameSource {
   frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
   gl::Texture2D picture_;                             // that Tone was given
   std::optional<Drawn> tone_mapped_;
+  std::optional<frame::FineImage> completed_;  // of a sparse picture
   DeviceInfo info_;
 };
 

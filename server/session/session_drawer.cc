@@ -294,7 +294,7 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
     const auto& fields = turn.kept.fields.Fields();
     const std::optional<LastDrawn>& in_lane = IfDrawnFrom(fields, lane_.Last());
     const std::optional<LastDrawn>& in_loop = IfDrawnFrom(fields, source_.Last());
-    if (!lane_.IsFree() || !has_light(in_lane)) return work;
+    if (!lane_.IsFree() || !has_light(in_lane) || in_lane->quality.sparse) return work;
     const bool is_finer =
         !has_light(in_loop) || in_loop->quality.Scale() < in_lane->quality.Scale();
     if (!is_finer) return work;

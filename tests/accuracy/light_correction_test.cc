@@ -187,11 +187,23 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
 TEST_F(LightCorrection, IsTheSameForAnyNumberOfThreads) {
   const auto one = MakeCorrector(1);
   const auto two = MakeCorrector(2);
-  ASSERT_TRUE(one->TraceUntil(kMinCorrectingPaths, {}, nullptr).ok());
-  ASSERT_TRUE(two->TraceUntil(kMinCorrectingPaths, {}, nullptr).ok());
+  // So many that some rays have two.
+  constexpr std::int64_t kPaths = 2 * kMinCorrectingPaths;
+  ASSERT_TRUE(one->TraceUntil(kPaths, {}, nullptr).ok());
+  ASSERT_TRUE(two->TraceUntil(kPaths, {}, nullptr).ok());
   EXPECT_EQ(one->Progress().paths, two->Progress().paths);
   EXPECT_EQ(one->Correction()->texels, two->Correction()->texels);
   EXPECT_EQ(one->Correction()->ground, two->Correction()->ground);
+}
+
+TEST_F(LightCorrection, FromTheNinthPictureOnARayHasTwoPaths) {
+  const auto corrector = MakeCorrector(0);
+  while (corrector->Progress().paths == 0) ASSERT_TRUE(corrector->Step().ok());
+  for (int picture = 2; picture <= 8; ++picture) ASSERT_TRUE(corrector->Step().ok());
+  const std::int64_t of_eight = corrector->Progress().paths;
+  for (int picture = 9; picture <= 16; ++picture) ASSERT_TRUE(corrector->Step().ok());
+  // From other places, so not just twice as many.
+  EXPECT_NEAR(static_cast<double>(corrector->Progress().paths - of_eight) / of_eight, 2.0, 0.3);
 }
 
 TEST_F(LightCorrection, FewPathsCorrectNothing) {

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "accuracy/presets.h"
+#include "base/device_turn.h"
+#include "base/stopwatch.h"
 #include "clouds/cloud_file.h"
 #include "clouds/presets.h"
 #include "frame/tone_map.h"
@@ -75,16 +77,16 @@ class MovingPictureTest : public testing::Test {
     EXPECT_TRUE(coarse.ok()) << coarse.status();
     EXPECT_TRUE(coarse->coarse);
     renderers::StageTimes times;
-    auto mapped = CompleteMoving(
+    auto whole = CompleteMoving(
         *coarse, scene_, kMoving, *tone_mapper_,
         [&](const std::vector<glm::vec2>& places) {
           if (rays != nullptr) *rays += static_cast<int>(places.size());
           return renderer_->DrawChosen(places);
         },
         &times);
-    EXPECT_TRUE(mapped.ok()) << mapped.status();
-    exposure_ev_ = mapped->exposure_ev;
-    return {kSize_px.x, kSize_px.y, std::move(mapped->rgb)};
+    EXPECT_TRUE(whole.ok()) << whole.status();
+    exposure_ev_ = whole->mapped.exposure_ev;
+    return {kSize_px.x, kSize_px.y, std::move(whole->mapped.rgb)};
   }
 
   frame::RgbImage AtRest() {
@@ -178,16 +180,70 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   // An image_scale so large that no contrast is small enough.
   const FrameQuality all{.image_scale = 100.0, .sparse = true};
   renderers::StageTimes times;
-  const auto mapped = CompleteMoving(
+  const auto whole = CompleteMoving(
       *coarse, scene_, all, *tone_mapper_,
       [&](const std::vector<glm::vec2>& places) { return renderer_->DrawChosen(places); }, &times);
-  ASSERT_TRUE(mapped.ok()) << mapped.status();
+  ASSERT_TRUE(whole.ok()) << whole.status();
   int off = 0;
   for (std::size_t i = 0; i < at_rest.rgb.size(); ++i) {
-    off += std::abs(mapped->rgb[i] - at_rest.rgb[i]) > 2 ? 1 : 0;
+    off += std::abs(whole->mapped.rgb[i] - at_rest.rgb[i]) > 2 ? 1 : 0;
   }
   // The air is found on fewer rays, and pixels whose neighbours are level follow from these.
   EXPECT_LE(off, static_cast<int>(at_rest.rgb.size() / 200));
+}
+
+// Measures for how long nobody has the turn.
+class TimedTurn final : public base::DeviceTurn {
+ public:
+  absl::Status Take() override {
+    free_ms_ += since_given_back_.ElapsedMs();
+    return absl::OkStatus();
+  }
+  void GiveBack() override { since_given_back_.Restart(); }
+
+  void Begin() { free_ms_ = 0.0; }
+  double FreeMs() const { return free_ms_; }
+
+ private:
+  base::Stopwatch since_given_back_;
+  double free_ms_ = 0.0;
+};
+
+TEST_F(MovingPictureTest, OthersMayDrawWhileTheProcessorsCompleteIt) {
+  Show(OfSample("supercell.nc", 1));
+  scene_.output.width_px = 1600;
+  scene_.output.height_px = 900;
+  TimedTurn turn;
+  const auto programs = std::make_shared<gl::ProgramCache>(&turn);
+  renderers::SceneRenderer renderer(programs);
+  frame::ToneMapper tone_mapper(programs);
+  renderers::StageTimes times;
+  const auto whole = programs->Pieces().During([&]() -> absl::StatusOr<CompletedPicture> {
+    const auto coarse = renderer.Draw(scene_, fields_, MovingQuality(scene_, kMoving));
+    if (!coarse.ok()) return coarse.status();
+    turn.Begin();
+    return CompleteMoving(
+        *coarse, scene_, kMoving, tone_mapper,
+        [&](const std::vector<glm::vec2>& places) { return renderer.DrawChosen(places); }, &times);
+  });
+  ASSERT_TRUE(whole.ok()) << whole.status();
+  // The rest of its time is the tone map of the coarse picture.
+  EXPECT_GT(turn.FreeMs(), 0.6 * whole->mapped.tone_ms);
+}
+
+TEST_F(MovingPictureTest, WithMoreBitsItIsTheSamePicture) {
+  Show(OfSample("supercell.nc", 1));
+  const auto coarse = renderer_->Draw(scene_, fields_, MovingQuality(scene_, kMoving));
+  ASSERT_TRUE(coarse.ok()) << coarse.status();
+  renderers::StageTimes times;
+  const auto whole = CompleteMoving(
+      *coarse, scene_, kMoving, *tone_mapper_,
+      [&](const std::vector<glm::vec2>& places) { return renderer_->DrawChosen(places); }, &times);
+  ASSERT_TRUE(whole.ok()) << whole.status();
+  ASSERT_EQ(whole->fine.rgb.size(), whole->mapped.rgb.size());
+  for (std::size_t i = 0; i < whole->fine.rgb.size(); ++i) {
+    ASSERT_NEAR(whole->fine.rgb[i] / 257.0, whole->mapped.rgb[i], 1.01);
+  }
 }
 
 TEST(MovingSize, PicturesUpToTheLimitKeepTheirsAndLargerOnesTheirShape) {

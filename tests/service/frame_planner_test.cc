@@ -272,6 +272,42 @@ TEST_F(FramePlannerTest, AChangeOfToneKeepsTheQualityThatIsThere) {
   EXPECT_EQ(*decision.plan, (FramePlan{FrameQuality{}, true}));
 }
 
+// Its rays are drawn again.
+TEST_F(FramePlannerTest, AChangeOfToneAfterTheFirstFrameAtRestIsAsQuickAsAnyOther) {
+  const Machine machine{5.0, 10.0};
+  Drag(machine, 10);
+  Draw(machine, *Ask(milliseconds(100)).plan);
+  ASSERT_TRUE(last_plan_.quality.sparse);
+  ASSERT_GT(last_ms_, 100.0);
+  scene_.display.exposure_ev = scene_.display.exposure_ev.value_or(0.0) + 1.0;
+  ++revision_;
+  const Decision decision = Ask(milliseconds(0));
+  ASSERT_TRUE(decision.plan.has_value());
+  EXPECT_FALSE(decision.plan->refined);
+  Draw(machine, *decision.plan);
+  EXPECT_LE(last_ms_, 33.0);
+}
+
+TEST_F(FramePlannerTest, TheFirstFrameAtRestOfALargePictureHasNoFewerRays) {
+  const Machine machine{5.0, 10.0};
+  scene_.output.width_px = 3200;
+  scene_.output.height_px = 1800;
+  Drag(machine, 10);
+  DrawAllAt(milliseconds(100), machine);
+  EXPECT_FALSE(last_plan_.refined && last_plan_.quality.sparse);
+}
+
+// Whoever watches knows by its scale whether a finer one follows.
+TEST_F(FramePlannerTest, AFirstFrameAtRestWithFewerRaysIsNeverOfTheFullScale) {
+  const Machine machine{5.0, 3.0};  // 355 ms a full frame, a sparse one less than 180
+  Drag(machine, 10);
+  const auto plan = Ask(milliseconds(100)).plan;
+  ASSERT_TRUE(plan.has_value());
+  EXPECT_TRUE(plan->quality.sparse);
+  EXPECT_LT(plan->quality.image_scale, 1.0);
+  EXPECT_GT(plan->quality.image_scale, 0.8);
+}
+
 TEST_F(FramePlannerTest, AChangeOfToneAfterAnotherSessionDrewIsCoarse) {
   const Machine machine{5.0, 10.0};
   Drag(machine, 5);

@@ -126,6 +126,18 @@ TEST_F(LaneTest, PiecesOfPicturesWithFewerRaysAreShortToo) {
   EXPECT_TRUE(whole->rgb == rgb_);
 }
 
+// For a still at rest, until something else is drawn.
+TEST_F(LaneTest, APictureWithFewerRaysIsThereWithMoreBitsOnce) {
+  const auto source = GlFrameSources(test_support::Device())(nullptr);
+  ASSERT_TRUE(source.ok()) << source.status();
+  const auto picture = (*source)->Draw(SceneOf(320, 180, 64), fields_, {.sparse = true});
+  ASSERT_TRUE(picture.ok()) << picture.status();
+  const auto fine = (*source)->Fine();
+  ASSERT_TRUE(fine.ok()) << fine.status();
+  EXPECT_EQ(fine->rgb.size(), picture->rgb.size());
+  EXPECT_FALSE((*source)->Fine().ok());
+}
+
 TEST_F(LaneTest, WhatNobodyWantsFreesTheDeviceAtOnce) {
   for (const double after_ms : {50.0, 500.0, 1500.0}) {
     *cancelled_ = false;

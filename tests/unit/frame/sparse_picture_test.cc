@@ -47,7 +47,7 @@ struct Canvas {
                                    return At(places);
                                  });
     EXPECT_TRUE(whole.ok()) << whole.status();
-    return *std::move(whole);
+    return Dithered(*whole);
   }
 
   // The largest deviation of the picture from the canvas in steps of 255, at least `margin_px` from
