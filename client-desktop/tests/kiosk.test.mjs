@@ -18,6 +18,8 @@ const VIEWS = [
     camera: { orbit: { azimuthDeg: 45 } },
     fields: [{ hydrometeor: "HYDROMETEOR_ICE", visible: false }],
     lights: [{ azimuthDeg: 90, elevationDeg: 20 }],
+    // An automatic one may take a step when more light has been traced, which changes the whole picture.
+    display: { exposureEv: -0.5 },
   },
   { camera: { topDown: {} }, fields: [{ hydrometeor: "HYDROMETEOR_ICE", visible: true }] },
 ];
