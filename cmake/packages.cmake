@@ -37,7 +37,7 @@ if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   set(CPACK_COMPONENT_SERVER_DESCRIPTION "Server that draws storms of weather models as they would look in the sky")
   # The libraries that it opens by name, the fonts of its products, and who makes its user.
   set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS
-    "ca-certificates, fontconfig, fonts-dejavu-core, libegl1, libegl-mesa0, libgdal32, libgl1-mesa-dri, systemd | systemd-standalone-sysusers")
+    "ca-certificates, fontconfig, fonts-dejavu-core, libegl1, libegl-mesa0, libgdal32, libgl1-mesa-dri, libopengl0, systemd | systemd-standalone-sysusers")
   # Coasts and borders.
   set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "gmt-gshhg-high, gmt-gshhg-low")
   set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
