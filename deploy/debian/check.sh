@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the packages of folder $1 in a clean Debian root, as root, and starts each: the server draws a picture for the Python
-# client, and the desktop shows one on a display without a screen.
+# Installs the packages of folder $1 in a clean Debian root, as root, and starts each: the server, at first with nothing beside it
+# whose libraries it could live on, draws a picture for the Python client, and the desktop shows one on a display without a screen.
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive
 packages=$(realpath "$1")
@@ -15,19 +15,27 @@ cp /etc/resolv.conf "$root/etc/" 2>/dev/null || true
 mount -t proc proc "$root/proc"
 trap 'umount "$root/proc"; rm -rf "$root"' EXIT
 chroot "$root" apt-get update -qq
-chroot "$root" apt-get install -y -qq --no-install-recommends xvfb xauth >/dev/null
 cp "$packages"/*.deb "$root/root/"
-chroot "$root" sh -c 'apt-get install -y -qq --no-install-recommends /root/*.deb >/dev/null'
+cat > "$root/root/serve.sh" <<'END'
+thunderhead serve --data /usr/share/thunderhead/samples --http 127.0.0.1:58080 --grpc 127.0.0.1:58051 --state none >/tmp/serve.log 2>&1 &
+server=$!
+# What the server says counts where something fails.
+trap 'status=$?; [ $status = 0 ] || cat /tmp/serve.log; kill $server 2>/dev/null || true; exit $status' EXIT
+for _ in $(seq 120); do grep -q http:// /tmp/serve.log || ! kill -0 $server 2>/dev/null && break; sleep 1; done
+grep -q http:// /tmp/serve.log || { echo "the server has ended, or is not ready after two minutes" >&2; exit 1; }
+END
+# The names are the root's.
+add() { chroot "$root" sh -c "apt-get install -y -qq --no-install-recommends $1 >/dev/null"; }
+add '/root/thunderhead_*.deb'
 chroot "$root" sh -euc '
   id thunderhead >/dev/null
   thunderhead --version
   test -f /usr/lib/systemd/system/thunderhead.service
-  thunderhead serve --data /usr/share/thunderhead/samples --http 127.0.0.1:58080 --grpc 127.0.0.1:58051 --state none >/tmp/serve.log 2>&1 &
-  server=$!
-  # What the server says counts where something fails.
-  trap "status=\$?; [ \$status = 0 ] || cat /tmp/serve.log; kill $server; exit \$status" EXIT
-  for _ in $(seq 120); do grep -q http:// /tmp/serve.log && break; sleep 1; done
-  grep -q http:// /tmp/serve.log || { echo "the server is not ready after two minutes" >&2; exit 1; }
+  . /root/serve.sh
+'
+add 'xvfb xauth /root/*.deb'
+chroot "$root" sh -euc '
+  . /root/serve.sh
   python3 -c "
 import thunderhead
 with thunderhead.Client(\"127.0.0.1:58051\") as client:
