@@ -1,5 +1,6 @@
-// What one person of a session has not been told yet, frames aside: the scene, the catalogue, who
-// is there, marks, times in memory, pointers. Of each the newest state alone is told.
+// The news of a session that a person has not been told yet: of the scene, the catalogue, the
+// people there, marks, times in memory and pointers, each in its newest state alone. Frames are not
+// among them.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>

@@ -78,8 +78,9 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
   scene::Stage first_dirty = FirstDirty(last_drawn, scene);
   // Of a sparse picture the pixels that were chosen are not kept: one at rest takes too long for a
   // moving tone.
-  const bool keeps_rays = last_drawn.has_value() && !(last_drawn->quality.sparse && drawn_.refined);
-  if (!keeps_rays) first_dirty = std::min(first_dirty, scene::Stage::kView);
+  if (last_drawn.has_value() && last_drawn->quality.sparse && drawn_.refined) {
+    first_dirty = std::min(first_dirty, scene::Stage::kView);
+  }
   if (first_dirty < scene::Stage::kTone) {
     const double whole_ms = costs_.FrameMs(view_, scene, FrameQuality{}, first_dirty);
     const double output_scale = accuracy::MovingOutputScale(scene);

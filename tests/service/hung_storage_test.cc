@@ -107,6 +107,13 @@ class HungStorageTest : public ::testing::Test {
     stub_ = v1::ThunderheadService::NewStub(channel);
     jobs_stub_ = v1::RenderJobService::NewStub(channel);
   }
+  // With a storm, and a folder for clouds.
+  void StartWithClouds() {
+    fs::create_directory(folder_.File("clouds"));
+    WriteStorm(folder_.File("anvil.nc"));
+    Start({folder_.File("anvil.nc")}, "none", {"--clouds", folder_.File("clouds")});
+    AwaitReady();
+  }
   void AwaitOperatorsPort() {
     operators_port_ = PortIn(Await(err_, "operators at http://[0-9.]+:([0-9]+)/", kStartPatience));
     ASSERT_NE(operators_port_, 0) << Contents(err_);
@@ -298,10 +305,7 @@ TEST_F(HungStorageTest, AFileOfTokensThatHangsLocksNobodyOutAndHoldsUpNobody) {
 }
 
 TEST_F(HungStorageTest, ACloudIsNotBegunWhereItsStorageHangs) {
-  fs::create_directory(folder_.File("clouds"));
-  WriteStorm(folder_.File("anvil.nc"));
-  Start({folder_.File("anvil.nc")}, "none", {"--clouds", folder_.File("clouds")});
-  AwaitReady();
+  StartWithClouds();
   ASSERT_FALSE(HasFatalFailure());
   HangAt(folder_.File("clouds"));
   const auto generate = [&] {
@@ -322,10 +326,7 @@ TEST_F(HungStorageTest, ACloudIsNotBegunWhereItsStorageHangs) {
 }
 
 TEST_F(HungStorageTest, ACloudThatIsDeletedWhereItsStorageHangsHoldsUpNoList) {
-  fs::create_directory(folder_.File("clouds"));
-  WriteStorm(folder_.File("anvil.nc"));
-  Start({folder_.File("anvil.nc")}, "none", {"--clouds", folder_.File("clouds")});
-  AwaitReady();
+  StartWithClouds();
   ASSERT_FALSE(HasFatalFailure());
   v1::GenerateCloudResponse generated;
   const grpc::Status made =
