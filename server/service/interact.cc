@@ -3,9 +3,7 @@
 #include <grpcpp/alarm.h>
 #include <grpcpp/support/proto_buffer_reader.h>
 
-#include <atomic>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,21 +13,15 @@
 #include "absl/strings/str_cat.h"
 #include "access/rules.h"
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
 #include "base/status.h"
 #include "service/catalogue_follower.h"
 #include "service/delivery_deadline.h"
 #include "service/frame_messages.h"
 #include "service/interact_messages.h"
-#include "service/looking_around.h"
-#include "service/messages/camera_messages.h"
 #include "service/messages/limits_check.h"
-#include "service/messages/prepare_scene.h"
-#include "service/messages/scene_messages.h"
-#include "service/scene_update.h"
+#include "service/person_requests.h"
 #include "service/status_table.h"
 #include "service/untold_news.h"
-#include "session/upkeep.h"
 
 namespace thunderhead::service {
 namespace {
@@ -84,7 +76,7 @@ std::string NameOfRequest(const v1::InteractRequest& request) {
 // is being written. Requests are handled one after another, by the thread of the read; what is to
 // be written is chosen when the last write is done, so that the newest wins.
 class InteractCall : public InteractReactor,
-                     public session::Viewer,
+                     public Asker,
                      public std::enable_shared_from_this<InteractCall> {
  public:
   static InteractReactor* Start(Engine& engine, grpc::CallbackServerContext* context,
@@ -153,6 +145,20 @@ class InteractCall : public InteractReactor,
     }
     ReadOn();
     Wake();
+  }
+
+  void Await() override {
+    const std::lock_guard lock(mutex_);
+    ++updates_;
+  }
+
+  void Settle(const std::optional<v1::InteractResponse>& answer) override {
+    {
+      const std::lock_guard lock(mutex_);
+      --updates_;
+    }
+    if (answer.has_value()) return Answer(*answer);
+    ReadOn();
   }
 
   void OnCancel() override {
@@ -250,8 +256,7 @@ class InteractCall : public InteractReactor,
 
   // The person's picture: the session's, the own view, or nothing. Needs mutex_.
   std::shared_ptr<session::Session> Watched() {
-    const std::shared_ptr<session::Session> own_view =
-        around_.Drawn([this] { return session_->audience().Follows(person_id_); });
+    const std::shared_ptr<session::Session> own_view = requests_->OwnView();
     if (hidden_) return nullptr;
     return own_view == nullptr ? session_ : own_view;
   }
@@ -340,7 +345,6 @@ class InteractCall : public InteractReactor,
     {
       const std::lock_guard lock(mutex_);
       person_id_ = *person_id;
-      participant_key_ = std::move(participant_key);
       answers_.push_back(ResponseOf(response));
       hidden_ = join.window().hidden();
       for (const int codec : join.codecs()) {
@@ -349,6 +353,7 @@ class InteractCall : public InteractReactor,
       }
       wants_ = WantsOf(join.window());
       session_ = found.session;
+      requests_.emplace(engine_, caller_, session_, person_id_, std::move(participant_key));
       news_.emplace(person_id_, join.marks_by_changes(), engine_.catalogue.Changes());
     }
     join_alarm_.Cancel();
@@ -359,103 +364,19 @@ class InteractCall : public InteractReactor,
 
   absl::Status Obey(const v1::InteractRequest& request) {
     switch (request.message_case()) {
-      case v1::InteractRequest::kUpdateScene:
-        return Update(request.request_id(), request.update_scene());
       case v1::InteractRequest::kAcknowledge:
         return Acknowledge(request.acknowledge());
-      case v1::InteractRequest::kMoveCamera:
-        return MoveCamera(request.request_id(), request.move_camera());
-      case v1::InteractRequest::kDetach:
-        return Detach(request.request_id(), request.detach());
       case v1::InteractRequest::kWindow:
         SetWindow(request.window());
         return absl::OkStatus();
-      case v1::InteractRequest::kPoint:
-        return Point(request.point());
-      case v1::InteractRequest::kAddMark:
-        return AddMark(request.request_id(), request.add_mark());
-      case v1::InteractRequest::kEraseMarks:
-        return EraseMarks(request.erase_marks());
-      case v1::InteractRequest::kSetName:
-        return SetName(request.set_name().name());
-      case v1::InteractRequest::kFollow:
-      case v1::InteractRequest::kAskControl:
-      case v1::InteractRequest::kGiveControl:
-      case v1::InteractRequest::kRefuseControl:
-      case v1::InteractRequest::kTakeControl:
-      case v1::InteractRequest::kSetRules:
-        return ChangeRoster(request);
       case v1::InteractRequest::kAlive:
         return absl::OkStatus();
       case v1::InteractRequest::kJoin:
         return base::InvalidField("join", "comes a second time; it must be the first message only",
                                   "ALREADY_JOINED");
-      case v1::InteractRequest::MESSAGE_NOT_SET:
-        break;
+      default:
+        return requests_->Obey(shared_from_this(), request);
     }
-    return base::InvalidField("message", "is missing, or newer than this server",
-                              "MESSAGE_UNKNOWN");
-  }
-
-  absl::Status ChangeRoster(const v1::InteractRequest& request) {
-    const Clock::time_point now = Clock::now();
-    absl::Status status = session_->audience().Change(
-        [&](session::Roster& roster) {
-          switch (request.message_case()) {
-            case v1::InteractRequest::kFollow:
-              return roster.Follow(person_id_);
-            case v1::InteractRequest::kAskControl:
-              return roster.AskControl(person_id_, now);
-            case v1::InteractRequest::kGiveControl:
-              return roster.GiveControl(person_id_, request.give_control().viewer_id(), now);
-            case v1::InteractRequest::kRefuseControl:
-              return roster.RefuseControl(person_id_, request.refuse_control().viewer_id());
-            case v1::InteractRequest::kTakeControl:
-              return roster.TakeControl(person_id_);
-            default:
-              return roster.SetRules(person_id_,
-                                     RulesOf(request.set_rules().rules(), roster.rules()));
-          }
-        },
-        now);
-    Wake();  // who follows again is told of the change later, but sees the session at once
-    return status;
-  }
-
-  absl::Status SetName(const std::string& text) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string name, NameOf(text, "set_name.name"));
-    return session_->audience().Change(
-        [&](session::Roster& roster) {
-          roster.Rename(person_id_, name);
-          return absl::OkStatus();
-        },
-        Clock::now());
-  }
-
-  absl::Status Update(std::uint64_t request_id, const v1::SceneUpdate& update) {
-    AddUpdate();
-    ChangeScene(
-        engine_, caller_->identity().name, session_, SceneChangeOf(update),
-        [self = shared_from_this()] {
-          return self->session_->audience().MaySteer(self->person_id_);
-        },
-        [self = shared_from_this(), request_id](const auto& revision) {
-          self->caller_->ReportRefusal("Interact/update_scene", revision.status());
-          self->Updated(request_id, revision);
-        });
-    return absl::OkStatus();
-  }
-
-  void Updated(std::uint64_t request_id, const absl::StatusOr<std::uint64_t>& revision) {
-    EndUpdate();
-    v1::InteractResponse response;
-    if (revision.ok()) {
-      response.mutable_scene_taken()->set_request_id(request_id);
-      response.mutable_scene_taken()->set_scene_revision(*revision);
-    } else {
-      response = RefusedResponse(request_id, revision.status());
-    }
-    Answer(response);
   }
 
   absl::Status Acknowledge(const v1::Acknowledgement& acknowledgement) {
@@ -473,90 +394,6 @@ class InteractCall : public InteractReactor,
     if (acknowledgement.video_lost()) watched->hub().LoseVideo(watcher_id);
     watched->hub().Acknowledge(watcher_id, acknowledgement.sequence());
     return absl::OkStatus();
-  }
-
-  // Calls `then` with the camera whose defaults are filled in, or with why there is none: at once,
-  // or on the executor if they depend on the storm. Not if it returns an error.
-  absl::Status WithCamera(std::uint64_t request_id, const v1::Camera& message,
-                          std::function<absl::Status(const absl::StatusOr<scene::Camera>&)> then) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const ReadScene newest, NewestSceneOf(*session_));
-    const auto scene = std::make_shared<v1::Scene>(newest.scene);
-    if (message.kind_case() != v1::Camera::KIND_NOT_SET) *scene->mutable_camera() = message;
-    THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine_.store, engine_.loop.Techniques(), *scene));
-    AddUpdate();
-    FrameThen(engine_, caller_->identity().name, *scene,
-              [self = shared_from_this(), request_id, scene,
-               then = std::move(then)](const absl::Status& framed) {
-                using Camera = absl::StatusOr<scene::Camera>;
-                self->UpdateDone(
-                    request_id, base::OrOutOfMemory([&] {
-                      return then(framed.ok() ? Camera(ToCamera(scene->camera())) : Camera(framed));
-                    }));
-              });
-    return absl::OkStatus();
-  }
-
-  // Cameras of the own view take effect in the order of their requests, though some wait for the
-  // storm's fields. Who returns to the session's view meanwhile stays there.
-  absl::Status Detach(std::uint64_t request_id, const v1::Detach& detach) {
-    const std::uint64_t returns = session_->audience().Returns(person_id_);
-    const std::uint64_t look = around_.Begin(true);
-    // Not before there is a view of one's own: who is refused a camera goes on following.
-    absl::Status asked = WithCamera(
-        request_id, detach.camera(),
-        [this, look, returns](const absl::StatusOr<scene::Camera>& camera) -> absl::Status {
-          bool detached = false;
-          absl::Status status = camera.status();
-          if (status.ok()) {
-            status = session_->audience().Change(
-                [&](session::Roster& roster) -> absl::Status {
-                  THUNDERHEAD_ASSIGN_OR_RETURN(detached, roster.Detach(person_id_, returns));
-                  return absl::OkStatus();
-                },
-                Clock::now());
-          }
-          if (detached) {
-            around_.LookFrom(look, *camera, [this](const scene::Camera& first) {
-              return engine_.sessions.OpenView(session_, first, caller_->identity().name);
-            });
-            Wake();
-          }
-          around_.EndDetach();
-          return status;
-        });
-    if (!asked.ok()) around_.EndDetach();
-    return asked;
-  }
-
-  absl::Status MoveCamera(std::uint64_t request_id, const v1::MoveCamera& move) {
-    if (!around_.Looks()) {
-      return base::WithDetails(
-          absl::FailedPreconditionError("you follow the session's view; detach from it first"),
-          {.reason = "NOT_DETACHED"});
-    }
-    const std::uint64_t look = around_.Begin(false);
-    return WithCamera(request_id, move.camera(),
-                      [this, look](const absl::StatusOr<scene::Camera>& camera) {
-                        if (camera.ok()) around_.LookFrom(look, *camera, nullptr);
-                        return camera.status();
-                      });
-  }
-
-  // A request is on its way to its answer.
-  void AddUpdate() {
-    const std::lock_guard lock(mutex_);
-    ++updates_;
-  }
-
-  void EndUpdate() {
-    const std::lock_guard lock(mutex_);
-    --updates_;
-  }
-
-  void UpdateDone(std::uint64_t request_id, const absl::Status& status) {
-    EndUpdate();
-    if (!status.ok()) return Answer(RefusedResponse(request_id, status));
-    ReadOn();
   }
 
   // Needs mutex_.
@@ -593,68 +430,6 @@ class InteractCall : public InteractReactor,
     Wake();
   }
 
-  absl::Status Point(const v1::Point& point) {
-    std::optional<session::Ray> ray;
-    if (point.has_ray()) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(ray, RayOf(point.ray(), "point.ray"));
-    }
-    return session_->audience().Point(person_id_, ray, Clock::now());
-  }
-
-  // Finds the places on the executor: they are many.
-  absl::Status AddMark(std::uint64_t request_id, const v1::AddMark& message) {
-    THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MayMark(person_id_));
-    if (drawing_.exchange(true)) {
-      return base::WithDetails(
-          absl::ResourceExhaustedError("your last mark is still being placed; wait for it"),
-          {.reason = "MARKS_TOO_FAST", .retry_after = std::chrono::milliseconds(200)});
-    }
-    absl::Status status = PlaceMark(request_id, message);
-    if (!status.ok()) drawing_ = false;
-    return status;
-  }
-
-  absl::Status PlaceMark(std::uint64_t request_id, const v1::AddMark& message) {
-    std::vector<session::Ray> rays;
-    for (const v1::Ray& one : message.rays()) {
-      const std::string path = absl::StrCat("add_mark.rays[", rays.size(), "]");
-      THUNDERHEAD_ASSIGN_OR_RETURN(rays.emplace_back(), RayOf(one, path));
-    }
-    if (rays.empty()) {
-      return base::InvalidField("add_mark.rays", "is empty; a mark has at least one corner",
-                                "VALUE_MISSING");
-    }
-    std::optional<glm::vec3> color;
-    if (message.has_color()) {
-      color = glm::vec3(message.color().red(), message.color().green(), message.color().blue());
-    }
-    AddUpdate();
-    engine_.executor.Submit(
-        caller_->identity().name, [self = shared_from_this(), request_id, rays = std::move(rays),
-                                   color](const absl::Status& status) {
-          const absl::Status drawn =
-              status.ok() ? base::OrOutOfMemory([&] { return self->Draw(rays, color); }) : status;
-          self->drawing_ = false;
-          self->UpdateDone(request_id, drawn);
-        });
-    return absl::OkStatus();
-  }
-
-  absl::Status Draw(const std::vector<session::Ray>& rays, const std::optional<glm::vec3>& color) {
-    std::vector<glm::dvec3> positions_m = session::LineSeen(*session_, engine_.store, rays);
-    return session_->audience().Draw(
-        person_id_,
-        [&](session::Board& board) {
-          return board.Add(person_id_, std::move(positions_m), color, participant_key_).status();
-        },
-        Clock::now());
-  }
-
-  absl::Status EraseMarks(const v1::EraseMarks& message) {
-    return session_->audience().Erase(
-        person_id_, {message.mark_ids().begin(), message.mark_ids().end()}, Clock::now());
-  }
-
   Engine& engine_;
   const std::shared_ptr<const access::Caller> caller_;
   access::RequestBudget budget_;  // used by the reading thread alone
@@ -677,20 +452,18 @@ class InteractCall : public InteractReactor,
   // Set by Join before anything else can use them.
   std::shared_ptr<session::Session> session_;
   std::uint64_t person_id_ = 0;
-  std::string participant_key_;
+  std::optional<PersonRequests> requests_;
+  std::optional<UntoldNews> news_;
 
-  std::atomic<bool> drawing_{false};  // a mark is on its way
   bool frame_next_ = false;
   bool hidden_ = false;
   bool takes_video_ = false;
   bool takes_stills_ = false;
   session::ViewerWants wants_;
-  LookingAround around_;                       // safe without mutex_
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
   std::uint64_t told_doubts_ = 0;
   std::optional<std::uint64_t> asking_for_;  // the doubt that the message being written is about
-  std::optional<UntoldNews> news_;           // of who has joined
 };
 
 }  // namespace
