@@ -8,7 +8,7 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "glm/common.hpp"
-#include "glm/geometric.hpp"
+#include "reference/near_sun.h"
 #include "reference/philox.h"
 #include "reference/scene_problem.h"
 #include "reference/trace_rays.h"
@@ -31,7 +31,8 @@ constexpr double kEvenShare = 0.2;
 constexpr double kWithoutStorm = 0.05;
 // Of the mean radiance; what is drawn darker may be brighter in truth.
 constexpr double kDark = 0.25;
-constexpr double kLeftOut = -1.0;
+// Of the picture's pixels, those next to the sun being left out.
+constexpr double kLeastMeasured = 0.1;
 
 double MeanColor(const glm::vec3& color) {
   return (static_cast<double>(color.x) + color.y + color.z) / 3.0;
@@ -73,6 +74,7 @@ void ErrorMeter::Show(picture::LinearPicture drawn) {
     Weigh();
     traced_.clear();
   }
+  if (!IsMeasurable()) return estimate_.reset();
   double sum = 0.0;
   for (std::size_t i = 0; i < drawn_.radiance.size(); ++i) {
     if (ChanceOf(i) > 0.0) sum += MeanColor(drawn_.radiance[i]);
@@ -84,29 +86,15 @@ void ErrorMeter::Show(picture::LinearPicture drawn) {
   }
 }
 
-// Most of the noise and of the error is where the storm is bright. Pixels that show the sun's disc
-// are left out: it is drawn apart, and a thousand times brighter than all else.
+// Most of the noise and of the error is where the storm is bright.
 void ErrorMeter::Weigh() {
-  const glm::dvec2 size_px(drawn_.size_px);
-  const auto width = static_cast<std::size_t>(drawn_.size_px.x);
-  const auto towards = [&](const glm::dvec2& place_px) {
-    return camera_
-        .RayThrough(2.0 * place_px.x / size_px.x - 1.0, 1.0 - 2.0 * place_px.y / size_px.y)
-        .direction;
-  };
-  std::vector<double> worth(drawn_.radiance.size());
+  const std::vector<bool> left_out = reference::NearSun(camera_, surroundings_.towards_sun,
+                                                        drawn_.size_px, reference::kPeakCut_deg);
+  std::vector<double> worth(drawn_.radiance.size(), 0.0);
   double sum = 0.0;
   pixels_ = 0;
   for (std::size_t i = 0; i < worth.size(); ++i) {
-    const glm::dvec2 corner_px(i % width, i / width);
-    const glm::dvec3 middle = towards(corner_px + 0.5);
-    const double to_sun = glm::length(middle - surroundings_.towards_sun);
-    const double reach =
-        glm::length(middle - towards(corner_px)) +
-        (surroundings_.disc.has_value() ? std::sqrt(2.0 - 2.0 * surroundings_.disc->cosine)
-                                        : -10.0);
-    worth[i] = kLeftOut;
-    if (to_sun < reach) continue;
+    if (left_out[i]) continue;
     const double opacity = drawn_.opacity.empty() ? 1.0 : static_cast<double>(drawn_.opacity[i]);
     worth[i] = std::max(MeanColor(drawn_.radiance[i]), 0.0) *
                (kWithoutStorm + (1.0 - kWithoutStorm) * std::clamp(opacity, 0.0, 1.0));
@@ -117,12 +105,17 @@ void ErrorMeter::Weigh() {
   chances_.resize(worth.size());
   double before = 0.0;
   for (std::size_t i = 0; i < worth.size(); ++i) {
-    if (worth[i] != kLeftOut) {
+    if (!left_out[i]) {
       before += even_share / static_cast<double>(pixels_);
       if (sum > 0.0) before += (1.0 - even_share) * worth[i] / sum;
     }
     chances_[i] = before;
   }
+}
+
+bool ErrorMeter::IsMeasurable() const {
+  return static_cast<double>(pixels_) >=
+         kLeastMeasured * static_cast<double>(drawn_.radiance.size());
 }
 
 double ErrorMeter::ChanceOf(std::size_t index) const {
@@ -138,6 +131,7 @@ std::size_t ErrorMeter::ChoosePixel(std::uint64_t count) const {
 }
 
 void ErrorMeter::Measure(double seconds, const std::stop_token& stop) {
+  if (!IsMeasurable()) return;
   const base::Stopwatch stopwatch;
   do {
     Step();
@@ -145,7 +139,7 @@ void ErrorMeter::Measure(double seconds, const std::stop_token& stop) {
 }
 
 void ErrorMeter::Step() {
-  THUNDERHEAD_CHECK(estimate_.has_value(), "no picture was shown");
+  THUNDERHEAD_CHECK(estimate_.has_value(), "no picture that can be measured was shown");
   const base::Stopwatch stopwatch;
   if (estimate_->Pixels() >= kPilotPixels) {
     paths_per_pixel_ = estimate_->BestPathsPerPixel(kMaxPathsPerPixel);

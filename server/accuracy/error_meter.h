@@ -32,9 +32,14 @@ class ErrorMeter {
   // has as many pixels as the one before; else they are given up.
   void Show(picture::LinearPicture drawn);
 
-  // Traces pixels of the picture for some tenths of a second; it must have been shown.
+  // False if the picture shown last looks at hardly anything but the sun, next to which nothing is
+  // measured (reference/near_sun.h).
+  bool IsMeasurable() const;
+
+  // Traces pixels of the picture for some tenths of a second; one that is measurable must have been
+  // shown.
   void Step();
-  // Steps for about `seconds`, or until `stop` asks to stop.
+  // Steps for about `seconds`, or until `stop` asks to stop; not at all if nothing is measurable.
   void Measure(double seconds, const std::stop_token& stop);
 
   // Of the picture shown last. None while too few pixels are traced.

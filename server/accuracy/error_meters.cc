@@ -99,7 +99,7 @@ absl::StatusOr<ErrorProgress> ErrorMeters::Step(const scene::Scene& scene, const
   kept->since_used.Restart();
   const auto progress = [&] {
     ErrorProgress so_far{.error = kept->meter->Result(), .traced_s = kept->meter->TracedSeconds()};
-    so_far.ended = so_far.traced_s >= kMaxTraced_s ||
+    so_far.ended = !kept->meter->IsMeasurable() || so_far.traced_s >= kMaxTraced_s ||
                    (so_far.error.has_value() && IsEnough(so_far.error->relative_rmse));
     return so_far;
   };

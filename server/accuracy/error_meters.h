@@ -37,7 +37,7 @@ struct ErrorProgress {
 // distance.
 scene::Scene MeasuredScene(const scene::Scene& scene);
 
-// False where the picture shows what the reference does not: uneven ground.
+// False where pictures show what the reference does not: uneven ground.
 bool IsMeasurable(const volume::HydrometeorFields& fields);
 
 class ErrorMeters {

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -20,6 +21,7 @@
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
+#include "measure/against_truth.h"
 #include "measure/light_parts.h"
 #include "measure/trade.h"
 #include "picture/exr_file.h"
@@ -103,8 +105,7 @@ struct Compared {
   const LightFlags& flags;
   const LocalScene& local;
   LightPart part;
-  picture::LinearPicture truth;
-  double noise;
+  measure::AgainstTruth truth;
   renderers::SceneRenderer& renderer;
 
   absl::Status Print(const scene::Scene& scene, const std::string& name,
@@ -116,14 +117,14 @@ struct Compared {
         const picture::LinearPicture single,
         measure::DrawPart(renderer, scene, local.fields, part, 1, correction));
     std::cout << absl::StrFormat("%-5s %-15s %8.4f %+8.4f %8.4f %8.4f\n", measure::NameOf(part),
-                                 name, measure::RelativeRmseWithout(noise, drawn, truth),
-                                 measure::RelativeBias(drawn, truth),
-                                 measure::RelativeRmseWithout(noise, single, truth), noise)
+                                 name, truth.RelativeRmseWithoutNoise(drawn),
+                                 truth.RelativeBias(drawn), truth.RelativeRmseWithoutNoise(single),
+                                 truth.Noise())
               << std::flush;
     const std::string prefix = absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
                                             absl::StrReplaceAll(name, {{" ", "_"}}));
     THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(prefix + ".exr", drawn));
-    return WriteComparison(truth, drawn, local.scene, prefix + ".png");
+    return WriteComparison(truth.Truth(), drawn, local.scene, prefix + ".png");
   }
 };
 
@@ -176,11 +177,14 @@ absl::Status MeasureLight(const LightFlags& flags) {
   for (const LightPart part : kParts) {
     if (!Chosen(flags.parts, measure::NameOf(part))) continue;
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        const picture::LinearPicture truth,
+        picture::LinearPicture traced,
         TruthOf(flags, local, part, absl::StrCat(flags.output, ".", measure::NameOf(part), ".exr"),
                 interruption));
-    const double noise = measure::RelativeNoise(truth);
-    const Compared compared{flags, local, part, truth, noise, renderer};
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        measure::AgainstTruth truth,
+        measure::AgainstTruth::Of(local.scene, *local.fields, std::move(traced),
+                                  measure::TraceOptionsOf(part, flags.peak_cut_deg).peak_cut_deg));
+    const Compared compared{flags, local, part, std::move(truth), renderer};
     for (const auto& transport : accuracy::kTransportNames) {
       const bool once = part == LightPart::kOnce;
       if (once ? transport.value != scene::Transport::kConsistent

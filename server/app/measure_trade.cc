@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -17,7 +18,9 @@
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "gl/context.h"
+#include "measure/against_truth.h"
 #include "measure/trade_table.h"
+#include "reference/trace_scene.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -125,16 +128,20 @@ absl::Status MeasureTrade(const TradeFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture truth,
+  THUNDERHEAD_ASSIGN_OR_RETURN(picture::LinearPicture traced,
                                TruthOf(flags, local, flags.output + ".truth.exr", interruption));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const measure::AgainstTruth truth,
+      measure::AgainstTruth::Of(local.scene, *local.fields, std::move(traced),
+                                reference::kPeakCut_deg));
   measure::Trade trade(local.scene, local.fields, truth, flags.error_seconds);
   measure::TradeTitle title;
   title.storm = absl::StrCat(local.storm_id, ", time ", local.message.time_index());
   title.view = flags.scene.camera.empty() ? "orbit" : flags.scene.camera;
   title.renderer = context->Info().renderer;
-  title.size_px = truth.size_px;
+  title.size_px = truth.Truth().size_px;
   title.truth_samples_per_pixel = flags.samples_per_pixel;
-  title.truth_noise = trade.TruthNoise();
+  title.truth_noise = truth.Noise();
   const std::string csv = flags.output + ".csv";
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<measure::TradeRow> rows,
                                RowsSoFar(csv, measure::CsvHead(title)));

@@ -19,6 +19,19 @@ double MeanRadiance(const picture::LinearPicture& image) {
 
 }  // namespace
 
+picture::LinearPicture Without(const std::vector<bool>& left_out,
+                               const picture::LinearPicture& image) {
+  THUNDERHEAD_CHECK(left_out.size() == image.radiance.size(), std::to_string(left_out.size()));
+  picture::LinearPicture rest;
+  for (std::size_t i = 0; i < image.radiance.size(); ++i) {
+    if (left_out[i]) continue;
+    rest.radiance.push_back(image.radiance[i]);
+    if (!image.standard_error.empty()) rest.standard_error.push_back(image.standard_error[i]);
+  }
+  rest.size_px = {static_cast<int>(rest.radiance.size()), 1};
+  return rest;
+}
+
 double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPicture& truth) {
   THUNDERHEAD_CHECK(image.size_px == truth.size_px, std::to_string(image.size_px.x));
   double squares = 0.0;

@@ -2,10 +2,16 @@
 // functions of pixels; images are rows from top to bottom.
 #pragma once
 
+#include <vector>
+
 #include "frame/image_codec.h"
 #include "picture/linear_picture.h"
 
 namespace thunderhead::measure {
+
+// The picture without the pixels of `left_out`, one for each of its own: the others in one row.
+picture::LinearPicture Without(const std::vector<bool>& left_out,
+                               const picture::LinearPicture& image);
 
 // Root mean square of the difference over pixels and colours, relative to the truth's mean
 // radiance. The images must have the same size and the truth must not be black.

@@ -8,7 +8,7 @@
 #include "accuracy/named_settings.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
-#include "frame/image_codec.h"
+#include "measure/image_error.h"
 
 namespace thunderhead::measure {
 namespace {
@@ -136,14 +136,13 @@ scene::Scene TrueScene(scene::Scene scene) {
 }
 
 Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-             picture::LinearPicture truth, double error_seconds)
+             AgainstTruth truth, double error_seconds)
     : scene_(std::move(scene)),
       fields_(std::move(fields)),
       truth_(std::move(truth)),
-      error_seconds_(error_seconds),
-      truth_noise_(RelativeNoise(truth_)) {
-  scene_.output.width_px = truth_.size_px.x;
-  scene_.output.height_px = truth_.size_px.y;
+      error_seconds_(error_seconds) {
+  scene_.output.width_px = truth_.Truth().size_px.x;
+  scene_.output.height_px = truth_.Truth().size_px.y;
 }
 
 absl::StatusOr<frame::RgbImage> Trade::Display(const gl::Texture2D& linear) {
@@ -183,7 +182,7 @@ absl::Status Trade::Estimate(const scene::Scene& scene, const picture::LinearPic
 
 absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_token& stop) {
   if (truth_display_.rgb.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(frame::TextureOf(truth_)));
+    THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(frame::TextureOf(truth_.Truth())));
   }
   scene::Scene scene = scene_;
   scene.rendering.technique = setting.technique;
@@ -208,8 +207,8 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
     if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
     if (i + 1 < kTimedFrames) continue;
     const picture::LinearPicture image = frame::PictureOf(*linear.radiance);
-    row.relative_rmse = RelativeRmseWithout(truth_noise_, image, truth_);
-    row.relative_bias = RelativeBias(image, truth_);
+    row.relative_rmse = truth_.RelativeRmseWithoutNoise(image);
+    row.relative_bias = truth_.RelativeBias(image);
     THUNDERHEAD_RETURN_IF_ERROR(Estimate(scene, image, stop, &row.estimated_error));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage seen, frame::DecodeJpeg(jpeg));

@@ -12,8 +12,9 @@
 #include "accuracy/error_meter.h"
 #include "accuracy/light_corrector.h"
 #include "accuracy/setting.h"
+#include "frame/image_codec.h"
 #include "frame/tone_map.h"
-#include "measure/image_error.h"
+#include "measure/against_truth.h"
 #include "picture/linear_picture.h"
 #include "renderers/scene_renderer.h"
 #include "scene/scene.h"
@@ -60,14 +61,11 @@ class Trade {
   // `scene` gives the settings that are not swept; the truth has its size. Each picture's error is
   // also estimated for `error_seconds`, 0: not.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-        picture::LinearPicture truth, double error_seconds);
+        AgainstTruth truth, double error_seconds);
 
   // CANCELLED if `stop` was requested while paths were traced. Traced paths are kept for the next
   // setting, so settings that differ only in their number are best measured in ascending order.
   absl::StatusOr<TradeRow> Measure(const Setting& setting, const std::stop_token& stop);
-
-  // Relative RMSE of the truth's own noise.
-  double TruthNoise() const { return truth_noise_; }
 
  private:
   absl::Status Estimate(const scene::Scene& scene, const picture::LinearPicture& image,
@@ -79,10 +77,9 @@ class Trade {
 
   scene::Scene scene_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
-  picture::LinearPicture truth_;
+  AgainstTruth truth_;
   double error_seconds_;
   frame::RgbImage truth_display_;
-  double truth_noise_ = 0.0;
   renderers::SceneRenderer renderer_;
   std::unique_ptr<accuracy::LightCorrector> corrector_;
   double corrected_by_ = 0.0;  // million paths of the last request

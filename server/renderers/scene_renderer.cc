@@ -274,8 +274,9 @@ absl::Status SceneRenderer::AddSun(const scene::Scene& scene, const scene::View&
                                    const SunGlow::Picture& picture) {
   const SunGlow::Sun sun = workspace_.surroundings.SunFrom(scene, view);
   const scene::MediumSettings* settings = scene::MediumSettingsOf(scene.rendering.technique);
-  // By the paper's transport radiance is on the paper's scale of display.
-  if (technique_->DrawsMedium() && !technique_->Empty() && settings != nullptr &&
+  // The aureole is the medium's own, so it has no place around anything else that stands for it. By
+  // the paper's transport radiance is on the paper's scale of display.
+  if (technique_->KeepsToCover() && !technique_->Empty() && settings != nullptr &&
       !scene::IsPaper(settings->transport)) {
     return sun_glow_.AddThrough(workspace_.medium, *settings, drawn_slices_, sun, view,
                                 &workspace_.ground, picture);

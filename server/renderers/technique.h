@@ -76,7 +76,7 @@ class Technique {
   // background.
   virtual absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
                                 StageTimes* times) = 0;
-  // True if nothing is drawn away from the medium's occupied bricks.
+  // True if what is drawn is the workspace's medium itself: nothing away from its occupied bricks.
   virtual bool KeepsToCover() const { return false; }
   // True if DrawView draws RenderSettings::chosen.
   virtual bool DrawsChosen() const { return false; }

@@ -154,6 +154,33 @@ TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
   EXPECT_EQ(frame::ReadLinear(*frame->radiance), sky);
 }
 
+// The aureole belongs to the medium. Around balls and surfaces it would follow the cells of a
+// medium that is not seen.
+TEST_F(SceneRendererTest, OnlyAMediumThatIsSeenHasAnAureole) {
+  fields_ = support::MakeSlab(4000.0, 2000.0, 1e-4);
+  Orbit().azimuth_deg = 75.0;
+  Orbit().elevation_deg = 2.0;
+  Orbit().distance_m = 8e3;
+  scene_.output = {64, 64, 90};
+  scene_.sun = {255.0, 4.0};
+  const auto glow_px = [&] {
+    const auto seen = frame::ReadLinear(*renderer_->Draw(scene_, fields_, {})->radiance);
+    const auto unseen =
+        frame::ReadLinear(*renderer_->Draw(scene_, fields_, {.sun_seen = false})->radiance);
+    int changed = 0;
+    for (std::size_t i = 0; i < seen.size(); i += 4) changed += seen[i] > unseen[i] * 1.01F ? 1 : 0;
+    return changed;
+  };
+  EXPECT_GT(glow_px(), 200);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kHalfAngle);
+  EXPECT_GT(glow_px(), 200);
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kMetaball);
+  test_support::MetaballsOf(scene_.rendering.technique).count = 30;
+  EXPECT_LE(glow_px(), 9) << "the disc";
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
+  EXPECT_LE(glow_px(), 9) << "the disc";
+}
+
 TEST_F(SceneRendererTest, ACumulusIsDarkAtNight) {
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   test_support::CumulusOf(scene_.rendering.technique).source = scene::CumulusSource::kCauliflower;

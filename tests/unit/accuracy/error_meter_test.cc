@@ -10,6 +10,7 @@
 #include "base/memory_budget.h"
 #include "gtest/gtest.h"
 #include "measure/image_error.h"
+#include "reference/near_sun.h"
 #include "reference/scene_problem.h"
 #include "reference/trace_scene.h"
 #include "tests/support/slab.h"
@@ -143,6 +144,58 @@ TEST(ErrorMeter, FalseColorsAreNoError) {
   meter->Show(truth);
   for (int step = 0; step < 8; ++step) meter->Step();
   EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
+}
+
+// The tower against the sun, which stands just above it.
+scene::Scene AgainstTheSun() {
+  scene::Scene scene = TowerScene();
+  auto& camera = std::get<scene::OrbitCamera>(scene.camera);
+  camera.azimuth_deg = 75.0;
+  camera.elevation_deg = 5.0;
+  scene.sun = {255.0, 8.0};
+  return scene;
+}
+
+TEST(ErrorMeter, TheAureoleThatTheReferenceLeavesOutIsNoError) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  const scene::Scene scene = AgainstTheSun();
+  picture::LinearPicture drawn = TruthOf(scene, *fields);
+  const double noise = measure::RelativeNoise(drawn);
+  const std::vector<bool> near_sun =
+      reference::NearSun(reference::CameraOf(scene, *fields),
+                         scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg),
+                         drawn.size_px, reference::kPeakCut_deg);
+  const auto brightened = std::ranges::count(near_sun, true);
+  EXPECT_GT(brightened, 5);
+  EXPECT_LT(brightened, 200);
+  for (std::size_t i = 0; i < near_sun.size(); ++i) {
+    if (near_sun[i]) drawn.radiance[i] += 1e3F;
+  }
+  const auto meter = *ErrorMeter::Create(scene, fields, 0);
+  meter->Show(drawn);
+  ASSERT_TRUE(meter->IsMeasurable());
+  for (int step = 0; step < 8; ++step) meter->Step();
+  EXPECT_LT(meter->Result()->relative_rmse.low, noise);
+}
+
+TEST(ErrorMeters, APictureOfHardlyAnythingButTheSunIsNotMeasured) {
+  const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
+  scene::Scene scene = AgainstTheSun();
+  scene.camera = scene::SpotterCamera{.place_m = {0.0, 2e4},
+                                      .eye_height_m = 2.0,
+                                      .azimuth_deg = 255.0,
+                                      .elevation_deg = 8.0,
+                                      .focal_length_mm = 1000.0};
+  const ErrorMeters::Draw draw = [](const scene::Scene&) {
+    return picture::LinearPicture{{32, 24}, std::vector<glm::vec3>(768, glm::vec3(0.1F))};
+  };
+  ErrorMeters meters;
+  for (int step = 0; step < 3; ++step) {
+    const auto progress = meters.Step(scene, fields, 0, draw);
+    ASSERT_TRUE(progress.ok()) << progress.status();
+    EXPECT_TRUE(progress->ended);
+    EXPECT_FALSE(progress->error.has_value());
+  }
 }
 
 TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
