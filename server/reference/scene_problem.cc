@@ -194,7 +194,8 @@ Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind be
           glm::dvec3(air::airlight_before(transmittance, sky.radiance, sky_depth))};
 }
 
-// Light that a metre of lit air at `distance_m` on a ray from the eye sends there.
+// Light that a metre of lit air at `distance_m` on a ray from the eye sends there, in all as much
+// as AirBefore has of it.
 AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                     const glm::dvec3& towards_sun) {
   namespace air = physics::glsl;
@@ -219,7 +220,13 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   light.of_sky = scale * scattered * around.atmosphere.DiffuseMeanRadiance(place);
   // The medium's light has the sun's irradiance in it.
   light.per_radiance = static_cast<float>(around.brightness) * scattered;
-  return light;
+  const physics::ClearSky::Seen sky = around.Seen(ray.direction);
+  const glm::vec3 sky_depth = air::depth_of_air_mass(around.turbidity, sky.air_mass);
+  const glm::vec3 gathered =
+      air::airlight_per_m(transmittance, air::air_extinction_per_m(around.turbidity, densities),
+                          sky.radiance, sky_depth);
+  const glm::dvec3 share(air::share_gathered(gathered, glm::vec3(light.of_sun + light.of_sky)));
+  return {share * light.of_sun, share * light.of_sky, share * light.per_radiance};
 }
 
 // The ground where rays from the eye meet it, null where it is the same everywhere. A ray shows a

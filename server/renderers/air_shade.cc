@@ -22,7 +22,7 @@ constexpr double kHighest_m = 3e4;  // air above is taken for as bright as there
 constexpr int kPixelsPerRay = 6;        // along each side
 constexpr glm::ivec2 kMinRays(48, 36);  // unless the picture has fewer pixels
 constexpr glm::ivec2 kMaxRays(160, 120);
-constexpr int kDistances = 25;
+constexpr int kDistances = 25;  // and the sky's
 
 // The sky's hidden share varies slowly.
 constexpr double kHiddenSpacing_m = 5000.0;
@@ -131,7 +131,7 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
   faces_sunlight_ = static_cast<float>(scene.sun.irradiance) * sunlight;
   const glm::ivec3 size(glm::clamp((picture_px + kPixelsPerRay - 1) / kPixelsPerRay,
                                    glm::min(picture_px, kMinRays), kMaxRays),
-                        kDistances);
+                        kDistances + 1);
   if (shade_.Size() != size) shade_ = gl::Texture3D(GL_RGBA16F, size);
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
                                programs_->Get(gl::ProgramSource::Compute("air/shade.comp")));
@@ -142,7 +142,8 @@ absl::Status AirShade::Cast(const scene::Scene& scene, const scene::View& view,
   program->Set(uniform::shade_size, size);
   program->Set(uniform::local_from_world, glm::mat3(view.local_from_world));
   program->Set(uniform::towards_sun, glm::vec3(towards_sun));
-  program->Set(uniform::sky_scale, static_cast<float>(scene.sun.irradiance * scene.sky.brightness));
+  program->Set(uniform::horizon_sine,
+               physics::HorizonSine(altitude_m, static_cast<float>(ground.Lowest_m())));
   program->Set(uniform::level_irradiance, level_irradiance_);
   program->Set(uniform::level_skylight, level_skylight_);
   program->Set(uniform::faces_sunlight, sunlight);

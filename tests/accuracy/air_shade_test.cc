@@ -117,6 +117,27 @@ TEST_F(AirShadeTest, AirBelowAStormIsAsDarkAsTheReferenceHasIt) {
   }
 }
 
+// In front of a black roof only air shines. Next to the sun most of its light is that of haze near
+// the eye. When more was taken than airlight_before has up to a distance, bases were black with
+// violet rims, in the reference too.
+TEST_F(AirShadeTest, OfAirInFrontOfAStormNoMoreIsTakenThanItHas) {
+  test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
+  scene_.fields[0].optics.albedo = 0.0F;
+  scene_.sun.elevation_deg = 12.0;
+  const std::vector<glm::vec3> picture = Drawn();
+  for (const int row : {10, 30, 50}) {
+    const glm::dvec3 traced = TracedRow(row, true);
+    const glm::dvec3 lit = TracedRow(row, false);
+    const glm::dvec3 drawn = DrawnRow(picture, row);
+    for (int color = 0; color < 3; ++color) {
+      EXPECT_GT(lit[color], 0.01);
+      EXPECT_LT(traced[color], 0.5 * lit[color]) << row << ' ' << color;
+      EXPECT_GT(traced[color], 0.0) << row << ' ' << color;
+      EXPECT_NEAR(drawn[color], traced[color], 0.04 * lit[color]) << row << ' ' << color;
+    }
+  }
+}
+
 TEST_F(AirShadeTest, AirAboveAStormIsLit) {
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
   scene_.camera = scene::SpotterCamera{{0.0, -34e3}, 9500.0, 0.0, 4.0, 40.0};

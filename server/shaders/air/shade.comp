@@ -1,6 +1,9 @@
-// The light that the storm's shadow takes from the air: for each ray of a coarse picture, the radiance that is missing
-// from the eye up to each of a number of distances, a layer each. The first layer is at `near_m` and holds nothing. Rays go
-// on below the ground, so that layers change smoothly across the picture. Coordinates are metres from the eye.
+// The light that the storm's shadow takes from the air: for each ray of a coarse picture, the share of airlight_before that
+// is missing from the eye up to each of a number of distances, a layer each, and in one more layer that of the whole sky. The
+// first layer is at `near_m` and holds nothing. Of a step's part of airlight_before, which is that of its air in the light that
+// the air takes away, the share is missing that is missing of what sun and sky make the step send: so no light is taken that
+// airlight_before has not. Rays go on below the ground, so that shares change smoothly across the picture. Coordinates are
+// metres from the eye.
 #include "common/bindings.glsl"
 #include "common/sky_hidden.glsl"
 #include "common/storm_shadow.glsl"
@@ -17,13 +20,13 @@ layout(binding = kAirLightUnit) uniform sampler2D air_light;
 uniform ivec3 shade_size;
 uniform mat3 local_from_world;
 uniform vec3 towards_sun;
-uniform float sky_scale;
 uniform vec3 level_irradiance;  // of clear sky and sun on level ground
 uniform vec3 level_skylight;    // that of the sky
 uniform float turbidity;
 uniform float altitude_m;
 uniform vec2 air_densities;  // there
 uniform float ground_curvature_per_m;
+uniform float horizon_sine;
 uniform float lowest_air_m;  // above sea level
 uniform float near_m;        // distance along the rays
 uniform float far_m;
@@ -31,6 +34,8 @@ uniform float air_light_per_m;  // texture coordinates of a metre of height
 
 const float kInversePi = 0.318309886;
 const float kBelowGround_m = 4000.0;  // to which the air goes on
+const float kSkysEnd_m = 2e6;
+const float kMostAdded = 1.0;  // of the light of air that a storm lights; in the Earth's shadow there is hardly any
 
 // Around a point, along a step; with one place for it the shadow's edge would show as many edges as there are steps.
 float mean_blocked(vec3 point_m, vec3 step) {
@@ -48,16 +53,17 @@ void main() {
   vec3 ray = ray_direction(place);
   float sine = (local_from_world * ray).z;
   float mu = dot(ray, towards_sun);
-  int steps = shade_size.z - 1;
+  int steps = shade_size.z - 2;
   float step_m = (far_m - near_m) / float(steps);
   vec2 size = vec2(textureSize(air_light, 0));
-  vec3 missing = vec3(0.0);
+  vec3 missing = vec3(0.0);  // in units of what airlight_before has of endless air
   vec3 air_per_m = air_optical_depth() / kAirScaleHeight_m;
   vec3 haze_per_m = haze_optical_depth(turbidity) / kHazeScaleHeight_m;
   AirPath path = AirPath(altitude_m, sine, ground_curvature_per_m, near_m);
-  vec3 depth = depth_of_air(turbidity, air_densities, path);  // before the step
+  vec3 depth = depth_of_air(turbidity, air_densities, path);
   float air_phase_here = air_phase(mu);
   float haze_phase_here = kHazeAlbedo * haze_phase(mu);
+  vec3 transmittance = exp(-depth);
   imageStore(shade, ivec3(texel, 0), vec4(0.0));
   for (int i = 0; i < steps; ++i) {
     float distance_m = near_m + (float(i) + 0.5) * step_m;
@@ -75,11 +81,16 @@ void main() {
     vec3 of_storm = mix(0.5 * through + reflected, through, blocked) * kInversePi;
     vec3 air = densities.x * air_per_m;
     vec3 haze = densities.y * haze_per_m;
-    vec3 lost = blocked * (air_phase_here * air + haze_phase_here * haze) * sunlight +
-                (air + kHazeAlbedo * haze) * (storm.hidden * skylight - of_storm);
-    vec3 of_step = step_m * (air + haze);
-    missing += sky_scale * step_m * exp(-depth - 0.5 * of_step) * lost;
-    depth += of_step;
-    imageStore(shade, ivec3(texel, i + 1), vec4(missing, 0.0));
+    vec3 of_sun = (air_phase_here * air + haze_phase_here * haze) * sunlight;
+    vec3 scattering = air + kHazeAlbedo * haze;
+    vec3 lost = blocked * of_sun + scattering * (storm.hidden * skylight - of_storm);
+    vec3 share = lost / max(of_sun + scattering * skylight, vec3(1e-20));
+    vec3 behind = transmittance * exp(-step_m * (air + haze));
+    missing += (transmittance - behind) * max(share, vec3(-kMostAdded));
+    transmittance = behind;
+    imageStore(shade, ivec3(texel, i + 1), vec4(missing / max(1.0 - transmittance, vec3(1e-6)), 0.0));
   }
+  AirPath sky = AirPath(altitude_m, max(sine, horizon_sine), ground_curvature_per_m, kSkysEnd_m);
+  vec3 of_sky = 1.0 - exp(-depth_of_air(turbidity, air_densities, sky));
+  imageStore(shade, ivec3(texel, steps + 1), vec4(missing / max(of_sky, vec3(1e-6)), 0.0));
 }

@@ -113,11 +113,21 @@ float sphere_distance_m(float sine) {
 }
 
 // Light that the air up to a distance sends to the eye, less what the storm's shadow takes from it.
-vec3 shaded_airlight(vec3 airlight, float sine, float distance_m) {
+vec3 shaded_airlight(vec3 airlight, vec3 ray, float distance_m, vec3 sky_radiance, vec3 sky_depth) {
 #if SHADED
-  return max(airlight - air_shade_before(position, sine, distance_m), vec3(0.0));
+  vec3 of_shaded = airlight;
+  if (distance_m > shade_far_m) of_shaded = airlight_before(exp(-depth_before(ray, shade_far_m)), sky_radiance, sky_depth);
+  return max(airlight - air_shade_before(position, distance_m) * of_shaded, vec3(0.0));
 #else
   return airlight;
+#endif
+}
+
+vec3 shaded_sky(vec3 radiance) {
+#if SHADED
+  return radiance * max(vec3(1.0) - air_shade_of_sky(position), vec3(0.0));
+#else
+  return radiance;
 #endif
 }
 
@@ -125,9 +135,10 @@ vec3 shaded_airlight(vec3 airlight, float sine, float distance_m) {
 vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
 #if RELIEF
   vec3 transmittance = exp(-depth_before(ray, ground_m));
-  return transmittance * radiance + shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), ray.z, ground_m);
+  vec3 airlight = airlight_before(transmittance, sky_radiance, sky_depth);
+  return transmittance * radiance + shaded_airlight(airlight, ray, ground_m, sky_radiance, sky_depth);
 #else
-  return exp(-sky_depth) * radiance + shaded_airlight(sky_radiance, ray.z, ground_m);
+  return exp(-sky_depth) * radiance + shaded_airlight(sky_radiance, ray, ground_m, sky_radiance, sky_depth);
 #endif
 }
 
@@ -147,7 +158,7 @@ vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sk
   float distance_m = 0.5 * (path_m.x + max(end_m, path_m.x));
 #endif
   vec3 transmittance = exp(-depth_before(ray, distance_m));
-  vec3 airlight = shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), ray.z, distance_m);
+  vec3 airlight = shaded_airlight(airlight_before(transmittance, sky_radiance, sky_depth), ray, distance_m, sky_radiance, sky_depth);
   return vec4(transmittance * front.rgb + opacity * airlight, front.a);
 }
 #endif
@@ -167,7 +178,7 @@ void main() {
   vec3 sky_depth = depth_of_air_mass(turbidity, sky.air_mass);
   vec3 background = ground_m > 0.0 ? seen_ground(ground_radiance(origin_m + ground_m * world_ray, world_ray, ground_m), ray, ground_m,
                                                  sky_radiance, sky_depth)
-                                   : shaded_airlight(sky_radiance, ray.z, kFarthestGround_m);
+                                   : shaded_sky(sky_radiance);
 #if FRONT
   vec4 front = seen_front(origin_m, world_ray, ray, ground_m, sky_radiance, sky_depth);
   rgb_and_opacity = vec4(front.rgb + front.a * background, 1.0 - front.a);
