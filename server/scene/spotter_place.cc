@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
@@ -27,13 +28,17 @@ constexpr double kSkyAboveTop = 0.05;
 
 constexpr int kDirections = 24;
 
-// Weights of the hidden tower and of the hidden sky above it; the hidden base counts as 1.
+// Weights of the hidden tower, of the hidden sky above it, and of looking straight against the sun,
+// where all that faces the eye is in shadow; the hidden base counts as 1.
 constexpr double kTowerWeight = 0.5;
 constexpr double kSkyWeight = 0.5;
+constexpr double kBacklitWeight = 1.0;
 
-// A place beyond the farthest, clear of a cloud that surrounds the core, is the last choice: 500 m
-// count as much as half of the base.
-constexpr double kDistanceWeight = 25.0;
+// Under a wide anvil nothing of the tower is seen from less than kFarthest_m. So on each side
+// places this many times as far are looked at, too, and as far again as it takes to be clear of
+// cloud; they cost this much for each further kFarthest_m, as haze takes contrast.
+constexpr double kFarther[] = {1.5, 2.0};
+constexpr double kDistanceWeight = 0.3;
 
 // By which a side must be better than one that is nearer to the camera's own azimuth.
 constexpr double kNearEqual = 0.02;
@@ -42,11 +47,13 @@ constexpr double kNearEqual = 0.02;
 struct CoreView {
   double lowest_tilt = 0.0;   // of the camera: shows kMaxGround
   double highest_tilt = 0.0;  // shows kMinGround
-  double to_sky = 0.0;        // from the picture's middle to kSkyAboveTop below its upper edge
+  double to_edge = 0.0;       // from the picture's middle to its upper edge
+  double to_sky = 0.0;        // to kSkyAboveTop below that
   double top = 0.0;           // of the core
 
   bool TopFits() const { return top <= highest_tilt + to_sky; }
   double Tilt() const { return std::clamp(top - to_sky, lowest_tilt, highest_tilt); }
+  double UpperEdge() const { return Tilt() + to_edge; }
 };
 
 CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields& fields,
@@ -61,7 +68,7 @@ CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields
       view.local_from_world * (glm::dvec3(core.place_m, core.top_m) - view.eye_m);
   // Its near side hides the top's middle.
   const double distance_m = std::max(glm::length(glm::dvec2(top)) - core.Radius_m(), 1.0);
-  return {to_band(kMaxGround) - dip, to_band(kMinGround) - dip, to_band(kSkyAboveTop),
+  return {to_band(kMaxGround) - dip, to_band(kMinGround) - dip, to_band(0.0), to_band(kSkyAboveTop),
           std::atan2(top.z, distance_m)};
 }
 
@@ -69,22 +76,23 @@ CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields
 class Stands {
  public:
   Stands(const volume::HydrometeorFields& fields, const volume::StormCore& core,
-         physics::SizeSource sizes, double aspect_ratio)
+         physics::SizeSource sizes, const glm::dvec3& towards_sun, double aspect_ratio)
       : fields_(fields),
         core_(core),
+        towards_sun_(towards_sun),
         aspect_ratio_(aspect_ratio),
         scale_(std::min(core.Height_m() / kTallTower_m, 1.0)),
         sight_(fields, core, sizes) {}
 
   // `camera` on the side from which it looks to `azimuth_deg`, as near as shows the top and is
-  // clear of cloud and rain.
-  SpotterCamera Standing(SpotterCamera camera, double azimuth_deg) const {
+  // clear of cloud and rain, but not nearer than `nearest_m`.
+  SpotterCamera Standing(SpotterCamera camera, double azimuth_deg, double nearest_m) const {
     camera.azimuth_deg = azimuth_deg;
     const glm::dvec2 towards(Direction(azimuth_deg, 0.0));
     const glm::dvec2 domain_m(fields_.grid.HighCorner_m() - fields_.grid.low_corner_m);
     const double outside_m = Farthest_m() + glm::length(domain_m);
     const double step_m = std::max(scale_ * kStep_m, outside_m / kMaxSteps);
-    for (double distance_m = scale_ * kNearest_m;; distance_m += step_m) {
+    for (double distance_m = nearest_m;; distance_m += step_m) {
       camera.place_m = core_.place_m - distance_m * towards;
       if (distance_m >= outside_m) return camera;
       const bool far_enough =
@@ -93,42 +101,57 @@ class Stands {
     }
   }
 
-  // Cost of a place: its distance and the weighted shares of the view that are hidden from it.
+  // Cost of a place: its distance, how far it looks against the sun, and the weighted shares of the
+  // view that are hidden from it.
   double Cost(const SpotterCamera& camera) const {
     const glm::dvec3 eye_m = Eye(camera);
     const double distance_m = glm::length(camera.place_m - core_.place_m);
     const CoreView view = CoreViewOf(camera, fields_, core_, aspect_ratio_);
     const double hidden = sight_.HiddenBase(eye_m) + kTowerWeight * sight_.HiddenTower(eye_m) +
-                          kSkyWeight * sight_.HiddenSky(eye_m, view.top);
-    return hidden + kDistanceWeight * std::max(distance_m / Farthest_m() - 1.0, 0.0);
+                          kSkyWeight * sight_.HiddenSky(eye_m, view.UpperEdge());
+    return hidden + kBacklitWeight * Backlit(camera) +
+           kDistanceWeight * std::max(distance_m / Farthest_m() - 1.0, 0.0);
   }
 
- private:
+  double Nearest_m() const { return scale_ * kNearest_m; }
   double Farthest_m() const { return scale_ * kFarthest_m; }
+
+ private:
+  // From 0, with the sun behind or beside the camera, to 1, against a low sun.
+  double Backlit(const SpotterCamera& camera) const {
+    if (towards_sun_.z <= 0.0) return 0.0;
+    return std::max(glm::dot(Direction(camera.azimuth_deg, 0.0), towards_sun_), 0.0);
+  }
+
   glm::dvec3 Eye(const SpotterCamera& camera) const {
     return {camera.place_m, volume::TerrainHeight_m(fields_, camera.place_m) + camera.eye_height_m};
   }
 
   const volume::HydrometeorFields& fields_;
   const volume::StormCore& core_;
+  glm::dvec3 towards_sun_;
   double aspect_ratio_;
   double scale_;  // of lengths, where the tower is low
   volume::CoreSight sight_;
 };
 
 SpotterCamera OnBestSide(const Stands& stands, const SpotterCamera& camera) {
-  SpotterCamera best = stands.Standing(camera, camera.azimuth_deg);
-  double least_cost = stands.Cost(best);
-  for (int i = 1; i < kDirections; ++i) {
-    // To the right and to the left in turns, ever farther from the camera's own azimuth.
-    const int turn = i % 2 == 1 ? (i + 1) / 2 : -i / 2;
-    const SpotterCamera standing =
-        stands.Standing(camera, camera.azimuth_deg + turn * 360.0 / kDirections);
-    const double cost = stands.Cost(standing);
-    if (cost >= least_cost - kNearEqual) continue;
-    best = standing;
-    least_cost = cost;
-  }
+  SpotterCamera best = camera;
+  double least_cost = std::numeric_limits<double>::infinity();
+  const auto look_at = [&](double nearest_m) {
+    for (int i = 0; i < kDirections; ++i) {
+      // To the right and to the left in turns, ever farther from the camera's own azimuth.
+      const int turn = i % 2 == 1 ? (i + 1) / 2 : -i / 2;
+      const SpotterCamera standing =
+          stands.Standing(camera, camera.azimuth_deg + turn * 360.0 / kDirections, nearest_m);
+      const double cost = stands.Cost(standing);
+      if (cost >= least_cost - kNearEqual) continue;
+      best = standing;
+      least_cost = cost;
+    }
+  };
+  look_at(stands.Nearest_m());
+  for (const double farther : kFarther) look_at(farther * stands.Farthest_m());
   return best;
 }
 
@@ -136,10 +159,12 @@ SpotterCamera OnBestSide(const Stands& stands, const SpotterCamera& camera) {
 
 SpotterCamera SpottingCore(SpotterCamera camera, SpottersSide side,
                            const volume::HydrometeorFields& fields, const volume::StormCore& core,
-                           physics::SizeSource sizes, double aspect_ratio) {
-  const Stands stands(fields, core, sizes, aspect_ratio);
-  camera = side == SpottersSide::kBest ? OnBestSide(stands, camera)
-                                       : stands.Standing(camera, camera.azimuth_deg);
+                           physics::SizeSource sizes, const glm::dvec3& towards_sun,
+                           double aspect_ratio) {
+  const Stands stands(fields, core, sizes, towards_sun, aspect_ratio);
+  camera = side == SpottersSide::kBest
+               ? OnBestSide(stands, camera)
+               : stands.Standing(camera, camera.azimuth_deg, stands.Nearest_m());
   return LookingAt(camera, fields, core, aspect_ratio);
 }
 

@@ -56,13 +56,13 @@ void Frame(v1::OrbitCamera& camera, const volume::WorldBox& box, double aspect_r
 // The spotter who is given no place.
 scene::SpotterCamera Placed(const v1::SpotterCamera& message,
                             const volume::HydrometeorFields& fields, const volume::StormCore& core,
-                            physics::SizeSource sizes, double aspect_ratio) {
+                            physics::SizeSource sizes, const v1::Sun& sun, double aspect_ratio) {
   scene::SpotterCamera camera = ToSpotter(message);
   const bool looks_somewhere = message.has_azimuth_deg();
   if (!looks_somewhere) camera.azimuth_deg = scene::SpotterCamera().azimuth_deg;
   camera = scene::SpottingCore(
       camera, looks_somewhere ? scene::SpottersSide::kOppositeAzimuth : scene::SpottersSide::kBest,
-      fields, core, sizes, aspect_ratio);
+      fields, core, sizes, scene::Direction(sun.azimuth_deg(), sun.elevation_deg()), aspect_ratio);
   if (!message.has_x_m() && !message.has_y_m()) return camera;
   if (message.has_x_m()) camera.place_m.x = message.x_m();
   if (message.has_y_m()) camera.place_m.y = message.y_m();
@@ -70,11 +70,11 @@ scene::SpotterCamera Placed(const v1::SpotterCamera& message,
 }
 
 void Frame(v1::SpotterCamera& camera, const volume::HydrometeorFields& fields,
-           physics::SizeSource sizes, double aspect_ratio) {
+           physics::SizeSource sizes, const v1::Sun& sun, double aspect_ratio) {
   const bool has_place = camera.has_x_m() && camera.has_y_m();
   scene::SpotterCamera framing = ToSpotter(camera);
   if (const auto core = volume::StrongestCore(fields, sizes); core.has_value() && !has_place) {
-    framing = Placed(camera, fields, *core, sizes, aspect_ratio);
+    framing = Placed(camera, fields, *core, sizes, sun, aspect_ratio);
   } else {
     const volume::WorldBox box = volume::VisibleBox(fields, sizes);
     if (!camera.has_azimuth_deg()) framing.azimuth_deg = scene::SpotterCamera().azimuth_deg;
@@ -149,7 +149,7 @@ void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields) 
   const double aspect_ratio =
       static_cast<double>(scene.output().width_px()) / scene.output().height_px();
   if (camera.has_spotter()) {
-    Frame(*camera.mutable_spotter(), fields, sizes, aspect_ratio);
+    Frame(*camera.mutable_spotter(), fields, sizes, scene.sun(), aspect_ratio);
   } else if (camera.has_top_down()) {
     Frame(*camera.mutable_top_down(), volume::VisibleBox(fields, sizes), aspect_ratio);
   } else {
