@@ -194,8 +194,12 @@ Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind be
           glm::dvec3(air::airlight_before(transmittance, sky.radiance, sky_depth))};
 }
 
-// Light that a metre of lit air at `distance_m` on a ray from the eye sends there, in all as much
-// as AirBefore has of it.
+// In the Earth's shadow hardly any light may be left.
+constexpr float kMostGathered = 2.0F;
+
+// Light that a metre of lit air at `distance_m` on a ray from the eye sends there: its part of what
+// AirBefore has, shared out as sun and sky make it shine. AirBefore spreads the sky's light over
+// the ray as its extinction is spread; next to the sun there is more of it near the eye, in haze.
 AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                     const glm::dvec3& towards_sun) {
   namespace air = physics::glsl;
@@ -210,23 +214,20 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   const auto mu = static_cast<float>(glm::dot(ray.direction, towards_sun));
   const glm::vec3 transmittance =
       glm::exp(-air::depth_of_air(around.turbidity, air::densities_of_air(path.height_m), path));
-  const glm::vec3 scattered =
-      transmittance * air::skylight_scattered_per_m(around.turbidity, densities);
-  const auto scale = static_cast<float>(around.scale);
-  AirLight light;
-  light.of_sun = scale * transmittance *
-                 air::sunlight_scattered_per_m(around.turbidity, densities, mu) *
-                 around.atmosphere.SunTransmittance(place);
-  light.of_sky = scale * scattered * around.atmosphere.DiffuseMeanRadiance(place);
-  // The medium's light has the sun's irradiance in it.
-  light.per_radiance = static_cast<float>(around.brightness) * scattered;
   const physics::ClearSky::Seen sky = around.Seen(ray.direction);
-  const glm::vec3 sky_depth = air::depth_of_air_mass(around.turbidity, sky.air_mass);
   const glm::vec3 gathered =
       air::airlight_per_m(transmittance, air::air_extinction_per_m(around.turbidity, densities),
-                          sky.radiance, sky_depth);
-  const glm::dvec3 share(air::share_gathered(gathered, glm::vec3(light.of_sun + light.of_sky)));
-  return {share * light.of_sun, share * light.of_sky, share * light.per_radiance};
+                          sky.radiance, air::depth_of_air_mass(around.turbidity, sky.air_mass));
+  const auto scale = static_cast<float>(around.scale);
+  const glm::vec3 scattered = air::skylight_scattered_per_m(around.turbidity, densities);
+  const glm::vec3 of_sun = scale * air::sunlight_scattered_per_m(around.turbidity, densities, mu) *
+                           around.atmosphere.SunTransmittance(place);
+  const glm::vec3 of_sky = scale * scattered * around.atmosphere.DiffuseMeanRadiance(place);
+  const glm::vec3 seen = glm::min(gathered / glm::max(of_sun + of_sky, glm::vec3(1e-20F)),
+                                  kMostGathered * transmittance);
+  // The medium's light has the sun's irradiance in it.
+  return {glm::dvec3(seen * of_sun), glm::dvec3(seen * of_sky),
+          glm::dvec3(seen * static_cast<float>(around.brightness) * scattered)};
 }
 
 // The ground where rays from the eye meet it, null where it is the same everywhere. A ray shows a

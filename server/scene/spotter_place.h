@@ -18,9 +18,9 @@ enum class SpottersSide { kBest, kOppositeAzimuth };
 // `towards_sun` is a unit vector; a sun below the horizon lights no side.
 //
 // The distance is the smallest that shows the tower's top, from 1.25 to 2.1 times the tower's
-// height (15 to 25 km for 12 km), and for a higher tower from 15 to 25 km; more where there is cloud
-// or rain around the eye, and with kBest where cloud covers the sky above the tower. If the lens is
-// too long for that, the top is cut off.
+// height (15 to 25 km for 12 km), and for a higher tower from 15 to 25 km; more where there is
+// cloud or rain around the eye, and with kBest where cloud covers the sky above the tower. If the
+// lens is too long for that, the top is cut off.
 SpotterCamera SpottingCore(SpotterCamera camera, SpottersSide side,
                            const volume::HydrometeorFields& fields, const volume::StormCore& core,
                            physics::SizeSource sizes, const glm::dvec3& towards_sun,

@@ -32,14 +32,6 @@ PHYSICS_FUNCTION vec3 skylight_scattered_per_m(float turbidity, vec2 densities) 
   return air_scattering_per_m(densities) + haze_scattering_per_m(turbidity, densities);
 }
 
-// What a storm takes from the light of a stretch of air is to be multiplied by this, where `gathered` is that stretch's
-// part of airlight_before and `lit` what the clear sky and sun make it send: the first spreads the sky's light over the ray
-// as its extinction is spread, and has less of the light of haze near the eye next to the sun. Bounded, as hardly any light
-// may be left in the Earth's shadow.
-PHYSICS_FUNCTION vec3 share_gathered(vec3 gathered, vec3 lit) {
-  return min(gathered / max(lit, vec3(1e-20f)), vec3(2.0f));
-}
-
 // Height above sea level at a distance on `path`.
 PHYSICS_FUNCTION float height_on_path_m(AirPath path, float distance_m) {
   float bend = path.curvature_per_m * (1.0f - path.sin_elevation * path.sin_elevation);
