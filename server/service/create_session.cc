@@ -2,7 +2,7 @@
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
-#include "service/interact_messages.h"
+#include "service/interact_requests.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
 #include "service/scene_update.h"

@@ -18,6 +18,7 @@
 #include "service/delivery_deadline.h"
 #include "service/frame_messages.h"
 #include "service/interact_messages.h"
+#include "service/interact_requests.h"
 #include "service/messages/limits_check.h"
 #include "service/person_requests.h"
 #include "service/status_table.h"

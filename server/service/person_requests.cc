@@ -8,6 +8,7 @@
 #include "base/out_of_memory.h"
 #include "base/status.h"
 #include "service/interact_messages.h"
+#include "service/interact_requests.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"
