@@ -10,7 +10,7 @@ namespace {
 
 using Stub = v1::ThunderheadService::Stub;
 
-constexpr std::chrono::seconds kPatience{20};
+constexpr std::chrono::seconds kSessionPatience{20};
 // A call that lasted so long was sound: the next loss begins with a short delay.
 constexpr std::chrono::seconds kSound{5};
 
@@ -135,7 +135,7 @@ std::optional<Session::Outcome> Session::Open() {
   }
   v1::CreateSessionResponse response;
   grpc::Status status =
-      connection_->Call(&Stub::CreateSession, request, &response, kPatience, calls_);
+      connection_->Call(&Stub::CreateSession, request, &response, kSessionPatience, calls_);
   const std::string refusal = status.error_message();
   const bool began_anew = RefusesScene(status.error_code());
   if (began_anew) {
@@ -143,7 +143,7 @@ std::optional<Session::Outcome> Session::Open() {
     v1::Scene plain;
     *plain.mutable_output() = request.scene().output();
     *request.mutable_scene() = std::move(plain);
-    status = connection_->Call(&Stub::CreateSession, request, &response, kPatience, calls_);
+    status = connection_->Call(&Stub::CreateSession, request, &response, kSessionPatience, calls_);
   }
   if (!status.ok()) {
     const Link link = IsLocked(status.error_code()) ? Link::kRefused : Link::kLost;
@@ -244,7 +244,7 @@ std::optional<v1::InteractRequest> Session::NextRequest(Call& call, Clock::time_
 }
 
 Session::Clock::time_point Session::WakeAt(const Call& call) const {
-  Clock::time_point wake = Clock::now() + kPatience;
+  Clock::time_point wake = Clock::now() + kSessionPatience;
   if (!call.joined) return wake;
   if (const auto due = outbox_.WakeAt()) wake = std::min(wake, *due);
   if (const auto due = sync_.WakeAt()) wake = std::min(wake, *due);
@@ -261,7 +261,7 @@ void Session::Watch(Call& call) {
   std::unique_lock lock(mutex_);
   while (!call.over && !ends_) {
     const auto now = Clock::now();
-    const bool late = !call.joined && now - call.began > kPatience;
+    const bool late = !call.joined && now - call.began > kSessionPatience;
     if (late || failures >= kFailedChecks) {
       call.farewell = Outcome{Link::kLost, "The server cannot be reached"};
       call.context.TryCancel();

@@ -21,7 +21,7 @@ struct Crop {
   float dryness = 0.0F;
 };
 
-constexpr std::array kCrops = {
+constexpr std::array kFieldCrops = {
     Crop{0.5F, 0.8F},     // stubble of wheat
     Crop{-0.05F, -0.1F},  // pasture
     Crop{-0.6F, -0.8F},   // maize
@@ -36,7 +36,7 @@ std::size_t At(int x, int y) {
 }
 
 Crop RandomCrop(CounterRandom* random) {
-  Crop crop = kCrops[static_cast<std::size_t>(random->Next() * kCrops.size())];
+  Crop crop = kFieldCrops[static_cast<std::size_t>(random->Next() * kFieldCrops.size())];
   crop.brightness += static_cast<float>(0.3 * (random->Next() - 0.5));
   crop.dryness += static_cast<float>(0.3 * (random->Next() - 0.5));
   return crop;
@@ -78,7 +78,7 @@ class FieldMap {
     for (Crop& crop : crops) crop = RandomCrop(random);
     const double layout = random->Next();
     if (layout < 0.15) {  // the corners that the centre pivot leaves dry
-      Plant(west, south, {kCrops[0], kCrops[0], kCrops[0], kCrops[0]}, 1.0F);
+      Plant(west, south, {kFieldCrops[0], kFieldCrops[0], kFieldCrops[0], kFieldCrops[0]}, 1.0F);
     } else if (layout < 0.55) {
       Plant(west, south, {crops[0], crops[0], crops[0], crops[0]});
     } else if (layout < 0.7) {

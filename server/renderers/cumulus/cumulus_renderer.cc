@@ -51,12 +51,12 @@ DeviceBubble OnDevice(const clouds::Bubble& bubble, const glm::dvec3& middle_m) 
           glm::vec4(glm::vec3(bubble.outward), static_cast<float>(bubble.parent))};
 }
 
-const scene::Cumulus& SettingsOf(const RenderSettings& settings) {
+const scene::Cumulus& CumulusOf(const RenderSettings& settings) {
   return std::get<scene::Cumulus>(settings.technique);
 }
 
 bool IsPlain(const RenderSettings& settings) {
-  return SettingsOf(settings).component == scene::CumulusComponent::kBalls;
+  return CumulusOf(settings).component == scene::CumulusComponent::kBalls;
 }
 
 // Shares of direct light, inter-reflection, ambient light and corona.
@@ -195,7 +195,7 @@ absl::Status CumulusRenderer::CastShadow(const RenderSettings& settings) {
   from_sun.half_width_m = shadow_frame_.half_extent_m.x;
   from_sun.half_height_m = shadow_frame_.half_extent_m.y;
   Pass pass(from_sun, shadow_depth_.Size(), *this);
-  pass.corona_m = Corona_m(SettingsOf(settings));
+  pass.corona_m = Corona_m(CumulusOf(settings));
   return DrawDepth(pass, shadow_target_);
 }
 
@@ -229,7 +229,7 @@ void CumulusRenderer::Resize(const glm::ivec2& size) {
 
 void CumulusRenderer::SetShading(const gl::Program& program, const RenderSettings& settings,
                                  const std::vector<glm::vec3>& light_map, DetailNoises* noises) {
-  const scene::Cumulus& cumulus = SettingsOf(settings);
+  const scene::Cumulus& cumulus = CumulusOf(settings);
   const scene::View& view = settings.view;
   noise_ = noises->Roughness(kRoughnessOctaves, cumulus.seed);
   const double wave_m = kRoughnessInFinest * finest_m_;
@@ -271,7 +271,7 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   Resize(settings.eye_size);
   const bool plain = IsPlain(settings);
   Pass pass(settings.view, settings.eye_size, *this);
-  pass.corona_m = plain ? 0.0 : Corona_m(SettingsOf(settings));
+  pass.corona_m = plain ? 0.0 : Corona_m(CumulusOf(settings));
   pass.ground_distance = settings.ground_distance;
   THUNDERHEAD_RETURN_IF_ERROR(DrawDepth(pass, core_target_));
   const ShadeVariant variant{.bubble = pass.Variant(*this, false), .plain = plain};

@@ -30,7 +30,7 @@ int CoarseningOf(const volume::RegularGrid& grid) {
   return factor;
 }
 
-const scene::Cumulus& SettingsOf(const scene::Scene& scene) {
+const scene::Cumulus& CumulusOf(const scene::Scene& scene) {
   return std::get<scene::Cumulus>(scene.rendering.technique);
 }
 
@@ -44,14 +44,14 @@ DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::Hydrometeor
     drawn.fields.push_back(field.hydrometeor);
   }
   clouds::InscribedBallsOptions options;
-  options.level = SettingsOf(scene).least_extinction_per_m;
+  options.level = CumulusOf(scene).least_extinction_per_m;
   options.max_balls = kMaxSurfaceBalls;
   drawn.surface = clouds::InscribedBalls(fields.grid, extinction_per_m, options);
   std::size_t first = 0;
-  for (int scale = 1; scale < SettingsOf(scene).scales; ++scale) {
+  for (int scale = 1; scale < CumulusOf(scene).scales; ++scale) {
     const std::size_t end = drawn.surface.bubbles.size();
     clouds::Sprouting sprouting;
-    sprouting.seed = SettingsOf(scene).seed;
+    sprouting.seed = CumulusOf(scene).seed;
     sprouting.min_radius_m = drawn.surface.finest_m;
     clouds::Sprout(sprouting, first, &drawn.surface);
     first = end;
@@ -90,13 +90,13 @@ absl::StatusOr<clouds::CumulusSurface> SurfaceFromSeed(const scene::Cumulus& cum
 
 absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields) {
-  if (SettingsOf(scene).source == scene::CumulusSource::kStorm) {
+  if (CumulusOf(scene).source == scene::CumulusSource::kStorm) {
     const int factor = CoarseningOf(fields.grid);
     if (factor == 1) return SurfaceOfStorm(scene, fields);
     return SurfaceOfStorm(scene, volume::Coarsened(fields, glm::ivec3(factor)));
   }
   DrawnSurface drawn;
-  THUNDERHEAD_ASSIGN_OR_RETURN(drawn.surface, SurfaceFromSeed(SettingsOf(scene)));
+  THUNDERHEAD_ASSIGN_OR_RETURN(drawn.surface, SurfaceFromSeed(CumulusOf(scene)));
   clouds::FitInto(PlaceOf(fields), &drawn.surface);
   return drawn;
 }
@@ -104,7 +104,7 @@ absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
 std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
                                                const volume::HydrometeorFields& fields) {
   using Code = scene::NotShown::Code;
-  if (SettingsOf(scene).source != scene::CumulusSource::kStorm) {
+  if (CumulusOf(scene).source != scene::CumulusSource::kStorm) {
     return {{Code::kStorm, "the storm: a cloud made from a seed stands in its place"}};
   }
   std::vector<scene::NotShown> not_shown;

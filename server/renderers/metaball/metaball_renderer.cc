@@ -41,7 +41,7 @@ struct DeviceBall {
 
 bool IsPaper(const RenderSettings& settings) { return scene::IsPaper(settings.Medium().transport); }
 
-const scene::Metaballs& SettingsOf(const RenderSettings& settings) {
+const scene::Metaballs& MetaballsOf(const RenderSettings& settings) {
   return std::get<scene::Metaballs>(settings.technique);
 }
 
@@ -170,10 +170,10 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
     device.push_back(DeviceBallOf(ball, content, weights, box_.Middle_m()));
     if (!IsPaper(settings)) continue;
     const double density = std::min(paper_factor * ball.extinction_per_m, 1.0);
-    device.back().optics.x = static_cast<float>(SettingsOf(settings).optical_depth * density);
+    device.back().optics.x = static_cast<float>(MetaballsOf(settings).optical_depth * density);
   }
   const bool paper = IsPaper(settings);
-  Optics optics{NumbersOf(device), paper, paper ? SettingsOf(settings).albedo : 0.0,
+  Optics optics{NumbersOf(device), paper, paper ? MetaballsOf(settings).albedo : 0.0,
                 scene::IsTranslucent(settings.Medium().transport)};
   if (optics == optics_) return;
   optics_ = std::move(optics);
@@ -256,7 +256,7 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
     program->Set(uniform::light_up, glm::vec3(plane.frame.up * plane.texels_per_m));
     program->Set(uniform::texels_per_m, static_cast<float>(plane.texels_per_m));
     program->Set(uniform::light_middle, 0.5F * glm::vec2(plane.size));
-    program->Set(uniform::paper_albedo, static_cast<float>(SettingsOf(settings).albedo));
+    program->Set(uniform::paper_albedo, static_cast<float>(MetaballsOf(settings).albedo));
     program->Set(uniform::scattered_often,
                  scene::IsTranslucent(settings.Medium().transport) ? 1.0F : 0.0F);
     program->Use();
@@ -309,7 +309,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
                                   .groups = groups_,
                                   .colored = colored_,
                                   .paper = paper,
-                                  .isotropic = SettingsOf(settings).isotropic,
+                                  .isotropic = MetaballsOf(settings).isotropic,
                                   .parallel = settings.view.Orthographic()};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
@@ -324,7 +324,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   BindSunlight(*program, settings.illumination, box_.Middle_m().z);
   program->Set(uniform::sky_radiance, settings.illumination.from_sky);
   program->Set(uniform::ground_radiance, settings.illumination.from_ground);
-  program->Set(uniform::paper_albedo, static_cast<float>(SettingsOf(settings).albedo));
+  program->Set(uniform::paper_albedo, static_cast<float>(MetaballsOf(settings).albedo));
   phase_curves_.Bind();
   ball_buffer_.BindStorage(shaders::kBallsBinding);
   arrived_.BindStorage(shaders::kBallArrivedBinding);

@@ -7,7 +7,7 @@
 namespace thunderhead::volume {
 namespace {
 
-constexpr char kSphere[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
+constexpr char kSphereOfWrf[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
 
 struct Case {
   const char* proj;
@@ -19,7 +19,8 @@ struct Case {
 class MapProjections : public ::testing::TestWithParam<Case> {};
 
 TEST_P(MapProjections, PlacesAreThoseOfProj) {
-  const auto map = MapProjection::Of(std::string(GetParam().proj) + kSphere, GetParam().middle);
+  const auto map =
+      MapProjection::Of(std::string(GetParam().proj) + kSphereOfWrf, GetParam().middle);
   ASSERT_TRUE(map.has_value());
   const auto middle = map->PlaceOf({0.0, 0.0});
   ASSERT_TRUE(middle.has_value());
