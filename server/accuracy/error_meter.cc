@@ -31,8 +31,6 @@ constexpr double kEvenShare = 0.2;
 constexpr double kWithoutStorm = 0.05;
 // Of the mean radiance; what is drawn darker may be brighter in truth.
 constexpr double kDark = 0.25;
-// Of the picture's pixels, those next to the sun being left out.
-constexpr double kLeastMeasured = 0.1;
 
 double MeanColor(const glm::vec3& color) {
   return (static_cast<double>(color.x) + color.y + color.z) / 3.0;
@@ -115,7 +113,7 @@ void ErrorMeter::Weigh() {
 
 bool ErrorMeter::IsMeasurable() const {
   return static_cast<double>(pixels_) >=
-         kLeastMeasured * static_cast<double>(drawn_.radiance.size());
+         reference::kLeastAwayFromSun * static_cast<double>(drawn_.radiance.size());
 }
 
 double ErrorMeter::ChanceOf(std::size_t index) const {

@@ -8,11 +8,6 @@
 #include "reference/scene_problem.h"
 
 namespace thunderhead::measure {
-namespace {
-
-constexpr double kLeastCompared = 0.1;  // of the picture
-
-}  // namespace
 
 absl::StatusOr<AgainstTruth> AgainstTruth::Of(const scene::Scene& scene,
                                               const volume::HydrometeorFields& fields,
@@ -22,7 +17,7 @@ absl::StatusOr<AgainstTruth> AgainstTruth::Of(const scene::Scene& scene,
                          scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg),
                          truth.size_px, peak_cut_deg);
   const auto compared = static_cast<double>(std::ranges::count(left_out, false));
-  if (compared < kLeastCompared * static_cast<double>(left_out.size())) {
+  if (compared < reference::kLeastAwayFromSun * static_cast<double>(left_out.size())) {
     return absl::InvalidArgumentError(
         "the camera looks at hardly anything but the sun, next to which the reference shows no "
         "aureole; turn it away, widen its field of view or lower the peak cut");

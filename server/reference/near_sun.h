@@ -17,4 +17,7 @@ namespace thunderhead::reference {
 std::vector<bool> NearSun(const Camera& camera, const glm::dvec3& towards_sun,
                           const glm::ivec2& size_px, double peak_cut_deg);
 
+// Share of a picture's pixels that must be away from the sun for the rest to stand for it.
+inline constexpr double kLeastAwayFromSun = 0.1;
+
 }  // namespace thunderhead::reference

@@ -1,4 +1,4 @@
-// What people are told by Interact, as bytes that all of them share. What they ask is in
+// The responses of Interact, as bytes that all people share. Its requests are in
 // interact_requests.h.
 #pragma once
 

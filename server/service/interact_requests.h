@@ -1,5 +1,5 @@
-// What people send by Interact, as values: checked, since anybody may send anything. Of a session
-// only its plain values are needed.
+// Values from the requests of Interact, checked, since anybody may send anything. They need no
+// session, only its plain values.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What somebody who has joined asks of the session: changes of its scene, a view of their own,
+// The requests of a person who has joined a session: changes of its scene, a view of their own,
 // control, pointing and marks. How their pictures are delivered is the call's affair.
 #pragma once
 

@@ -83,7 +83,7 @@ PHYSICS_FUNCTION vec3 air_extinction_per_m(float turbidity, vec2 densities) {
          haze_optical_depth(turbidity) * (densities.y / kHazeScaleHeight_m);
 }
 
-// What a metre of air adds to airlight_before, where `transmittance` is that of the air in front of it.
+// The light that a metre of air adds to airlight_before, where `transmittance` is that of the air in front of it.
 PHYSICS_FUNCTION vec3 airlight_per_m(vec3 transmittance, vec3 extinction_per_m, vec3 sky, vec3 sky_depth) {
   return sky * transmittance * extinction_per_m / max(vec3(1.0f) - exp(-sky_depth), vec3(1e-6f));
 }
