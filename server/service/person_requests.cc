@@ -232,23 +232,30 @@ absl::Status PersonRequests::PlaceMark(const std::shared_ptr<Asker>& asker,
   engine_.executor.Submit(
       caller_->identity().name,
       [this, asker, request_id, rays = std::move(rays), color](const absl::Status& status) {
-        const absl::Status drawn =
-            status.ok() ? base::OrOutOfMemory([&] { return Draw(rays, color); }) : status;
+        using Positions = absl::StatusOr<std::vector<glm::dvec3>>;
+        Positions positions_m = base::OrOutOfMemory([&]() -> Positions {
+          THUNDERHEAD_RETURN_IF_ERROR(status);
+          return session::LineSeen(*session_, engine_.store, rays);
+        });
+        // Before anybody is told of it, who may draw the next one then.
         drawing_ = false;
+        const absl::Status drawn =
+            positions_m.ok() ? Draw(*std::move(positions_m), color) : positions_m.status();
         asker->Settle(RefusalOf(request_id, drawn));
       });
   return absl::OkStatus();
 }
 
-absl::Status PersonRequests::Draw(const std::vector<session::Ray>& rays,
+absl::Status PersonRequests::Draw(std::vector<glm::dvec3> positions_m,
                                   const std::optional<glm::vec3>& color) {
-  std::vector<glm::dvec3> positions_m = session::LineSeen(*session_, engine_.store, rays);
-  return session_->audience().Draw(
-      person_id_,
-      [&](session::Board& board) {
-        return board.Add(person_id_, std::move(positions_m), color, participant_key_).status();
-      },
-      Clock::now());
+  return base::OrOutOfMemory([&] {
+    return session_->audience().Draw(
+        person_id_,
+        [&](session::Board& board) {
+          return board.Add(person_id_, std::move(positions_m), color, participant_key_).status();
+        },
+        Clock::now());
+  });
 }
 
 absl::Status PersonRequests::EraseMarks(const v1::EraseMarks& message) {

@@ -68,7 +68,7 @@ class PersonRequests {
                        const v1::AddMark& message);
   absl::Status PlaceMark(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
                          const v1::AddMark& message);
-  absl::Status Draw(const std::vector<session::Ray>& rays, const std::optional<glm::vec3>& color);
+  absl::Status Draw(std::vector<glm::dvec3> positions_m, const std::optional<glm::vec3>& color);
   absl::Status EraseMarks(const v1::EraseMarks& message);
 
   Engine& engine_;
@@ -77,7 +77,7 @@ class PersonRequests {
   const std::uint64_t person_id_;
   const std::string participant_key_;
   LookingAround around_;
-  std::atomic<bool> drawing_{false};  // a mark is on its way
+  std::atomic<bool> drawing_{false};  // a mark's places are being found
 };
 
 }  // namespace thunderhead::service
