@@ -9,7 +9,7 @@ namespace thunderhead::volume {
 namespace {
 
 constexpr double kBrickInCoarsestCells = 1.0;
-constexpr double kBlockInCoarsestCells = 2.0;
+constexpr double kBlockInCoarsestCells = 4.0;
 constexpr int kMaxCellsAcross = 16;
 constexpr int kMaxAlong = 1024;  // bricks or blocks along an axis
 constexpr int kFarthest = 254;

@@ -27,7 +27,7 @@ constexpr double kNearInTexels = 1.5;  // sampled next to a cell
 constexpr double kReadTexels = kNearInTexels + 1.74;
 constexpr int kMaxGroupsInRow = 65535;      // what OpenGL 4.5 guarantees along each axis
 constexpr double kMarchedSample_ns = 15.0;  // what a sample of the medium may cost
-constexpr gl::PieceCost kArriveBlock{"arrive", 4000.0};
+constexpr gl::PieceCost kArriveBlock{"arrive", 12000.0};
 
 // Multiple scattering in closed form.
 bool IsDiffuse(const RenderSettings& settings) {

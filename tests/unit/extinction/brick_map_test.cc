@@ -46,7 +46,7 @@ TEST(BrickMap, BricksAreAboutCubes) {
   EXPECT_EQ(map.bricks, glm::ivec3(11, 13, 5));
   EXPECT_TRUE(OccupiedCubesOf(map, 8).occupied.empty());
   const CellBlocks blocks = CellBlocksOf(map, volume.grid);
-  EXPECT_EQ(blocks.cells_per_block, glm::ivec3(2, 2, 4));
+  EXPECT_EQ(blocks.cells_per_block, glm::ivec3(4, 4, 8));
   EXPECT_TRUE(blocks.occupied.empty());
 }
 
