@@ -35,7 +35,7 @@ net::awaitable<void> ClientStream::LingeringClose() {
   plain_.socket().close(error);
 }
 
-void ClientStream::LingeringClose(BytesHandler handler) {
+void ClientStream::LingeringClose(streams::BytesHandler handler) {
   const auto executor = handler.get_executor();
   net::co_spawn(executor, LingeringClose(),
                 [handler = std::move(handler)](const std::exception_ptr&) mutable {
@@ -43,7 +43,8 @@ void ClientStream::LingeringClose(BytesHandler handler) {
                 });
 }
 
-void ClientStream::Read(FewBuffers<net::mutable_buffer> into, BytesHandler handler) {
+void ClientStream::Read(streams::FewBuffers<net::mutable_buffer> into,
+                        streams::BytesHandler handler) {
   if (tls_.has_value()) {
     tls_->async_read_some(into, std::move(handler));
   } else {
@@ -51,7 +52,8 @@ void ClientStream::Read(FewBuffers<net::mutable_buffer> into, BytesHandler handl
   }
 }
 
-void ClientStream::Write(FewBuffers<net::const_buffer> from, BytesHandler handler) {
+void ClientStream::Write(streams::FewBuffers<net::const_buffer> from,
+                         streams::BytesHandler handler) {
   const std::size_t bytes = net::buffer_size(from);
   const auto executor = handler.get_executor();
   if (last_begun_ && between_writes_) {
@@ -61,7 +63,7 @@ void ClientStream::Write(FewBuffers<net::const_buffer> from, BytesHandler handle
   }
   between_writes_ = false;
   Send(from,
-       BytesHandler(
+       streams::BytesHandler(
            [this, bytes, handler = std::move(handler)](error_code error, std::size_t sent) mutable {
              between_writes_ = error || sent == bytes;
              write_ended_.Notify();
@@ -86,7 +88,8 @@ net::awaitable<bool> ClientStream::WriteLast(std::string bytes) {
   co_return !error;
 }
 
-void ClientStream::Send(FewBuffers<net::const_buffer> from, BytesHandler handler) {
+void ClientStream::Send(streams::FewBuffers<net::const_buffer> from,
+                        streams::BytesHandler handler) {
   if (tls_.has_value()) {
     tls_->async_write_some(from, std::move(handler));
   } else {

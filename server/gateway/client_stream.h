@@ -3,9 +3,7 @@
 // neither HTTP nor gRPC. Runs on one thread.
 #pragma once
 
-#include <array>
 #include <boost/asio/any_io_executor.hpp>
-#include <boost/asio/associated_executor.hpp>
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -23,11 +21,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "gateway/awaitable.h"
 #include "gateway/change_signal.h"
+#include "streams/bytes_handler.h"
 
 namespace thunderhead::gateway {
 
@@ -50,69 +48,6 @@ class ByteCounts {
 
   uint64_t received_ = 0;
   uint64_t sent_ = 0;
-};
-
-// The completion handler of a read or write, of whatever type it was: all that Beast and OpenSSL do
-// for one is then compiled once, not once for each of its callers.
-class BytesHandler {
- public:
-  // Asio's names for where it is to be called.
-  using executor_type = boost::asio::any_io_executor;
-  executor_type get_executor() const { return executor_; }
-
-  // Called on `executor` unless `handler` has one of its own.
-  template <typename Handler>
-  BytesHandler(Handler&& handler, const executor_type& executor)
-      : executor_(boost::asio::get_associated_executor(handler, executor)),
-        call_(std::make_unique<CallOf<std::decay_t<Handler>>>(std::forward<Handler>(handler))) {}
-
-  void operator()(boost::system::error_code error, size_t bytes) {
-    // The handler may end what it is kept in.
-    const std::unique_ptr<Call> call = std::move(call_);
-    call->Run(error, bytes);
-  }
-
- private:
-  struct Call {
-    virtual ~Call() = default;
-    virtual void Run(boost::system::error_code error, size_t bytes) = 0;
-  };
-  template <typename Handler>
-  struct CallOf : Call {
-    template <typename From>
-    explicit CallOf(From&& from) : handler(std::forward<From>(from)) {}
-    void Run(boost::system::error_code error, size_t bytes) override {
-      std::move(handler)(error, bytes);
-    }
-    Handler handler;
-  };
-
-  executor_type executor_;
-  std::unique_ptr<Call> call_;
-};
-
-// The first buffers of a sequence of any type; a read or write of some bytes needs no more.
-template <typename Buffer>
-class FewBuffers {
- public:
-  using value_type = Buffer;
-  using const_iterator = const Buffer*;
-
-  template <typename Buffers>
-  FewBuffers(const Buffers& buffers) {  // NOLINT(google-explicit-constructor): as Asio's own
-    const auto end = boost::asio::buffer_sequence_end(buffers);
-    for (auto it = boost::asio::buffer_sequence_begin(buffers); it != end; ++it) {
-      if (count_ == buffers_.size()) break;
-      buffers_[count_++] = Buffer(*it);
-    }
-  }
-
-  const_iterator begin() const { return buffers_.data(); }
-  const_iterator end() const { return buffers_.data() + count_; }
-
- private:
-  std::array<Buffer, 16> buffers_;
-  size_t count_ = 0;
 };
 
 class ClientStream {
@@ -143,13 +78,14 @@ class ClientStream {
   // bytes are read resets the connection, and the client may lose what was last sent to it.
   boost::asio::awaitable<void> LingeringClose();
   // The same; then calls `handler`, without an error.
-  void LingeringClose(BytesHandler handler);
+  void LingeringClose(streams::BytesHandler handler);
 
   template <typename Buffers, typename Token>
   auto async_read_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::system::error_code, size_t)>(
         [this](auto&& handler, const Buffers& into) {
-          Read(into, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
+          Read(into,
+               streams::BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
         },
         token, buffers);
   }
@@ -158,7 +94,8 @@ class ClientStream {
   auto async_write_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::system::error_code, size_t)>(
         [this](auto&& handler, const Buffers& from) {
-          Write(from, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
+          Write(from,
+                streams::BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
         },
         token, buffers);
   }
@@ -168,9 +105,9 @@ class ClientStream {
   // Makes one TLS record of several small buffers.
   using Tls = boost::beast::flat_stream<boost::asio::ssl::stream<Plain&>>;
 
-  void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
-  void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
-  void Send(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
+  void Read(streams::FewBuffers<boost::asio::mutable_buffer> into, streams::BytesHandler handler);
+  void Write(streams::FewBuffers<boost::asio::const_buffer> from, streams::BytesHandler handler);
+  void Send(streams::FewBuffers<boost::asio::const_buffer> from, streams::BytesHandler handler);
 
   const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives what is made of it
   Plain plain_;
@@ -187,7 +124,7 @@ void teardown(boost::beast::role_type role, ClientStream& stream, boost::system:
 template <typename Handler>
 void async_teardown(boost::beast::role_type /*server*/, ClientStream& stream, Handler&& handler) {
   const auto executor = boost::asio::get_associated_executor(handler, stream.get_executor());
-  stream.LingeringClose(BytesHandler(
+  stream.LingeringClose(streams::BytesHandler(
       [handler = std::forward<Handler>(handler)](boost::system::error_code error, size_t) mutable {
         std::move(handler)(error);
       },

@@ -1,15 +1,10 @@
 #include <boost/asio/dispatch.hpp>
-#include <boost/asio/ip/address.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ssl/host_name_verification.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/ssl/ssl_stream.hpp>
-#include <boost/beast/websocket/ssl.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <chrono>
 #include <cmath>
@@ -18,13 +13,13 @@
 #include <future>
 #include <memory>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "google/protobuf/io/zero_copy_stream_impl_lite.h"
 #include "load/io_thread.h"
 #include "load/pace.h"
+#include "load/server_stream.h"
 #include "load/transport.h"
 #include "load/web_wire.h"
 
@@ -35,12 +30,8 @@ namespace net = boost::asio;
 namespace http = boost::beast::http;
 namespace ssl = boost::asio::ssl;
 namespace websocket = boost::beast::websocket;
-using boost::beast::get_lowest_layer;
 using boost::system::error_code;
 using net::ip::tcp;
-
-using Plain = boost::beast::tcp_stream;
-using Secure = boost::beast::ssl_stream<Plain>;  // by TLS
 
 constexpr std::chrono::seconds kPatience{60};
 constexpr char kBridgedService[] = "/thunderhead.v1.ThunderheadService/";
@@ -66,22 +57,6 @@ struct Host {
   }
 };
 
-// Calls `then` with an error or none: once the host has shown, where the stream is by TLS, that it
-// is who it says.
-template <typename Stream, typename Then>
-void HandshakeThen(Stream& stream, const Host& host, Then then) {
-  if constexpr (std::is_same_v<Stream, Secure>) {
-    error_code is_no_address;
-    net::ip::make_address(host.name, is_no_address);
-    // For servers that have certificates for several names.
-    if (is_no_address) SSL_set_tlsext_host_name(stream.native_handle(), host.name.c_str());
-    stream.set_verify_callback(ssl::host_name_verification(host.name));
-    stream.async_handshake(ssl::stream_base::client, std::move(then));
-  } else {
-    then(error_code());
-  }
-}
-
 absl::Status Unavailable(const Host& host, const char* doing, const error_code& error) {
   const bool is_http =
       error.category() == http::make_error_code(http::error::bad_version).category();
@@ -91,19 +66,15 @@ absl::Status Unavailable(const Host& host, const char* doing, const error_code& 
 }
 
 // One WebSocket. Everything runs on the transport's thread; handlers keep it alive.
-template <typename Stream>
-class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>> {
+class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
  public:
-  // `tls` is the host's, for a stream that takes it.
-  template <typename... Tls>
-  WebSocketCall(net::io_context& io, Host host, Listener& listener, const LinkOptions& options,
-                Tls&... tls)
+  WebSocketCall(net::io_context& io, Host host, Listener& listener, const LinkOptions& options)
       : host_(std::move(host)),
         listener_(&listener),
         options_(options),
         pace_(options.kbit_per_s),
         resolver_(io),
-        socket_(io, tls...),
+        socket_(io, host_.tls),
         delay_(io) {}
 
   void Start() {
@@ -127,27 +98,24 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>>
     listener_ = nullptr;
     resolver_.cancel();
     delay_.cancel();
-    get_lowest_layer(socket_).close();
+    socket_.next_layer().close();
   }
 
  private:
-  using std::enable_shared_from_this<WebSocketCall<Stream>>::shared_from_this;
-
   void Connect(const tcp::resolver::results_type& found) {
     if (listener_ == nullptr) return;
-    get_lowest_layer(socket_).expires_after(kPatience);
-    get_lowest_layer(socket_).async_connect(
-        found, [self = shared_from_this()](error_code error, const tcp::endpoint&) {
-          if (error) return self->Fail("connect to", error);
-          HandshakeThen(self->socket_.next_layer(), self->host_, [self](error_code failed) {
-            if (failed) return self->Fail("speak TLS with", failed);
-            self->Upgrade();
-          });
-        });
+    socket_.next_layer().expires_after(kPatience);
+    socket_.next_layer().Connect(found, [self = shared_from_this()](error_code error) {
+      if (error) return self->Fail("connect to", error);
+      self->socket_.next_layer().Handshake(self->host_.name, [self](error_code failed) {
+        if (failed) return self->Fail("speak TLS with", failed);
+        self->Upgrade();
+      });
+    });
   }
 
   void Upgrade() {
-    tcp::socket& tcp_socket = get_lowest_layer(socket_).socket();
+    tcp::socket& tcp_socket = socket_.next_layer().socket();
     error_code ignored;
     tcp_socket.set_option(tcp::no_delay(true), ignored);
     if (!options_.reads || pace_.IsLimited()) {
@@ -168,7 +136,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>>
   }
 
   void Opened() {
-    get_lowest_layer(socket_).expires_never();
+    socket_.next_layer().expires_never();
     open_ = true;
     WriteNext();
     if (options_.reads) Read();
@@ -218,7 +186,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>>
   void End(const absl::Status& status) {
     if (listener_ == nullptr) return;
     std::exchange(listener_, nullptr)->OnEnd(status);
-    get_lowest_layer(socket_).close();
+    socket_.next_layer().close();
   }
 
   const Host host_;
@@ -226,7 +194,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>>
   const LinkOptions options_;
   Pace pace_;
   tcp::resolver resolver_;
-  websocket::stream<Stream> socket_;
+  websocket::stream<ServerStream, /*deflateSupported=*/false> socket_;
   net::steady_timer delay_;
   boost::beast::flat_buffer received_;
   std::deque<std::string> unsent_;
@@ -235,14 +203,11 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall<Stream>>
   bool half_closed_ = false;
 };
 
-template <typename Stream>
 class WebSocketLink final : public Link {
  public:
-  template <typename... Tls>
   WebSocketLink(net::io_context& io, const Host& host, Listener& listener,
-                const LinkOptions& options, Tls&... tls)
-      : io_(io),
-        call_(std::make_shared<WebSocketCall<Stream>>(io, host, listener, options, tls...)) {
+                const LinkOptions& options)
+      : io_(io), call_(std::make_shared<WebSocketCall>(io, host, listener, options)) {
     net::post(io_, [call = call_] { call->Start(); });
   }
 
@@ -271,17 +236,14 @@ class WebSocketLink final : public Link {
   }
 
   net::io_context& io_;
-  const std::shared_ptr<WebSocketCall<Stream>> call_;
+  const std::shared_ptr<WebSocketCall> call_;
 };
 
 // A unary call by gRPC-Web, on an io_context of its own.
-template <typename Stream>
 class WebCall {
  public:
-  // `tls` is the host's, for a stream that takes it.
-  template <typename... Tls>
-  WebCall(Host host, const std::string& method, const std::string& message, Tls&... tls)
-      : host_(std::move(host)), stream_(io_, tls...) {
+  WebCall(Host host, const std::string& method, const std::string& message)
+      : host_(std::move(host)), stream_(io_, host_.tls) {
     const auto bytes = static_cast<std::uint32_t>(message.size());
     request_.method(http::verb::post);
     request_.target(absl::StrCat(kBridgedService, method));
@@ -304,17 +266,16 @@ class WebCall {
     error_code error;
     const auto found = resolver.resolve(host_.name, std::to_string(host_.port), error);
     if (error) return Unavailable(host_, "find", error);
-    Plain& socket = get_lowest_layer(stream_);
-    socket.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience.seconds)));
-    socket.async_connect(found, [this](error_code failed, const tcp::endpoint&) {
+    stream_.expires_after(std::chrono::milliseconds(std::llround(1e3 * patience.seconds)));
+    stream_.Connect(found, [this](error_code failed) {
       if (failed) return Fail("connect to", failed);
-      HandshakeThen(stream_, host_, [this](error_code refused) {
+      stream_.Handshake(host_.name, [this](error_code refused) {
         if (refused) return Fail("speak TLS with", refused);
         Write();
       });
     });
     const std::stop_callback stopping(patience.stop,
-                                      [&] { net::post(io_, [&socket] { socket.close(); }); });
+                                      [&] { net::post(io_, [this] { stream_.close(); }); });
     io_.run();
     if (!result_.ok() && patience.stop.stop_requested()) {
       return absl::CancelledError(absl::StrCat("the call of ", host_.Url(), " was stopped"));
@@ -351,7 +312,7 @@ class WebCall {
 
   const Host host_;
   net::io_context io_;
-  Stream stream_;
+  ServerStream stream_;
   boost::beast::flat_buffer buffer_;
   http::request<http::string_body> request_;
   http::response<http::string_body> response_;
@@ -365,17 +326,12 @@ class WebSocketTransport final : public Transport {
   std::string Name() const override { return "WebSocket"; }
 
   std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) override {
-    if (host_.tls == nullptr) {
-      return std::make_unique<WebSocketLink<Plain>>(thread_.io(), host_, listener, options);
-    }
-    return std::make_unique<WebSocketLink<Secure>>(thread_.io(), host_, listener, options,
-                                                   *host_.tls);
+    return std::make_unique<WebSocketLink>(thread_.io(), host_, listener, options);
   }
 
   absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
                                    const CallPatience& patience) override {
-    if (host_.tls == nullptr) return WebCall<Plain>(host_, method, request).Run(patience);
-    return WebCall<Secure>(host_, method, request, *host_.tls).Run(patience);
+    return WebCall(host_, method, request).Run(patience);
   }
 
  private:

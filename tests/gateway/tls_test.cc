@@ -94,7 +94,7 @@ class TlsClient {
  private:
   net::io_context io_;
   net::ssl::context context_{net::ssl::context::tls_client};
-  std::optional<websocket::stream<Stream>> socket_;
+  std::optional<websocket::stream<Stream, /*deflateSupported=*/false>> socket_;
   boost::beast::flat_buffer buffer_;
 };
 

@@ -58,7 +58,7 @@ class WebSocketClient {
   void WriteNext();
 
   boost::asio::io_context io_;
-  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> socket_;
   boost::beast::flat_buffer received_;
   std::deque<std::string> unsent_;
   bool is_writing_ = false;

@@ -80,7 +80,7 @@ class Viewer {
     });
   }
 
-  websocket::stream<boost::beast::tcp_stream> socket_;
+  websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> socket_;
   const int interval_ms_;
   Tally& tally_;
   boost::beast::flat_buffer received_;

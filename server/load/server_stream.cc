@@ -1,0 +1,62 @@
+#include "load/server_stream.h"
+
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/ssl/host_name_verification.hpp>
+#include <utility>
+
+namespace thunderhead::load {
+
+namespace net = boost::asio;
+using boost::system::error_code;
+
+ServerStream::ServerStream(net::io_context& io, std::shared_ptr<net::ssl::context> tls)
+    : context_(std::move(tls)), plain_(net::any_io_executor(io.get_executor())) {
+  if (context_ != nullptr) tls_.emplace(plain_, *context_);
+}
+
+void ServerStream::Connect(const net::ip::tcp::resolver::results_type& found, Then then) {
+  plain_.async_connect(
+      found,
+      [then = std::move(then)](error_code error, const net::ip::tcp::endpoint&) { then(error); });
+}
+
+void ServerStream::Handshake(const std::string& host, Then then) {
+  if (!tls_.has_value()) return then(error_code());
+  auto& tls = tls_->next_layer();
+  error_code is_no_address;
+  net::ip::make_address(host, is_no_address);
+  // For servers that have certificates for several names.
+  if (is_no_address) SSL_set_tlsext_host_name(tls.native_handle(), host.c_str());
+  tls.set_verify_callback(net::ssl::host_name_verification(host));
+  tls.async_handshake(net::ssl::stream_base::client, std::move(then));
+}
+
+void ServerStream::Read(streams::FewBuffers<net::mutable_buffer> into,
+                        streams::BytesHandler handler) {
+  if (tls_.has_value()) {
+    tls_->async_read_some(into, std::move(handler));
+  } else {
+    plain_.async_read_some(into, std::move(handler));
+  }
+}
+
+void ServerStream::Write(streams::FewBuffers<net::const_buffer> from,
+                         streams::BytesHandler handler) {
+  if (tls_.has_value()) {
+    tls_->async_write_some(from, std::move(handler));
+  } else {
+    plain_.async_write_some(from, std::move(handler));
+  }
+}
+
+void beast_close_socket(ServerStream& stream) {
+  error_code ignored;
+  stream.socket().close(ignored);
+}
+
+void teardown(boost::beast::role_type /*client*/, ServerStream& stream, error_code& error) {
+  stream.socket().shutdown(net::ip::tcp::socket::shutdown_both, error);
+  beast_close_socket(stream);
+}
+
+}  // namespace thunderhead::load
