@@ -38,6 +38,10 @@ bool Meets(const Offer& offer, const scene::Accuracy& limit);
 // Why `offer`, which the scene is drawn with, misses what the scene asks for; none if it does not.
 std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer);
 
+// Settings of one view that may be refuted before the last one stays: several that miss the limit by
+// nearly the same are not drawn in turns.
+inline constexpr int kMaxRefuted = 8;
+
 class Offers {
  public:
   // Both must outlive it.
@@ -51,7 +55,7 @@ class Offers {
                                       const MeasuredErrors& measured = {}) const;
 
   // True if the picture of `scene`, drawn with that setting, surely has more error than it asks
-  // for. `measured` knows it then.
+  // for. `measured` knows it then. Callers ask kMaxRefuted times at most.
   bool Refutes(const scene::Scene& scene, const Setting& drawn, const MeasuredError& error,
                MeasuredErrors* measured) const;
 

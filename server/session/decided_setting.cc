@@ -8,8 +8,6 @@ namespace {
 
 // Costs are learnt from drawn frames; after this many decisions they are known, or do not converge.
 constexpr int kMaxDecidedAgain = 3;
-// Several that miss the limit by nearly the same are not drawn in turns.
-constexpr int kMaxRefuted = 8;
 
 }  // namespace
 
@@ -64,7 +62,7 @@ bool DecidedSetting::DecideAnew(const NewestScene& asked) {
 }
 
 bool DecidedSetting::Measured(const accuracy::MeasuredError& error, const NewestScene& asked) {
-  if (scene_ == nullptr || refuted_ >= kMaxRefuted) return false;
+  if (scene_ == nullptr || refuted_ >= accuracy::kMaxRefuted) return false;
   const accuracy::Setting drawn = accuracy::SettingOf(*scene_);
   if (!offers_.Refutes(*scene_, drawn, error, &measured_) || !DecideAnew(asked)) return false;
   settled_ = false;

@@ -18,8 +18,6 @@ namespace {
 constexpr double kQuick_ms = 5e3;
 // Pictures that hold their fields while their light is traced.
 constexpr std::ptrdiff_t kMaxTraced = 8;
-// Settings that a picture is given up for, as they miss the error that it asks for.
-constexpr int kMaxRefutedPictures = 8;
 // The time that a picture may take, over the longest that is predicted: predictions are not exact.
 constexpr double kPatience = 2.0;
 
@@ -215,7 +213,7 @@ bool ImageDrawer::IsRefuted(Begun& image) {
   const bool lit = AwaitsLight(*job.decided);
   accuracy::Setting drawn = accuracy::SettingOf(*job.decided);
   if (lit) drawn.million_paths = 1e-6 * static_cast<double>(image.wanted_paths);
-  if (!image.error.has_value() || image.refuted >= kMaxRefutedPictures ||
+  if (!image.error.has_value() || image.refuted >= accuracy::kMaxRefuted ||
       !offers.Refutes(*job.decided, drawn, *image.error, &image.measured)) {
     return false;
   }

@@ -10,6 +10,9 @@
 
 namespace thunderhead::testing {
 
+// How a projection of WRF ends in PROJ's words: places are on a sphere.
+inline constexpr char kSphereOfWrf[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
+
 // A cell of the file: indices from west, south and bottom, and the record.
 struct WrfCell {
   int x = 0;

@@ -15,8 +15,6 @@ using testing::BorderSegment;
 using testing::PaintedAt;
 using testing::SegmentThrough;
 
-constexpr char kSphere[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
-
 // Columns of 1 km.
 RegularGrid Columns(int count) {
   RegularGrid grid;
@@ -31,7 +29,7 @@ StormInfo StormAt(const EarthPlace& middle, const std::string& proj) {
   storm.id = "there";
   storm.latitude_deg = middle.latitude_deg;
   storm.longitude_deg = middle.longitude_deg;
-  storm.projection = proj + kSphere;
+  storm.projection = proj + testing::kSphereOfWrf;
   return storm;
 }
 

@@ -4,10 +4,10 @@
 
 #include <string>
 
+#include "tests/support/synthetic_wrf.h"
+
 namespace thunderhead::volume {
 namespace {
-
-constexpr char kSphereOfWrf[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
 
 struct Case {
   const char* proj;
@@ -20,7 +20,7 @@ class MapProjections : public ::testing::TestWithParam<Case> {};
 
 TEST_P(MapProjections, PlacesAreThoseOfProj) {
   const auto map =
-      MapProjection::Of(std::string(GetParam().proj) + kSphereOfWrf, GetParam().middle);
+      MapProjection::Of(std::string(GetParam().proj) + testing::kSphereOfWrf, GetParam().middle);
   ASSERT_TRUE(map.has_value());
   const auto middle = map->PlaceOf({0.0, 0.0});
   ASSERT_TRUE(middle.has_value());
