@@ -38,7 +38,7 @@ set(THUNDERHEAD_BUSY_TEST PROCESSORS 3)
 set(THUNDERHEAD_WAITING_TEST PROCESSORS 1 COST 100)
 
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
-# GoogleTest program and registers each of its cases with ctest under LABEL, those that are GL in its environment and with
+# GoogleTest program and registers each of its suites with ctest under LABEL, those that are GL in its environment and with
 # strict programs, and those that WAIT as such that leave a processor to others. HEADERS is the set of precompiled headers, `test_headers` if none is named.
 function(thunderhead_test name)
   cmake_parse_arguments(TEST "GL;WAITS" "LABEL;HEADERS" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
@@ -66,8 +66,7 @@ function(thunderhead_test name)
   else()
     list(APPEND TEST_PROPERTIES ${THUNDERHEAD_BUSY_TEST})
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${TEST_LABEL}" TIMEOUT 300
-    ${TEST_PROPERTIES})
+  thunderhead_register_suites(${name} LABELS ${TEST_LABEL} TIMEOUT 600 ${TEST_PROPERTIES})
 endfunction()
 
 # An error if a test file of the current folder is in none of its programs.

@@ -38,8 +38,8 @@ bool Meets(const Offer& offer, const scene::Accuracy& limit);
 // Why `offer`, which the scene is drawn with, misses what the scene asks for; none if it does not.
 std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer);
 
-// Settings of one view that may be refuted before the last one stays: several that miss the limit by
-// nearly the same are not drawn in turns.
+// Settings of one view that may be refuted before the last one stays: several that miss the limit
+// by nearly the same are not drawn in turns.
 inline constexpr int kMaxRefuted = 8;
 
 class Offers {
