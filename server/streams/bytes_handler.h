@@ -10,7 +10,6 @@
 #include <boost/system/error_code.hpp>
 #include <cstddef>
 #include <memory>
-#include <type_traits>
 #include <utility>
 
 namespace thunderhead::streams {
@@ -24,9 +23,9 @@ class BytesHandler {
 
   // Called on `executor` unless `handler` has one of its own.
   template <typename Handler>
-  BytesHandler(Handler&& handler, const executor_type& executor)
+  BytesHandler(Handler handler, const executor_type& executor)
       : executor_(boost::asio::get_associated_executor(handler, executor)),
-        call_(std::make_unique<CallOf<std::decay_t<Handler>>>(std::forward<Handler>(handler))) {}
+        call_(std::make_unique<CallOf<Handler>>(std::move(handler))) {}
 
   void operator()(boost::system::error_code error, size_t bytes) {
     // The handler may end what it is kept in.
@@ -41,8 +40,7 @@ class BytesHandler {
   };
   template <typename Handler>
   struct CallOf : Call {
-    template <typename From>
-    explicit CallOf(From&& from) : handler(std::forward<From>(from)) {}
+    explicit CallOf(Handler&& from) : handler(std::move(from)) {}
     void Run(boost::system::error_code error, size_t bytes) override {
       std::move(handler)(error, bytes);
     }
