@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/status.h"
+#include "glm/geometric.hpp"
 #include "physics/optics.h"
 
 namespace thunderhead::renderers {
@@ -21,6 +22,9 @@ constexpr int kMaxIterations = 200;
 constexpr double kSkyTolerance = 2e-4;
 // Maximum factor by which leaving a face aslant lengthens the path to the surface.
 constexpr float kMaxSlant = 4.0F;
+
+// Sunlight that is less than this is none.
+constexpr float kDarkTransmittance = 1e-12F;
 
 // Light that faces receive of a sky of radiance a + b (1 - sine of the elevation), as weights of
 // its irradiance from above over pi and of its mean radiance: integrals over the half of the
@@ -359,8 +363,9 @@ void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
         const std::int32_t to = links_[n].to[2 * axis + 1];
         if (to == kNone) continue;
         const SunAt& there = sun_[static_cast<std::size_t>(to)];
-        here.mean_transmittance_up[axis] = MeanTransmittance(
-            std::max(here.transmittance, there.transmittance), here.depth, there.depth);
+        const float most = std::max(here.transmittance, there.transmittance);
+        here.mean_transmittance_up[axis] =
+            most < kDarkTransmittance ? 0.0F : MeanTransmittance(most, here.depth, there.depth);
       }
     }
   });
@@ -386,6 +391,7 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
       const auto j = static_cast<std::size_t>(cell_of_[other]);
       const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
       transmittance = sun_[up ? n : other].mean_transmittance_up[axis];
+      if (transmittance == 0.0F) continue;
       flux = along * (3.0F * between + links.slack[side]) * transmittance;
     } else {
       const float out = half_m * cells_.light_per_m[i];
@@ -404,6 +410,22 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
          static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_transmittance;
 }
 
+void DiffuseLight::BeginFluence(const glm::dvec3& towards_sun) {
+  const glm::dvec3 step = towards_sun - last_sun_;
+  const bool goes_on = glm::distance(step, last_step_) < 0.5 * glm::length(last_step_);
+  if (goes_on) {
+    for (std::size_t n = 0; n < fluence_.size(); ++n) {
+      const float last = fluence_[n];
+      fluence_[n] = 2.0F * last - fluence_before_[n];
+      fluence_before_[n] = last;
+    }
+  } else {
+    fluence_before_ = fluence_;
+  }
+  last_sun_ = towards_sun;
+  last_step_ = step;
+}
+
 const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
                                                  const std::vector<float>& arrived_root,
                                                  double tolerance) {
@@ -414,6 +436,7 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
   ForShares(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) right[n] = SunlightScattered(n, towards_sun);
   });
+  BeginFluence(towards_sun);
   Solve(right, tolerance, &fluence_);
   net_inward_.assign(number_.size(), 0.0F);
   std::vector<float> own(number_.size(), 0.0F);

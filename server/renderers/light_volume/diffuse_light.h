@@ -34,8 +34,9 @@ class DiffuseLight {
 
   // For sunlight of irradiance 1 that arrives in each cell with the root of its optical depth
   // `arrived_root`: the net flux into the cloud, from which diffuse_fluence computes the fluence
-  // (shaders/physics/light_transport.glsl). Starts from the last solution, and ends where the
-  // residual, in the preconditioner's norm, is less than `tolerance` times the right side.
+  // (shaders/physics/light_transport.glsl). Starts from the last solution, for a sun that goes on
+  // as it did before from how that changed, and ends where the residual, in the preconditioner's
+  // norm, is less than `tolerance` times the right side.
   const std::vector<float>& SolveSun(const glm::dvec3& towards_sun,
                                      const std::vector<float>& arrived_root,
                                      double tolerance = 2e-4);
@@ -89,6 +90,8 @@ class DiffuseLight {
   void SolveSkyPart(int part);
   void Precondition(const std::vector<float>& from, std::vector<float>* to) const;
   void Apply(const std::vector<float>& from, std::vector<float>* to) const;
+  // Makes of the last fluence the start for another sun.
+  void BeginFluence(const glm::dvec3& towards_sun);
   void Solve(const std::vector<float>& right, double tolerance, std::vector<float>* solution);
   // Sets empty cells beside others to the mean of those.
   template <typename Value>
@@ -109,7 +112,10 @@ class DiffuseLight {
   std::vector<glm::vec2> sky_inward_;
   std::vector<float> from_walls_;
   std::vector<SunAt> sun_;
-  std::vector<float> fluence_;  // by number
+  std::vector<float> fluence_;         // by number
+  std::vector<float> fluence_before_;  // that of the sun before
+  glm::dvec3 last_sun_{0.0};
+  glm::dvec3 last_step_{0.0};  // from the sun before to that
   std::vector<float> net_inward_;
   std::vector<float> residual_, direction_, image_, better_;
   float area_[3] = {};  // of a cell's faces, over that across z

@@ -146,6 +146,34 @@ TEST(DiffuseLight, LooseSolutionsStayNearTheConvergedOne) {
   EXPECT_LT(2 * iterations, exact_iterations);
 }
 
+// The number of iterations of loose solutions for a sun whose azimuth takes these steps, but for
+// the first three.
+int IterationsFor(const std::vector<double>& steps_rad) {
+  DiffuseLight light(HazeAndCores(false));
+  int iterations = 0;
+  double azimuth_rad = 0.0;
+  for (std::size_t i = 0; i < steps_rad.size(); ++i) {
+    azimuth_rad += steps_rad[i];
+    // Its depth varies across the medium, and with the sun.
+    std::vector<float> roots(light.ExitRoot().size());
+    for (std::size_t cell = 0; cell < roots.size(); ++cell) {
+      const double x = static_cast<double>(cell % 40) / 40.0;
+      roots[cell] = static_cast<float>(0.8 + 0.4 * std::sin(6.0 * x + 3.0 * azimuth_rad));
+    }
+    (void)light.SolveSun({0.8 * std::cos(azimuth_rad), 0.8 * std::sin(azimuth_rad), 0.6}, roots,
+                         4e-3);
+    if (i >= 3) iterations += light.LastIterations();
+  }
+  return iterations;
+}
+
+TEST(DiffuseLight, ASunThatGoesOnIsFollowed) {
+  const std::vector<double> on(15, 0.04);
+  std::vector<double> to_and_fro;
+  for (std::size_t i = 0; i < on.size(); ++i) to_and_fro.push_back(i % 2 == 0 ? 0.04 : -0.04);
+  EXPECT_LT(IterationsFor(on), 0.8 * IterationsFor(to_and_fro));
+}
+
 // Many blocks of columns, cut at other places in the mirrored medium.
 TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
   const glm::ivec3 size(40, 41, 20);
