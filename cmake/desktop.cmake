@@ -16,4 +16,6 @@ find_library(YUV_LIBRARY yuv REQUIRED)
 if(THUNDERHEAD_TESTS)
   find_package(GTest REQUIRED)
   include(suites)
+  # Not -O0, as other tests: these take the precompiled headers of the library, which are optimised.
+  set(THUNDERHEAD_CLIENT_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 endif()
