@@ -32,16 +32,11 @@ endfunction()
 # memory that it still holds, which LeakSanitizer cannot tell from ours by name.
 set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
-# `./dev test` gives ctest three places a processor. A test that computes takes three, one that mostly waits one, and those
-# come first, so that they do not wait one after another at the end.
-set(THUNDERHEAD_BUSY_TEST PROCESSORS 3)
-set(THUNDERHEAD_WAITING_TEST PROCESSORS 1 COST 100)
-
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
 # GoogleTest program and registers each of its suites with ctest under LABEL, those that are GL in its environment and with
-# strict programs, and those that WAIT as such that leave a processor to others. HEADERS is the set of precompiled headers, `test_headers` if none is named.
+# strict programs. Those that WAIT, or of which a suite is WAITING, leave a processor to others. HEADERS is the set of precompiled headers, `test_headers` if none is named.
 function(thunderhead_test name)
-  cmake_parse_arguments(TEST "GL;WAITS" "LABEL;HEADERS" "DEPENDS;SOURCES;PROPERTIES" ${ARGN})
+  cmake_parse_arguments(TEST "GL;WAITS" "LABEL;HEADERS" "DEPENDS;SOURCES;WAITING;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)
     file(GLOB TEST_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cc)
   endif()
@@ -66,7 +61,7 @@ function(thunderhead_test name)
   else()
     list(APPEND TEST_PROPERTIES ${THUNDERHEAD_BUSY_TEST})
   endif()
-  thunderhead_register_suites(${name} LABELS ${TEST_LABEL} TIMEOUT 600 ${TEST_PROPERTIES})
+  thunderhead_register_suites(${name} WAITING ${TEST_WAITING} PROPERTIES LABELS ${TEST_LABEL} TIMEOUT 600 ${TEST_PROPERTIES})
 endfunction()
 
 # An error if a test file of the current folder is in none of its programs.

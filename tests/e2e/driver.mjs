@@ -150,13 +150,6 @@ export async function openTool(page, name) {
   await page.getByTestId(`rail-${name ?? now}`).click();
 }
 
-// Without detail and traced light: pictures rest sooner, and leave the processors to other tests.
-export async function drawFast(page) {
-  await openTool(page, "look");
-  await changing(() => page.getByTestId("quality-choice").getByText("Fast", { exact: true }).click(), page);
-  await openTool(page, undefined);
-}
-
 const PANEL_BUTTONS = { help: "rail-help", drawer: "rail-settings" };
 // In a narrow window they are under others: the panel, and the button in it.
 const UNDER_OTHERS = {

@@ -19,9 +19,9 @@ const SLOW_FOR_MS = 180_000;
 const TURNS_FOR_MS = 60_000;
 // Maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the picture.
 const ALIKE = 2.5;
-// Maximum difference of the means of blocks, so large that the noise of either encoding is 0.2 to 0.6. The matrix of BT.601 in place of
-// BT.709's makes 1.5 in this view, another range 6.
-const SAME_COLOURS = 1;
+// Maximum difference of the means of blocks, so large that the noise of either encoding is 0.3, and 1.0 on a machine that is busy. The matrix
+// of BT.601 in place of BT.709's makes 2.0 in this view, another range 8.
+const SAME_COLOURS = 1.5;
 const BLOCK_PX = 128;
 
 let server;
@@ -217,9 +217,10 @@ test("the colours of video are those of JPEG", async () => {
   };
   const presenter = await open(server.url, jpegOnly, keepsPictures);
   await rested(presenter);
-  // Without traced light, which comes when the picture rests, after its video.
+  // Without traced light, which comes when the picture rests, after its video; in strong colours, which show a wrong matrix.
   await openTool(presenter, "look");
   await changing(() => presenter.getByTestId("quality-choice").getByText("Fast", { exact: true }).click(), presenter);
+  await changing(() => presenter.getByTestId("colours").getByText("False colours").click(), presenter);
   await openTool(presenter, undefined);
   await restedAndFits(presenter);
   const viewer = await open(presenter.url(), savesData, keepsPictures);
