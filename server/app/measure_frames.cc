@@ -104,6 +104,11 @@ Command AddMeasureFrames(CLI::App& measure) {
       ->capture_default_str();
   frames->add_option("--runs", flags->options.runs, "Number of runs; their medians are printed")
       ->capture_default_str();
+  frames
+      ->add_option("--seconds", flags->options.seconds_a_run,
+                   "Seconds at least of each run, of the camera and of the sun")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
   frames->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   frames->add_option("--mode", flags->options.only_mode,

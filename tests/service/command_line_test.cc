@@ -299,7 +299,7 @@ TEST_F(CommandLineTest, AnOlderServerIsNamed) {
 TEST_F(CommandLineTest, MeasureFramesHasARowForEachNamedSetting) {
   const Outcome outcome =
       Run("measure frames " + kSample +
-          " --time 0 --size 24x16 --slices 8 --runs 1 --device software --json");
+          " --time 0 --size 24x16 --slices 8 --runs 1 --seconds 0 --device software --json");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   google::protobuf::Struct json;
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &json).ok()) << outcome.out;
