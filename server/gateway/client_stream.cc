@@ -5,34 +5,36 @@
 #include <exception>
 #include <utility>
 
+namespace thunderhead::streams {
+template class OptionalTls<gateway::ByteCounts>;
+}
+
 namespace thunderhead::gateway {
 
 namespace net = boost::asio;
 using boost::system::error_code;
 
 ClientStream::ClientStream(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::context> tls)
-    : context_(std::move(tls)), plain_(std::move(socket)), write_ended_(plain_.get_executor()) {
-  if (context_ != nullptr) tls_.emplace(plain_, *context_);
-}
+    : OptionalTls(std::move(socket), std::move(tls)), write_ended_(get_executor()) {}
 
 net::awaitable<bool> ClientStream::Handshake() {
   error_code error;
-  if (tls_.has_value()) {
-    co_await tls_->next_layer().async_handshake(net::ssl::stream_base::server,
-                                                net::redirect_error(net::use_awaitable, error));
+  if (auto* tls = TlsStream(); tls != nullptr) {
+    co_await tls->async_handshake(net::ssl::stream_base::server,
+                                  net::redirect_error(net::use_awaitable, error));
   }
   co_return !error;
 }
 
 net::awaitable<void> ClientStream::LingeringClose() {
   error_code error;
-  plain_.socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
+  socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
   std::array<char, 16 << 10> ignored;
   while (!error) {
-    co_await plain_.async_read_some(net::buffer(ignored),
-                                    net::redirect_error(net::use_awaitable, error));
+    co_await PlainStream().async_read_some(net::buffer(ignored),
+                                           net::redirect_error(net::use_awaitable, error));
   }
-  plain_.socket().close(error);
+  socket().close(error);
 }
 
 void ClientStream::LingeringClose(streams::BytesHandler handler) {
@@ -41,15 +43,6 @@ void ClientStream::LingeringClose(streams::BytesHandler handler) {
                 [handler = std::move(handler)](const std::exception_ptr&) mutable {
                   handler(error_code(), 0);
                 });
-}
-
-void ClientStream::Read(streams::FewBuffers<net::mutable_buffer> into,
-                        streams::BytesHandler handler) {
-  if (tls_.has_value()) {
-    tls_->async_read_some(into, std::move(handler));
-  } else {
-    plain_.async_read_some(into, std::move(handler));
-  }
 }
 
 void ClientStream::Write(streams::FewBuffers<net::const_buffer> from,
@@ -78,23 +71,9 @@ net::awaitable<bool> ClientStream::WriteLast(std::string bytes) {
   net::const_buffer rest = net::buffer(bytes);
   error_code error;
   while (!error && rest.size() > 0) {
-    if (tls_.has_value()) {
-      rest += co_await tls_->async_write_some(rest, net::redirect_error(net::use_awaitable, error));
-    } else {
-      rest +=
-          co_await plain_.async_write_some(rest, net::redirect_error(net::use_awaitable, error));
-    }
+    rest += co_await async_send_some(rest, net::redirect_error(net::use_awaitable, error));
   }
   co_return !error;
-}
-
-void ClientStream::Send(streams::FewBuffers<net::const_buffer> from,
-                        streams::BytesHandler handler) {
-  if (tls_.has_value()) {
-    tls_->async_write_some(from, std::move(handler));
-  } else {
-    plain_.async_write_some(from, std::move(handler));
-  }
 }
 
 void beast_close_socket(ClientStream& stream) {

@@ -3,29 +3,25 @@
 // neither HTTP nor gRPC. Runs on one thread.
 #pragma once
 
-#include <boost/asio/any_io_executor.hpp>
-#include <boost/asio/async_result.hpp>
+#include <boost/asio/associated_executor.hpp>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ssl/stream.hpp>
-#include <boost/beast/core/basic_stream.hpp>
-#include <boost/beast/core/flat_stream.hpp>
 #include <boost/beast/core/rate_policy.hpp>
 #include <boost/beast/core/role.hpp>
 #include <boost/beast/websocket/teardown.hpp>
-#include <chrono>
+#include <boost/system/error_code.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include "gateway/awaitable.h"
 #include "gateway/change_signal.h"
 #include "streams/bytes_handler.h"
+#include "streams/optional_tls.h"
 
 namespace thunderhead::gateway {
 
@@ -50,24 +46,23 @@ class ByteCounts {
   uint64_t sent_ = 0;
 };
 
-class ClientStream {
- public:
-  // Asio's name for it.
-  using executor_type = boost::asio::any_io_executor;
+}  // namespace thunderhead::gateway
 
+namespace thunderhead::streams {
+extern template class OptionalTls<gateway::ByteCounts>;
+}
+
+namespace thunderhead::gateway {
+
+class ClientStream : public streams::OptionalTls<ByteCounts> {
+ public:
   // `tls` null: plain.
   ClientStream(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls);
 
   // The first of all where there is TLS. False if it fails.
   boost::asio::awaitable<bool> Handshake();
 
-  executor_type get_executor() { return plain_.get_executor(); }
-  boost::asio::ip::tcp::socket& socket() { return plain_.socket(); }
-  const ByteCounts& Counts() { return plain_.rate_policy(); }
-  void expires_after(std::chrono::steady_clock::duration time) { plain_.expires_after(time); }
-  void expires_at(std::chrono::steady_clock::time_point time) { plain_.expires_at(time); }
-  void expires_never() { plain_.expires_never(); }
-  void cancel() { plain_.cancel(); }
+  const ByteCounts& Counts() { return PlainStream().rate_policy(); }
 
   // Sends `bytes` after what is being sent, as the last of all: whatever is written later is taken
   // and not sent. False if the connection has ended.
@@ -80,38 +75,10 @@ class ClientStream {
   // The same; then calls `handler`, without an error.
   void LingeringClose(streams::BytesHandler handler);
 
-  template <typename Buffers, typename Token>
-  auto async_read_some(const Buffers& buffers, Token&& token) {
-    return boost::asio::async_initiate<Token, void(boost::system::error_code, size_t)>(
-        [this](auto&& handler, const Buffers& into) {
-          Read(into,
-               streams::BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
-        },
-        token, buffers);
-  }
-
-  template <typename Buffers, typename Token>
-  auto async_write_some(const Buffers& buffers, Token&& token) {
-    return boost::asio::async_initiate<Token, void(boost::system::error_code, size_t)>(
-        [this](auto&& handler, const Buffers& from) {
-          Write(from,
-                streams::BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
-        },
-        token, buffers);
-  }
-
  private:
-  using Plain = boost::beast::basic_stream<boost::asio::ip::tcp, executor_type, ByteCounts>;
-  // Makes one TLS record of several small buffers.
-  using Tls = boost::beast::flat_stream<boost::asio::ssl::stream<Plain&>>;
+  void Write(streams::FewBuffers<boost::asio::const_buffer> from,
+             streams::BytesHandler handler) override;
 
-  void Read(streams::FewBuffers<boost::asio::mutable_buffer> into, streams::BytesHandler handler);
-  void Write(streams::FewBuffers<boost::asio::const_buffer> from, streams::BytesHandler handler);
-  void Send(streams::FewBuffers<boost::asio::const_buffer> from, streams::BytesHandler handler);
-
-  const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives what is made of it
-  Plain plain_;
-  std::optional<Tls> tls_;
   bool between_writes_ = true;  // the last one has ended, and was whole
   bool last_begun_ = false;
   ChangeSignal write_ended_;

@@ -1,8 +1,13 @@
 #include "load/server_stream.h"
 
+#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/ip/address.hpp>
 #include <boost/asio/ssl/host_name_verification.hpp>
 #include <utility>
+
+namespace thunderhead::streams {
+template class OptionalTls<boost::beast::unlimited_rate_policy>;
+}
 
 namespace thunderhead::load {
 
@@ -10,43 +15,23 @@ namespace net = boost::asio;
 using boost::system::error_code;
 
 ServerStream::ServerStream(net::io_context& io, std::shared_ptr<net::ssl::context> tls)
-    : context_(std::move(tls)), plain_(net::any_io_executor(io.get_executor())) {
-  if (context_ != nullptr) tls_.emplace(plain_, *context_);
-}
+    : OptionalTls(net::any_io_executor(io.get_executor()), std::move(tls)) {}
 
 void ServerStream::Connect(const net::ip::tcp::resolver::results_type& found, Then then) {
-  plain_.async_connect(
+  PlainStream().async_connect(
       found,
       [then = std::move(then)](error_code error, const net::ip::tcp::endpoint&) { then(error); });
 }
 
 void ServerStream::Handshake(const std::string& host, Then then) {
-  if (!tls_.has_value()) return then(error_code());
-  auto& tls = tls_->next_layer();
+  auto* tls = TlsStream();
+  if (tls == nullptr) return then(error_code());
   error_code is_no_address;
   net::ip::make_address(host, is_no_address);
   // For servers that have certificates for several names.
-  if (is_no_address) SSL_set_tlsext_host_name(tls.native_handle(), host.c_str());
-  tls.set_verify_callback(net::ssl::host_name_verification(host));
-  tls.async_handshake(net::ssl::stream_base::client, std::move(then));
-}
-
-void ServerStream::Read(streams::FewBuffers<net::mutable_buffer> into,
-                        streams::BytesHandler handler) {
-  if (tls_.has_value()) {
-    tls_->async_read_some(into, std::move(handler));
-  } else {
-    plain_.async_read_some(into, std::move(handler));
-  }
-}
-
-void ServerStream::Write(streams::FewBuffers<net::const_buffer> from,
-                         streams::BytesHandler handler) {
-  if (tls_.has_value()) {
-    tls_->async_write_some(from, std::move(handler));
-  } else {
-    plain_.async_write_some(from, std::move(handler));
-  }
+  if (is_no_address) SSL_set_tlsext_host_name(tls->native_handle(), host.c_str());
+  tls->set_verify_callback(net::ssl::host_name_verification(host));
+  tls->async_handshake(net::ssl::stream_base::client, std::move(then));
 }
 
 void beast_close_socket(ServerStream& stream) {

@@ -8,6 +8,9 @@ import { test } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { BINARY, ROOT, freePort, startServer } from "./server_process.mjs";
 
+// Of the 30 s that the first signal leaves a picture; a busy machine takes a second to end a process.
+const AT_ONCE_MS = 5000;
+
 async function start(...more) {
   const operatorPort = await freePort();
   const flags = ["--metrics", `127.0.0.1:${operatorPort}`, "--log-format", "json", ...more];
@@ -123,7 +126,8 @@ test("SIGTERM waits for the picture that was begun, a second one ends at once", 
     const again = Date.now();
     other.child.kill("SIGTERM");
     assert.deepEqual(await killed, { code: 128 + 15, signal: null });
-    assert.ok(Date.now() - again < 1000);
+    const tookMs = Date.now() - again;
+    assert.ok(tookMs < AT_ONCE_MS, `it ended after ${tookMs} ms`);
     assert.notEqual((await gaveUp).code, 0);
   } finally {
     rmSync(folder, { recursive: true, force: true });

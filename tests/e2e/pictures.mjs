@@ -56,20 +56,52 @@ export function difference(a, b) {
   return sum / (a.width * a.height * 3);
 }
 
-// Mean absolute difference of the means of blocks, all channels, 0 to 255: of colours, whatever the pictures' sharpness.
-export function blockDifference(a, b, side = 16) {
+// Differences of the means of blocks, channel by channel.
+function blockDifferences(a, b, side) {
   if (a.width !== b.width || a.height !== b.height) throw new Error("the pictures differ in size");
   const [columns, rows] = [Math.floor(a.width / side), Math.floor(a.height / side)];
-  const sums = new Float64Array(columns * rows * 3);
+  const means = new Float64Array(columns * rows * 3);
   for (let y = 0; y < rows * side; y += 1) {
     for (let x = 0; x < columns * side; x += 1) {
       const block = Math.floor(y / side) * columns + Math.floor(x / side);
       const at = 4 * (y * a.width + x);
-      for (let i = 0; i < 3; i += 1) sums[3 * block + i] += a.data[at + i] - b.data[at + i];
+      for (let i = 0; i < 3; i += 1) means[3 * block + i] += (a.data[at + i] - b.data[at + i]) / (side * side);
     }
   }
-  return sums.reduce((sum, value) => sum + Math.abs(value), 0) / (sums.length * side * side);
+  return means;
 }
+
+// Their mean size, 0 to 255: of colours, whatever the pictures' sharpness.
+export function blockDifference(a, b, side = 16) {
+  const means = blockDifferences(a, b, side);
+  return means.reduce((sum, value) => sum + Math.abs(value), 0) / means.length;
+}
+
+// How much of the change from one picture to another is in a third, by least squares over blocks: 0 if that is as the first, 1 if
+// it is as the other. The noise of encodings, which does not go with the change, counts for little.
+export function shareOfChange(picture, from, to, side = 16) {
+  const [is, would] = [blockDifferences(picture, from, side), blockDifferences(to, from, side)];
+  const along = (values) => values.reduce((sum, value, i) => sum + value * would[i], 0);
+  return along(is) / along(would);
+}
+
+function withPixels(picture, change) {
+  const data = Uint8ClampedArray.from(picture.data);
+  for (let i = 0; i < data.length; i += 4) data.set(change(...picture.data.subarray(i, i + 3)), i);
+  return { ...picture, data };
+}
+
+// As a decoder shows the picture that takes the colour differences of BT.601 for those of BT.709.
+export const decodedByBt709 = (picture) =>
+  withPixels(picture, (red, green, blue) => {
+    const luma = 0.299 * red + 0.587 * green + 0.114 * blue;
+    const [cb, cr] = [(blue - luma) / 1.772, (red - luma) / 1.402];
+    return [luma + 1.5748 * cr, luma - 0.1873 * cb - 0.4681 * cr, luma + 1.8556 * cb];
+  });
+
+// As one shows it that takes video's range of 16 to 235 for 0 to 255.
+export const decodedAsFullRange = (picture) =>
+  withPixels(picture, (...colours) => colours.map((colour) => 16 + (colour * 219) / 255));
 
 // Share of pixels in which two pictures differ by more than a JPEG's noise.
 export function differingShare(a, b) {

@@ -1,0 +1,127 @@
+// The bytes of a connection, plain or by TLS, to Asio and Beast a stream like any other, with one
+// timeout for what is begun after it is set. Used on one thread.
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/async_result.hpp>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/stream.hpp>
+#include <boost/beast/core/basic_stream.hpp>
+#include <boost/beast/core/flat_stream.hpp>
+#include <boost/system/error_code.hpp>
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "streams/bytes_handler.h"
+
+namespace thunderhead::streams {
+
+// Compiled once for each RatePolicy, Beast's hook for rate limits: who derives from it declares it
+// as an extern template and instantiates it in one file.
+template <typename RatePolicy>
+class OptionalTls {
+ public:
+  // Asio's name for it.
+  using executor_type = boost::asio::any_io_executor;
+
+  // Of a socket, or of an executor on which one is to connect. `tls` null: plain.
+  template <typename Source>
+  OptionalTls(Source source, std::shared_ptr<boost::asio::ssl::context> tls)
+      : context_(std::move(tls)), plain_(std::move(source)) {
+    if (context_ != nullptr) tls_.emplace(plain_, *context_);
+  }
+  OptionalTls(const OptionalTls&) = delete;
+  OptionalTls& operator=(const OptionalTls&) = delete;
+  virtual ~OptionalTls() = default;
+
+  executor_type get_executor() { return plain_.get_executor(); }
+  boost::asio::ip::tcp::socket& socket() { return plain_.socket(); }
+  void expires_after(std::chrono::steady_clock::duration time) { plain_.expires_after(time); }
+  void expires_at(std::chrono::steady_clock::time_point time) { plain_.expires_at(time); }
+  void expires_never() { plain_.expires_never(); }
+  void cancel() { plain_.cancel(); }
+  void close() { plain_.close(); }
+
+  template <typename Buffers, typename Token>
+  auto async_read_some(const Buffers& buffers, Token&& token) {
+    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
+        [this](auto&& handler, const Buffers& into) {
+          Read(into, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
+        },
+        token, buffers);
+  }
+
+  template <typename Buffers, typename Token>
+  auto async_write_some(const Buffers& buffers, Token&& token) {
+    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
+        [this](auto&& handler, const Buffers& from) {
+          Write(from, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
+        },
+        token, buffers);
+  }
+
+ protected:
+  using Plain = boost::beast::basic_stream<boost::asio::ip::tcp, executor_type, RatePolicy>;
+
+  Plain& PlainStream() { return plain_; }
+  // Null where there is no TLS.
+  boost::asio::ssl::stream<Plain&>* TlsStream() {
+    return tls_.has_value() ? &tls_->next_layer() : nullptr;
+  }
+
+  // As async_write_some, whatever Write does.
+  template <typename Buffers, typename Token>
+  auto async_send_some(const Buffers& buffers, Token&& token) {
+    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
+        [this](auto&& handler, const Buffers& from) {
+          Send(from, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
+        },
+        token, buffers);
+  }
+
+  void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
+  void Send(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
+  // What async_write_some does.
+  virtual void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
+
+ private:
+  // Makes one TLS record of several small buffers.
+  using Tls = boost::beast::flat_stream<boost::asio::ssl::stream<Plain&>>;
+
+  const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives what is made of it
+  Plain plain_;
+  std::optional<Tls> tls_;
+};
+
+template <typename RatePolicy>
+void OptionalTls<RatePolicy>::Read(FewBuffers<boost::asio::mutable_buffer> into,
+                                   BytesHandler handler) {
+  if (tls_.has_value()) {
+    tls_->async_read_some(into, std::move(handler));
+  } else {
+    plain_.async_read_some(into, std::move(handler));
+  }
+}
+
+template <typename RatePolicy>
+void OptionalTls<RatePolicy>::Send(FewBuffers<boost::asio::const_buffer> from,
+                                   BytesHandler handler) {
+  if (tls_.has_value()) {
+    tls_->async_write_some(from, std::move(handler));
+  } else {
+    plain_.async_write_some(from, std::move(handler));
+  }
+}
+
+template <typename RatePolicy>
+void OptionalTls<RatePolicy>::Write(FewBuffers<boost::asio::const_buffer> from,
+                                    BytesHandler handler) {
+  Send(from, std::move(handler));
+}
+
+}  // namespace thunderhead::streams
