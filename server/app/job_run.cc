@@ -105,6 +105,7 @@ class JobRun {
   JobRun(ServerLink& server, PictureRun& run, RunProgress& progress)
       : server_(server), run_(run), progress_(progress), label_(LabelOf(run.Options().manifest)) {}
 
+  // Jobs of these products of which nothing is missing are forgotten.
   absl::StatusOr<std::vector<JobShare>> SharesOf(const std::vector<PlannedPicture*>& missing);
   // Returns when each picture of the share has its outcome.
   absl::Status Make(JobShare& share, const std::stop_token& stop);
@@ -378,9 +379,11 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
     picture.outcome = absl::OkStatus();
     progress.Kept(picture.path);
   }
-  if (missing.empty()) return absl::OkStatus();
   JobRun jobs(server, run, progress);
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<JobShare> shares, jobs.SharesOf(missing));
+  // Also where nothing is missing: a run that was killed at its end has left its job there.
+  absl::StatusOr<std::vector<JobShare>> found = jobs.SharesOf(missing);
+  if (missing.empty()) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<JobShare> shares, std::move(found));
   std::stop_source ending;
   const std::stop_callback on_stop(stop, [&ending] { ending.request_stop(); });
   std::atomic<std::size_t> next{0};

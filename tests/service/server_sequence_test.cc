@@ -148,6 +148,27 @@ TEST_F(ServerSequence, AClientThatIsKilledGoesOnWhereItWas) {
   EXPECT_EQ(Kept(), 0U);
 }
 
+TEST_F(ServerSequence, AJobThatAKilledClientLeftIsForgottenThoughNothingIsMissing) {
+  const auto server = Serve();
+  ASSERT_EQ(Start("sequence", "run")->Wait().code, 0) << Errors();
+  const std::string aside = folder_.File("aside");
+  fs::create_directory(aside);
+  for (const std::string& product : Products()) {
+    fs::rename(out_ + "/" + product, aside + "/" + product);
+  }
+  const auto client = Start("sequence", "run");
+  ASSERT_TRUE(EventuallyTrue([&] { return Kept() >= 1; })) << Errors();
+  client->Signal(SIGKILL);
+  client->Wait();
+  for (const std::string& product : Products()) {
+    if (fs::exists(out_ + "/" + product)) continue;
+    fs::rename(aside + "/" + product, out_ + "/" + product);
+  }
+  ASSERT_TRUE(EventuallyTrue([&] { return Kept() >= 1; }));
+  EXPECT_EQ(Start("sequence", "run")->Wait().code, 0) << Errors();
+  EXPECT_EQ(Kept(), 0U);
+}
+
 TEST_F(ServerSequence, AServerThatIsKilledIsWaitedForAndGoesOn) {
   auto server = Serve();
   const auto client = Start("sequence", "run");
