@@ -19,7 +19,7 @@ const SLOW_FOR_MS = 180_000;
 const TURNS_FOR_MS = 60_000;
 // Maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the picture.
 const ALIKE = 2.5;
-// Share of what a wrong matrix or range would change: noise makes 0.1 of it, a wrong one makes 1.
+// Share of what a wrong matrix or range would change: video of low quality, whose colours are paler, makes -0.26 of it, a wrong one makes 1.
 const SAME_COLOURS = 0.5;
 
 let server;
