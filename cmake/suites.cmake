@@ -1,4 +1,4 @@
-# Places of a test among ctest's, of which `./dev test` has five a processor. One that computes takes three, a browser's or a window's
+# Places of a test among ctest's, of which `./dev test` has four a processor. One that computes takes three, a browser's or a window's
 # two, and one that mostly waits one; the longest come first, so that they do not wait one after another at the end.
 set(THUNDERHEAD_BUSY_TEST PROCESSORS 3)
 set(THUNDERHEAD_WINDOW_TEST PROCESSORS 2)
