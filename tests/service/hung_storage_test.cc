@@ -72,7 +72,7 @@ class HungStorageTest : public ::testing::Test {
         "serve",       "--device",        "software",    "--http",
         "127.0.0.1:0", "--grpc",          "127.0.0.1:0", "--metrics",
         "127.0.0.1:0", "--state",         state,         "--rescan-seconds",
-        "0",           "--read-deadline", "1",           "--drain-seconds",
+        "0",           "--read-deadline", "3",           "--drain-seconds",
         "2",           "--data"};
     arguments.insert(arguments.end(), data.begin(), data.end());
     arguments.insert(arguments.end(), more.begin(), more.end());
