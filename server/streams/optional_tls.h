@@ -49,20 +49,11 @@ class OptionalTls {
 
   template <typename Buffers, typename Token>
   auto async_read_some(const Buffers& buffers, Token&& token) {
-    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
-        [this](auto&& handler, const Buffers& into) {
-          Read(into, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
-        },
-        token, buffers);
+    return Begin<&OptionalTls::Read>(buffers, std::forward<Token>(token));
   }
-
   template <typename Buffers, typename Token>
   auto async_write_some(const Buffers& buffers, Token&& token) {
-    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
-        [this](auto&& handler, const Buffers& from) {
-          Write(from, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
-        },
-        token, buffers);
+    return Begin<&OptionalTls::Write>(buffers, std::forward<Token>(token));
   }
 
  protected:
@@ -74,24 +65,31 @@ class OptionalTls {
     return tls_.has_value() ? &tls_->next_layer() : nullptr;
   }
 
-  // As async_write_some, whatever Write does.
+  // As async_write_some, past an overridden Write.
   template <typename Buffers, typename Token>
   auto async_send_some(const Buffers& buffers, Token&& token) {
-    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
-        [this](auto&& handler, const Buffers& from) {
-          Send(from, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
-        },
-        token, buffers);
+    return Begin<&OptionalTls::Send>(buffers, std::forward<Token>(token));
   }
 
   void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
   void Send(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
-  // What async_write_some does.
+  // Called by async_write_some; sends, unless a stream that keeps count of its writes overrides it.
   virtual void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
 
  private:
   // Makes one TLS record of several small buffers.
   using Tls = boost::beast::flat_stream<boost::asio::ssl::stream<Plain&>>;
+
+  // Calls `kOperation` with the handler that Asio makes of the token.
+  template <auto kOperation, typename Buffers, typename Token>
+  auto Begin(const Buffers& buffers, Token&& token) {
+    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
+        [this](auto&& handler, const Buffers& bytes) {
+          (this->*kOperation)(
+              bytes, BytesHandler(std::forward<decltype(handler)>(handler), get_executor()));
+        },
+        token, buffers);
+  }
 
   const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives what is made of it
   Plain plain_;
