@@ -19,7 +19,7 @@ import {
   turn,
   VIEWPORT,
 } from "./class_room.mjs";
-import { canvasData, changing, openTool, rested, restedStill, screenshot, setNumber, until } from "./driver.mjs";
+import { canvasData, changing, chooseQuality, openTool, rested, restedStill, screenshot, setNumber, until } from "./driver.mjs";
 import { difference, grabCanvas } from "./pictures.mjs";
 import { textOfCode } from "./qr.mjs";
 
@@ -76,7 +76,7 @@ test("a presenter leaves, whose control is to be free after a minute; a viewer a
   const presenter = await room.visit(room.server.url);
   await until("a session", async () => presenter.url().includes("?session="));
   // Otherwise the light of its picture, which nobody looks at, would be traced all the time.
-  await presenter.getByTestId("quality-choice").getByText("Fast", { exact: true }).click();
+  await chooseQuality(presenter, "Fast");
   await setRule(presenter, "freeWhenAway", true);
   const viewer = await room.visit(presenter.url().replace(/#.*/, ""));
   await viewer.getByTestId("ask-control").waitFor();

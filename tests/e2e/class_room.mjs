@@ -2,7 +2,7 @@
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { canvasData, changing, dragBetween, launchBrowser, listenForErrors, openTool, rested, screenshot, until } from "./driver.mjs";
+import { canvasData, changing, chooseQuality, dragBetween, launchBrowser, listenForErrors, openTool, rested, screenshot, until } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 export const VIEWPORT = { width: 900, height: 560 };
@@ -21,10 +21,7 @@ export class ClassRoom {
     this.teacher = await this.visit(this.server.url);
     await rested(this.teacher);
     // Without detail and traced light, so that pictures rest and are drawn soon.
-    await changing(
-      () => this.teacher.getByTestId("quality-choice").getByText("Fast", { exact: true }).click(),
-      this.teacher,
-    );
+    await changing(() => chooseQuality(this.teacher, "Fast"), this.teacher);
     return this.teacher;
   }
 

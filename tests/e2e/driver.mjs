@@ -150,6 +150,13 @@ export async function openTool(page, name) {
   await page.getByTestId(`rail-${name ?? now}`).click();
 }
 
+// In the tool of looks, which is open, once the page has learned the quality it has.
+export async function chooseQuality(page, word) {
+  const choice = page.getByTestId("quality-choice");
+  await choice.locator("input:checked").waitFor({ state: "attached", timeout: PICTURE_TIMEOUT_MS });
+  await choice.getByText(word, { exact: true }).click();
+}
+
 const PANEL_BUTTONS = { help: "rail-help", drawer: "rail-settings" };
 // In a narrow window they are under others: the panel, and the button in it.
 const UNDER_OTHERS = {

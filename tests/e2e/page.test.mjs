@@ -5,6 +5,7 @@ import { PNG } from "pngjs";
 import {
   canvasData as canvasDataOf,
   changing as changingOn,
+  chooseQuality as chooseQualityOn,
   dragBetween,
   launchBrowser,
   listenForErrors,
@@ -89,8 +90,7 @@ function chosenQuality(of = page) {
     .evaluateAll((radios) => radios.map((radio) => radio.labels[0].innerText));
 }
 
-const chooseQuality = (word) =>
-  page.getByTestId("quality-choice").getByText(word, { exact: true }).click();
+const chooseQuality = (word) => chooseQualityOn(page, word);
 
 async function unfoldSettings(open = true) {
   await tool("look");

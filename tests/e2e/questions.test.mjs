@@ -12,6 +12,7 @@ import { PLACE, runFile } from "./cloud_file.mjs";
 import {
   canvasData,
   changing,
+  chooseQuality,
   dragBetween,
   launchBrowser,
   listenForErrors,
@@ -54,8 +55,7 @@ before(async () => {
   browser = await launchBrowser();
   page = await visit(server.url);
   await openTool(page, "look");
-  await page.locator("[data-testid=quality-choice] input:checked").waitFor({ state: "attached", timeout: PICTURE_TIMEOUT_MS });
-  await page.getByTestId("quality-choice").getByText("Fast", { exact: true }).click();
+  await chooseQuality(page, "Fast");
   await openTool(page, undefined);
   await rested(page);
   // Not the last time, which is the last of both runs: this one has another place in each.

@@ -10,6 +10,7 @@ import { PNG } from "pngjs";
 import {
   canvasData,
   changing,
+  chooseQuality,
   dragBetween,
   launchBrowser,
   listenForErrors,
@@ -51,8 +52,7 @@ before(async () => {
   await page.goto(server.url);
   // Pictures of the default quality change while they rest.
   await openTool(page, "look");
-  await page.locator("[data-testid=quality-choice] input:checked").waitFor({ state: "attached", timeout: PICTURE_TIMEOUT_MS });
-  await page.getByTestId("quality-choice").getByText("Fast", { exact: true }).click();
+  await chooseQuality(page, "Fast");
   await rested(page);
   await openTool(page, undefined);
 });

@@ -1,7 +1,7 @@
 // Video and stills of higher quality in Chromium show the same picture as JPEG.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { canvasData, changing, dragBetween, launchBrowser, listenForErrors, openTool, rested, restedAndFits, screenshot, until } from "./driver.mjs";
+import { canvasData, changing, chooseQuality, dragBetween, launchBrowser, listenForErrors, openTool, rested, restedAndFits, screenshot, until } from "./driver.mjs";
 import { PNG } from "pngjs";
 import { decodedAsFullRange, decodedByBt709, difference, grabCanvas, shareOfChange, spread } from "./pictures.mjs";
 import { textOfCode } from "./qr.mjs";
@@ -217,7 +217,7 @@ test("the colours of video are those of JPEG", async () => {
   await rested(presenter);
   // Without traced light, which comes when the picture rests, after its video; in strong colours, which show a wrong matrix.
   await openTool(presenter, "look");
-  await changing(() => presenter.getByTestId("quality-choice").getByText("Fast", { exact: true }).click(), presenter);
+  await changing(() => chooseQuality(presenter, "Fast"), presenter);
   await changing(() => presenter.getByTestId("colours").getByText("False colours").click(), presenter);
   await openTool(presenter, undefined);
   await restedAndFits(presenter);
