@@ -46,11 +46,11 @@ PHYSICS_FUNCTION float lit_fluence(float exit, float sun_depth) {
 
 // Fluence that the diffusion equation misses near the surface: light that has been scattered, at the optical depth
 // `sun_depth` from the sun, but has kept its direction, at the similarity-scaled depth `transport_sun_depth`. It shows where
-// the sun is low above the surface; the factor is fitted to the reflection of semi-infinite clouds
-// (docs/decisions/0009-diffusion-transport.md).
+// the sun is low above the surface; the factor is the one with which six clouds come nearest to the reference
+// (docs/decisions/0048-ground-light.md).
 PHYSICS_FUNCTION float forward_fluence(float exit, float sun_depth, float transport_sun_depth) {
   float cosine = exit < sun_depth ? exit / sun_depth : 1.0f;
-  return 1.3f * (1.0f - cosine * cosine) * (exp(-transport_sun_depth) - exp(-sun_depth));
+  return 1.6f * (1.0f - cosine * cosine) * (exp(-transport_sun_depth) - exp(-sun_depth));
 }
 
 // The same in a cloud onto which other clouds send the fluence `from_walls`, and into which `net_inward` of the sun's
