@@ -66,10 +66,10 @@ Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& mediu
   const auto tile_of = [&](const scene::Detail& detail) {
     return &noises->Get(detail.octaves, detail.seed)->tile;
   };
-  volume::KeepWaterPaths(computed.detail_control,
-                         scene::PlacedDetailOf(layers, tile_of, computed.extinction.grid.spacing_m,
-                                               fields.motion.shear_m_per_s),
-                         &computed.extinction);
+  volume::KeepWaterPaths(
+      computed.detail_control,
+      scene::PlacedDetailOf(layers, tile_of, computed.extinction.grid.spacing_m, fields.motion),
+      &computed.extinction);
   return computed;
 }
 
@@ -142,6 +142,9 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     detail_control_ = gl::Texture3D(GL_RG8, bounds_.grid.cells);
     detail_control_.Upload(GL_RG, GL_UNSIGNED_BYTE, computed.detail_control.data());
     detail_fibres_ = glm::mat3(physics::FibresAlong(fields.motion.shear_m_per_s));
+    for (const DetailLayer& layer : details_) {
+      detail_drifts_m_.push_back(layer.Drift_m(fields.motion));
+    }
   }
   cost->upload_ms = stopwatch.ElapsedMs();
 }
@@ -180,7 +183,8 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
     const DetailLayer& layer = details_[i];
     sizes.emplace_back(layer.Tile_m() / extent_m);
     // Not reduced modulo the tile: the tile of fibres has another size.
-    corners.emplace_back(-bounds_.grid.low_corner_m / extent_m);
+    corners.emplace_back((glm::dvec3(detail_drifts_m_[i], 0.0) - bounds_.grid.low_corner_m) /
+                         extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
   }

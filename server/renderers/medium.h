@@ -112,7 +112,8 @@ class ResidentMedium {
   int block_count_ = 0;
   Boxes occupied_boxes_;
   std::vector<DetailLayer> details_;
-  gl::Texture3D detail_control_;  // volume::DetailControlOf
+  gl::Texture3D detail_control_;             // volume::DetailControlOf
+  std::vector<glm::dvec2> detail_drifts_m_;  // of each of details_
   glm::mat3 detail_fibres_{1.0F};
   PhaseCurves phase_curves_;
 };

@@ -126,6 +126,8 @@ void Visit(Archive& archive, volume::HydrometeorFields& fields) {
   archive(fields.motion.turbulence);
   archive(fields.motion.ascent);
   archive(fields.motion.shear_m_per_s);
+  archive(fields.motion.steering_m_per_s);
+  archive(fields.motion.time_s);
   archive(fields.condensate);
 }
 

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/time/civil_time.h"
 #include "base/status.h"
+#include "glm/geometric.hpp"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -109,7 +110,10 @@ absl::Status CheckMotion(const volume::AirMotion& motion, std::size_t cells) {
   const bool sizes = (motion.turbulence.empty() || motion.turbulence.size() == cells) &&
                      (motion.ascent.empty() || motion.ascent.size() == cells);
   return Require(sizes && AtMost(motion.source, volume::kLastTurbulenceSource) &&
-                     std::isfinite(motion.shear_m_per_s.x) && std::isfinite(motion.shear_m_per_s.y),
+                     std::isfinite(motion.shear_m_per_s.x) &&
+                     std::isfinite(motion.shear_m_per_s.y) &&
+                     glm::length(motion.steering_m_per_s) <= volume::kMaxSteering_m_per_s &&
+                     std::isfinite(motion.time_s),
                  "the motion of the air");
 }
 

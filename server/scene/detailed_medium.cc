@@ -53,7 +53,7 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
   };
   const std::vector<DetailLayer> layers = DetailLayersOf(parted.groups);
   const volume::PlacedDetail placed =
-      PlacedDetailOf(layers, tile_of, volume.grid.spacing_m, fields.motion.shear_m_per_s);
+      PlacedDetailOf(layers, tile_of, volume.grid.spacing_m, fields.motion);
   if (!layers.empty()) {
     detailed->control_ = volume::DetailControlOf(fields, parted.terms, volume);
     // Fields of a group lose and gain together.

@@ -24,6 +24,10 @@ double DetailLayer::Tile_m() const {
   return static_cast<double>(detail.wavelength_m) * physics::DetailTile::kWaves;
 }
 
+glm::dvec2 DetailLayer::Drift_m(const volume::AirMotion& motion) const {
+  return physics::DetailDrift_m(motion.steering_m_per_s, motion.time_s, Tile_m());
+}
+
 std::vector<DetailLayer> DetailLayersOf(const std::vector<FieldGroup>& groups) {
   std::vector<DetailLayer> layers;
   for (std::size_t group = 0; group < groups.size(); ++group) {
@@ -44,15 +48,16 @@ std::vector<DetailLayer> DetailLayersOf(const std::vector<FieldGroup>& groups) {
 }
 
 volume::PlacedDetail PlacedDetailOf(const std::vector<DetailLayer>& layers, const TileOf& tile_of,
-                                    const glm::dvec3& cell_m, const glm::dvec2& shear_m_per_s) {
+                                    const glm::dvec3& cell_m, const volume::AirMotion& motion) {
   volume::PlacedDetail placed;
   for (const DetailLayer& layer : layers) {
     placed.layers.push_back(
         {tile_of(layer.detail), layer.Tile_m(),
-         std::vector<float>(layer.share_by_group.begin(), layer.share_by_group.end())});
+         std::vector<float>(layer.share_by_group.begin(), layer.share_by_group.end()),
+         layer.Drift_m(motion)});
   }
   if (!layers.empty()) placed.warp_m = physics::DetailWarp_m(cell_m, layers[0].detail.wavelength_m);
-  placed.fibres = physics::FibresAlong(shear_m_per_s);
+  placed.fibres = physics::FibresAlong(motion.shear_m_per_s);
   return placed;
 }
 

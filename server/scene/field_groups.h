@@ -39,7 +39,8 @@ struct DetailLayer {
   Detail detail;  // its share is unused
   std::vector<double> share_by_group;
 
-  double Tile_m() const;  // edge of the noise's tile
+  double Tile_m() const;                                      // edge of the noise's tile
+  glm::dvec2 Drift_m(const volume::AirMotion& motion) const;  // of the noise
 };
 
 // Groups that differ only in their share are in one layer.
@@ -48,6 +49,6 @@ std::vector<DetailLayer> DetailLayersOf(const std::vector<FieldGroup>& groups);
 // The layers in place, in a medium of such cells. `tile_of` gives a noise, which must outlive it.
 using TileOf = std::function<const physics::DetailTile*(const Detail&)>;
 volume::PlacedDetail PlacedDetailOf(const std::vector<DetailLayer>& layers, const TileOf& tile_of,
-                                    const glm::dvec3& cell_m, const glm::dvec2& shear_m_per_s);
+                                    const glm::dvec3& cell_m, const volume::AirMotion& motion);
 
 }  // namespace thunderhead::scene

@@ -19,7 +19,7 @@
 
 namespace thunderhead::scene {
 
-// Structure finer than the grid (shaders/physics/detail.glsl), at rest in the world, that changes
+// Structure finer than the grid (shaders/physics/detail.glsl), drifting with the wind, that changes
 // `share` of the field where the model's air is turbulent. Shown where the technique's look has
 // detail.
 struct Detail {

@@ -21,10 +21,15 @@ struct AirMotion {
   std::vector<std::uint8_t> turbulence;  // TurbulentAmplitude of the kinetic energy, of 255
   std::vector<std::uint8_t> ascent;  // upward velocity in kAscentUnit_m_per_s; 0 where air sinks
   glm::dvec2 shear_m_per_s{0.0};     // wind at the height of ice less that at cloud water's
+  // The mean wind of the lowest 6 km, with which storms move (Bunkers et al. 2000); 0 if the file
+  // does not tell or that is stronger than kMaxSteering_m_per_s.
+  glm::dvec2 steering_m_per_s{0.0};
+  double time_s = 0.0;  // at which it blows, since 1970 in UTC
 };
 
 // Turbulence of this energy (m2/s2) has half of the full amplitude: gusts of 0.4 m/s.
 inline constexpr float kHalfAmplitudeEnergy_m2_per_s2 = 0.25F;
+inline constexpr double kMaxSteering_m_per_s = 150.0;
 inline constexpr float kAscentUnit_m_per_s = 0.25F;
 
 // Amplitude of detail, 0 to 1, where turbulence has this kinetic energy (at least 0).

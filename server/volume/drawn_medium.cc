@@ -42,9 +42,10 @@ DrawnMedium::DrawnMedium(const std::vector<std::uint8_t>& control, const PlacedD
   for (const PlacedDetail::Layer& layer : detail.layers) {
     Channels shares{};
     std::copy(layer.shares.begin(), layer.shares.end(), shares.begin());
-    layers_.push_back({layer.tile->texels.data(),
-                       glm::vec3(volume.grid.low_corner_m / layer.tile_m),
-                       glm::vec3(volume.grid.spacing_m / layer.tile_m), shares});
+    layers_.push_back(
+        {layer.tile->texels.data(),
+         glm::vec3((volume.grid.low_corner_m - glm::dvec3(layer.drift_m, 0.0)) / layer.tile_m),
+         glm::vec3(volume.grid.spacing_m / layer.tile_m), shares});
   }
 }
 

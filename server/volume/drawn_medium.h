@@ -21,6 +21,7 @@ struct PlacedDetail {
     const physics::DetailTile* tile = nullptr;
     double tile_m = 0.0;        // edge
     std::vector<float> shares;  // of each channel that the layer's noise multiplies
+    glm::dvec2 drift_m{0.0};    // of the noise from its place in the world
   };
 
   std::vector<Layer> layers;  // the first displaces the medium, all multiply it

@@ -5,9 +5,13 @@
 #include <cstddef>
 #include <tuple>
 
+#include "glm/geometric.hpp"
+#include "volume/air_motion.h"
+
 namespace thunderhead::volume {
 namespace {
 
+constexpr double kSteeringDepth_m = 6e3;
 constexpr float kEnergyOfDeformation = 0.4F;  // root of the energy over l |D|: 0.2^2 / 0.1
 
 // One component of the wind at the middles of cells, and how a cell's offset changes along axes.
@@ -132,6 +136,22 @@ std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind) {
                        mean(wind.v_m_per_s, level * v_count, v_count));
   }
   return winds;
+}
+
+glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
+                                const std::vector<double>& interface_height_m) {
+  const double top_m = interface_height_m[0] + kSteeringDepth_m;
+  glm::dvec2 sum(0.0);
+  double depth_m = 0.0;
+  for (std::size_t level = 0; level < winds.size(); ++level) {
+    const double thickness_m =
+        std::min(interface_height_m[level + 1], top_m) - interface_height_m[level];
+    if (!(thickness_m > 0.0)) break;
+    sum += thickness_m * winds[level];
+    depth_m += thickness_m;
+  }
+  const glm::dvec2 mean = depth_m > 0.0 ? sum / depth_m : glm::dvec2(0.0);
+  return glm::length(mean) <= kMaxSteering_m_per_s ? mean : glm::dvec2(0.0);
 }
 
 }  // namespace thunderhead::volume

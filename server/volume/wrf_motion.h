@@ -33,4 +33,10 @@ std::vector<float> LayerMeans(const std::vector<float>& at_interfaces, int level
 // The mean wind over all cells of each level; 0 where all are missing.
 std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind);
 
+// The mean by height of `winds` of levels between `interface_height_m` (one more) in the lowest
+// 6 km above the first; 0 if the heights there are missing or it is no wind of the Earth's
+// (kMaxSteering_m_per_s).
+glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
+                                const std::vector<double>& interface_height_m);
+
 }  // namespace thunderhead::volume

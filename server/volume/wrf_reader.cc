@@ -382,6 +382,16 @@ std::optional<double> MeanHeight_m(const HydrometeorFields& fields, bool frozen)
   return moment / mass;
 }
 
+// The heights of the first column's interfaces.
+std::vector<double> FirstColumn_m(const LayerAir& air) {
+  std::vector<double> heights_m;
+  for (int i = 0; i <= air.levels; ++i) {
+    const std::size_t at = static_cast<std::size_t>(i) * air.columns;
+    heights_m.push_back(static_cast<double>(air.interface_height_m[at]));
+  }
+  return heights_m;
+}
+
 // The wind at a height of the first column's layers, by `winds` of each level.
 glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds, const LayerAir& air) {
   std::size_t level = 0;
@@ -407,10 +417,12 @@ absl::Status TimeReader::ReadMotion(HydrometeorFields& result) {
     std::vector<float> ascent = LayerMeans(wind.w_m_per_s, air_.levels, air_.columns);
     for (float& value : ascent) value = value > 0.0F ? value / kAscentUnit_m_per_s : 0.0F;
     motion.ascent = RemapBytes(ascent);
+    const std::vector<glm::dvec2> winds = MeanWinds(wind);
+    motion.steering_m_per_s = SteeringWind_m_per_s(winds, FirstColumn_m(air_));
+    motion.time_s = absl::ToDoubleSeconds(metadata_.times[record_] - absl::UnixEpoch());
     const std::optional<double> cloud_m = MeanHeight_m(result, false);
     const std::optional<double> ice_m = MeanHeight_m(result, true);
     if (cloud_m.has_value() && ice_m.has_value()) {
-      const std::vector<glm::dvec2> winds = MeanWinds(wind);
       motion.shear_m_per_s = WindAt(*ice_m, winds, air_) - WindAt(*cloud_m, winds, air_);
     }
   }

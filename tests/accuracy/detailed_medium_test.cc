@@ -86,5 +86,48 @@ TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
   EXPECT_GT(off_without / kPixels, 0.02);
 }
 
+// Billows and fibres move through a storm that stays, and by whole tiles in three hours.
+TEST(DetailedMedium, DriftsWithTheWind) {
+  volume::HydrometeorFields fields = *Sample();
+  const auto core = volume::StrongestCore(fields);
+  ASSERT_TRUE(core.has_value());
+  scene::Scene scene = test_support::PlainScene();
+  test_support::SetMode(&scene.rendering.technique, test_support::kLowAlbedo);
+  std::get<scene::LightVolume>(scene.rendering.technique).medium.look.detail = true;
+  const double top_m = fields.grid.HighCorner_m().z;
+  const auto cloud_at = [&](double time_s, const glm::dvec2& wind_m_per_s) {
+    fields.motion.time_s = time_s;
+    fields.motion.steering_m_per_s = wind_m_per_s;
+    const auto medium = scene::DetailedMedium::Of(scene, fields);
+    std::vector<float> values;
+    for (double z_m = fields.grid.low_corner_m.z; z_m < top_m; z_m += 200.0) {
+      for (double x_m = -8000.0; x_m < 2000.0; x_m += 500.0) {
+        float sum = 0.0F;
+        for (const float value : medium->At_per_m({core->place_m + glm::dvec2(x_m, 0.0), z_m})) {
+          sum += value;
+        }
+        values.push_back(sum);
+      }
+    }
+    return values;
+  };
+  const auto difference = [](const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0.0;
+    double of_a = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      sum += std::abs(static_cast<double>(a[i] - b[i]));
+      of_a += static_cast<double>(a[i]);
+    }
+    return sum / of_a;
+  };
+  const glm::dvec2 wind(12.0, 5.0);
+  const std::vector<float> first = cloud_at(0.0, wind);
+  EXPECT_EQ(difference(first, cloud_at(600.0, {0.0, 0.0})), 0.0);
+  EXPECT_EQ(difference(first, cloud_at(10800.0, wind)), 0.0);
+  const double soon = difference(first, cloud_at(5.0, wind));
+  EXPECT_GT(soon, 0.0);
+  EXPECT_LT(soon, 0.5 * difference(first, cloud_at(600.0, wind)));
+}
+
 }  // namespace
 }  // namespace thunderhead

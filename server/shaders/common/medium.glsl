@@ -26,8 +26,8 @@ uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for 
 #if DETAILS > 0
 layout(binding = kDetailNoiseUnit) uniform sampler3D detail_noise[DETAILS];
 layout(binding = kDetailControlUnit) uniform sampler3D detail_control;  // cell by cell as the medium
-uniform vec3 detail_tile_size[DETAILS];    // of a tile in the medium's texture coordinates: at rest in the world
-uniform vec3 detail_tile_corner[DETAILS];  // and where one begins
+uniform vec3 detail_tile_size[DETAILS];    // of a tile in the medium's texture coordinates
+uniform vec3 detail_tile_corner[DETAILS];  // and where one begins: it drifts with the wind
 uniform mat3 detail_fibres;                // tiles of fibres from those of billows
 uniform vec3 detail_warp;                  // the full displacement, in the medium's texture coordinates
 uniform vec4 detail_shares[DETAILS * PLANES];  // of each channel that noise multiplies

@@ -125,6 +125,20 @@ TEST(DetailWarp, IsNoneAtTheFacesOfEmptySpace) {
   EXPECT_GT(glsl::detail_warp_share({1.0F, 0.0F}), 0.0F);
 }
 
+TEST(DetailDrift, GoesWithTheWindAndNeverJumps) {
+  constexpr double kTile_m = 6000.0;
+  const glm::dvec2 wind(12.0, -4.0);
+  for (double time_s = -20000.0; time_s < 40000.0; time_s += 60.0) {
+    const glm::dvec2 here = DetailDrift_m(wind, time_s, kTile_m);
+    const glm::dvec2 moved = DetailDrift_m(wind, time_s + 60.0, kTile_m) - here;
+    // Whole tiles are no motion.
+    const glm::dvec2 seen = moved - kTile_m * glm::round(moved / kTile_m);
+    EXPECT_NEAR(seen.x, 60.0 * wind.x, 60.0 * 0.3) << time_s;
+    EXPECT_NEAR(seen.y, 60.0 * wind.y, 60.0 * 0.3) << time_s;
+  }
+  EXPECT_EQ(DetailDrift_m(glm::dvec2(0.0), 1234.0, kTile_m), glm::dvec2(0.0));
+}
+
 TEST(Fibres, LieAlongTheShear) {
   const glm::dmat3 fibres = FibresAlong({6.0, 8.0});
   const double along = glm::length(fibres * glm::dvec3(0.6, 0.8, 0.0));

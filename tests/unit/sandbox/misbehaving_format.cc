@@ -128,6 +128,8 @@ void Spoil(const std::string& how, HydrometeorFields& fields) {
       {"turbulence", [&] { fields.motion.turbulence.resize(23); }},
       {"source", [&] { fields.motion.source = static_cast<volume::TurbulenceSource>(9); }},
       {"shear", [&] { fields.motion.shear_m_per_s.x = HUGE_VAL; }},
+      {"steering", [&] { fields.motion.steering_m_per_s.y = -151.0; }},
+      {"time", [&] { fields.motion.time_s = HUGE_VAL; }},
       {"box", [&] { fields.condensate.high.z = 5; }},
       {"columns",
        [&] {

@@ -306,10 +306,10 @@ TEST_F(UntrustedFilesTest, FieldsThatOtherRoomsCouldNotBearAreRefused) {
   };
   EXPECT_TRUE(read("sound").ok()) << read("sound");
   for (const char* name :
-       {"nan",          "infinite",   "negative",  "short",      "kind",    "quantity",
-        "sizes-beyond", "sizes-far",  "sizes-few", "statistics", "terrain", "terrain-nan",
-        "land",         "turbulence", "source",    "shear",      "box",     "columns",
-        "cells",        "spacing",    "corner"}) {
+       {"nan",          "infinite",   "negative",  "short",      "kind",     "quantity",
+        "sizes-beyond", "sizes-far",  "sizes-few", "statistics", "terrain",  "terrain-nan",
+        "land",         "turbulence", "source",    "shear",      "steering", "time",
+        "box",          "columns",    "cells",     "spacing",    "corner"}) {
     const absl::Status status = read(name);
     EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << name << ": " << status;
     EXPECT_THAT(std::string(status.message()), HasSubstr("cannot be right")) << name;

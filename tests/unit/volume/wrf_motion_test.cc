@@ -89,5 +89,20 @@ TEST(MeanWinds, AreThoseOfEachLevel) {
   EXPECT_NEAR(winds[2].y, -3.0, 1e-6);
 }
 
+TEST(SteeringWind, IsTheMeanByHeightOfSixKilometres) {
+  const std::vector<glm::dvec2> winds = {{10.0, 0.0}, {4.0, 2.0}, {50.0, 50.0}};
+  // 1 km of the first, 4 of the second, 1 of the third's 8.
+  const glm::dvec2 mean = SteeringWind_m_per_s(winds, {300.0, 1300.0, 5300.0, 13300.0});
+  EXPECT_NEAR(mean.x, (10.0 + 16.0 + 50.0) / 6.0, 1e-9);
+  EXPECT_NEAR(mean.y, (8.0 + 50.0) / 6.0, 1e-9);
+}
+
+TEST(SteeringWind, IsNoneWhereHeightsAreMissingOrItIsNoWind) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(SteeringWind_m_per_s({{10.0, 0.0}}, {nan, nan}), glm::dvec2(0.0));
+  EXPECT_EQ(SteeringWind_m_per_s({{1e30, 0.0}}, {0.0, 1000.0}), glm::dvec2(0.0));
+  EXPECT_EQ(SteeringWind_m_per_s({{nan, 0.0}}, {0.0, 1000.0}), glm::dvec2(0.0));
+}
+
 }  // namespace
 }  // namespace thunderhead::volume
