@@ -66,6 +66,15 @@ std::string TurbulenceOf(const v1::StormDescription& storm) {
   }
 }
 
+// How detail moves, by the wind of the grid's east and north.
+std::string DriftOf(const v1::StormDescription& storm) {
+  const float east = storm.steering_east_m_per_s();
+  const float north = storm.steering_north_m_per_s();
+  if (east == 0.0F && north == 0.0F) return "stays: no U and V in the file";
+  return absl::StrFormat("drifts with the mean wind of the lowest 6 km, %.1f m/s east, %.1f north",
+                         east, north);
+}
+
 std::string Table(const v1::StormDescription& storm) {
   const v1::Grid& grid = storm.grid();
   std::string text = absl::StrFormat(
@@ -102,6 +111,7 @@ std::string Table(const v1::StormDescription& storm) {
   }
   AppendSizes(storm, text);
   absl::StrAppend(&text, "\nturbulence from ", TurbulenceOf(storm), "\n");
+  absl::StrAppend(&text, "detail ", DriftOf(storm), "\n");
   return text;
 }
 

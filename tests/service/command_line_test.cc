@@ -145,6 +145,7 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
   EXPECT_THAT(table.out, HasSubstr("snow     scheme WSM6"));
   EXPECT_EQ(storm.turbulence_source(), v1::StormDescription::TURBULENCE_SOURCE_GRADIENT);
   EXPECT_THAT(table.out, HasSubstr("turbulence from contrasts of the fields"));
+  EXPECT_THAT(table.out, HasSubstr("detail stays: no U and V in the file"));
 }
 
 TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {

@@ -46,6 +46,7 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
     fields->condensate = {{4, 4, 2}, {5, 5, 3}};
     fields->motion.source = volume::TurbulenceSource::kEnergy;
     fields->motion.variable = "QKE";
+    fields->motion.steering_m_per_s = {12.5, -4.0};
   }
   fields->fields = {cloud, rain};
   return fields;

@@ -63,6 +63,8 @@ TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
   EXPECT_FALSE(storm.has_latitude_deg());
   EXPECT_EQ(storm.turbulence_source(), v1::StormDescription::TURBULENCE_SOURCE_ENERGY);
   EXPECT_EQ(storm.turbulence_variable(), "QKE");
+  EXPECT_EQ(storm.steering_east_m_per_s(), 12.5F);
+  EXPECT_EQ(storm.steering_north_m_per_s(), -4.0F);
   ASSERT_EQ(storm.fields_size(), 2);
   const v1::FieldDescription& cloud = storm.fields(0);
   EXPECT_EQ(cloud.hydrometeor(), v1::HYDROMETEOR_CLOUD);
