@@ -150,11 +150,11 @@ export async function openTool(page, name) {
   await page.getByTestId(`rail-${name ?? now}`).click();
 }
 
-// In the tool of looks, which is open, once the page has learned the quality it has.
+// In the tool of looks, which is open, once the page has learned the settings it has: those of a quality, or of none.
 export async function chooseQuality(page, word) {
-  const choice = page.getByTestId("quality-choice");
-  await choice.locator("input:checked").waitFor({ state: "attached", timeout: PICTURE_TIMEOUT_MS });
-  await choice.getByText(word, { exact: true }).click();
+  const about = page.getByTestId("quality-choice-about");
+  await until("settings from the server", async () => !(await about.innerText()).startsWith("Waiting"));
+  await page.getByTestId("quality-choice").getByText(word, { exact: true }).click();
 }
 
 const PANEL_BUTTONS = { help: "rail-help", drawer: "rail-settings" };
