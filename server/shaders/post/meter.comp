@@ -12,8 +12,8 @@ uniform vec3 luminance_weights;  // of each colour, white balance included
 
 const int kCells = 32;         // along each side of the picture
 const int kPlaces = 3;         // of samples in a cell, along each side
-const int kBins = 192;
-const float kBinsPerStop = 8.0;
+const int kBins = 768;
+const float kBinsPerStop = 32.0;  // a jump of the exposure by a step of these is not seen
 const float kLowestLog2 = -18.0;
 const uint kFullWeight = 255u;
 const float kFewestCells = 0.001;  // share of all cells
