@@ -66,13 +66,11 @@ std::string TurbulenceOf(const v1::StormDescription& storm) {
   }
 }
 
-// How detail moves, by the wind of the grid's east and north.
+// How detail moves: the wind along the grid's east and north.
 std::string DriftOf(const v1::StormDescription& storm) {
-  const float east = storm.steering_east_m_per_s();
-  const float north = storm.steering_north_m_per_s();
-  if (east == 0.0F && north == 0.0F) return "stays: no U and V in the file";
+  if (!storm.has_steering_east_m_per_s()) return "stays: no wind (U, V, W) was read from the file";
   return absl::StrFormat("drifts with the mean wind of the lowest 6 km, %.1f m/s east, %.1f north",
-                         east, north);
+                         storm.steering_east_m_per_s(), storm.steering_north_m_per_s());
 }
 
 std::string Table(const v1::StormDescription& storm) {

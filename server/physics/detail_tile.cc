@@ -20,7 +20,7 @@ constexpr double kWarpDeviation = 0.4;  // of the full displacement
 constexpr double kFibreStretch = 6.0;   // along the shear
 constexpr double kFibreWidth = 0.7;     // across it, of the billows'
 constexpr double kMinShear_m_per_s = 1.0;
-constexpr double kDriftPeriod_s = 3.0 * 3600.0;  // part of a day
+constexpr double kDriftPeriod_s = 3.0 * 3600.0;  // divides a day
 constexpr double kWarpInCells = 1.0;
 constexpr double kUpwardWarpInCells = 2.0;  // layers are thin
 constexpr double kWarpInWavelengths = 0.25;
@@ -129,7 +129,7 @@ glm::dmat3 FibresAlong(const glm::dvec2& shear_m_per_s) {
 glm::dvec2 DetailDrift_m(const glm::dvec2& wind_m_per_s, double time_s, double tile_m) {
   const double periods = time_s / kDriftPeriod_s;
   const glm::dvec2 tiles = glm::round(wind_m_per_s * kDriftPeriod_s / tile_m);
-  return tiles * tile_m * (periods - std::floor(periods));
+  return glm::fract(tiles * (periods - std::floor(periods))) * tile_m;
 }
 
 glm::dvec3 DetailWarp_m(const glm::dvec3& cell_m, double wavelength_m) {

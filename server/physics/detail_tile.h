@@ -49,9 +49,9 @@ std::vector<std::uint8_t> CoarserLevel(const std::vector<std::uint8_t>& texels, 
 // as winds aloft usually blow.
 glm::dmat3 FibresAlong(const glm::dvec2& shear_m_per_s);
 
-// How far noise that drifts with `wind_m_per_s` has come at a time, in seconds from any midnight.
-// The wind is rounded to whole tiles in three hours, after which noise is where it began, so that
-// nothing jumps while the rounded wind lasts.
+// How far noise that drifts with `wind_m_per_s` has come at a time, in seconds from any midnight,
+// less whole tiles. The wind is rounded to whole tiles in three hours (kDriftPeriod_s), so that
+// billows never jump while the rounded wind lasts. Fibres, whose tile is another, do.
 glm::dvec2 DetailDrift_m(const glm::dvec2& wind_m_per_s, double time_s, double tile_m);
 
 // The largest displacement of a medium with such cells: less than what would change the order of

@@ -21,8 +21,8 @@ struct AirMotion {
   std::vector<std::uint8_t> turbulence;  // TurbulentAmplitude of the kinetic energy, of 255
   std::vector<std::uint8_t> ascent;  // upward velocity in kAscentUnit_m_per_s; 0 where air sinks
   glm::dvec2 shear_m_per_s{0.0};     // wind at the height of ice less that at cloud water's
-  // The mean wind of the lowest 6 km, with which storms move (Bunkers et al. 2000); 0 if the file
-  // does not tell or that is stronger than kMaxSteering_m_per_s.
+  // The mean wind of the lowest 6 km, by which storms are carried along (Bunkers et al. 2000); 0 if
+  // the file does not tell, or if that is stronger than kMaxSteering_m_per_s.
   glm::dvec2 steering_m_per_s{0.0};
   double time_s = 0.0;  // at which it blows, since 1970 in UTC
 };

@@ -34,8 +34,8 @@ std::vector<float> LayerMeans(const std::vector<float>& at_interfaces, int level
 std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind);
 
 // The mean by height of `winds` of levels between `interface_height_m` (one more) in the lowest
-// 6 km above the first; 0 if the heights there are missing or it is no wind of the Earth's
-// (kMaxSteering_m_per_s).
+// 6 km above the first; 0 if the heights there are missing, or if it is
+// implausibly strong (kMaxSteering_m_per_s).
 glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
                                 const std::vector<double>& interface_height_m);
 

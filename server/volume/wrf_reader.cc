@@ -382,12 +382,19 @@ std::optional<double> MeanHeight_m(const HydrometeorFields& fields, bool frozen)
   return moment / mass;
 }
 
-// The heights of the first column's interfaces.
-std::vector<double> FirstColumn_m(const LayerAir& air) {
+// Mean heights of the interfaces; NaN where all columns miss one.
+std::vector<double> MeanHeights_m(const LayerAir& air) {
   std::vector<double> heights_m;
-  for (int i = 0; i <= air.levels; ++i) {
-    const std::size_t at = static_cast<std::size_t>(i) * air.columns;
-    heights_m.push_back(static_cast<double>(air.interface_height_m[at]));
+  for (auto at = air.interface_height_m.begin(); at != air.interface_height_m.end();) {
+    const auto end = at + static_cast<std::ptrdiff_t>(air.columns);
+    double sum = 0.0;
+    double count = 0.0;
+    for (; at != end; ++at) {
+      if (!std::isfinite(*at)) continue;
+      sum += static_cast<double>(*at);
+      count += 1.0;
+    }
+    heights_m.push_back(sum / count);
   }
   return heights_m;
 }
@@ -418,7 +425,7 @@ absl::Status TimeReader::ReadMotion(HydrometeorFields& result) {
     for (float& value : ascent) value = value > 0.0F ? value / kAscentUnit_m_per_s : 0.0F;
     motion.ascent = RemapBytes(ascent);
     const std::vector<glm::dvec2> winds = MeanWinds(wind);
-    motion.steering_m_per_s = SteeringWind_m_per_s(winds, FirstColumn_m(air_));
+    motion.steering_m_per_s = SteeringWind_m_per_s(winds, MeanHeights_m(air_));
     motion.time_s = absl::ToDoubleSeconds(metadata_.times[record_] - absl::UnixEpoch());
     const std::optional<double> cloud_m = MeanHeight_m(result, false);
     const std::optional<double> ice_m = MeanHeight_m(result, true);

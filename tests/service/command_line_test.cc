@@ -145,7 +145,11 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
   EXPECT_THAT(table.out, HasSubstr("snow     scheme WSM6"));
   EXPECT_EQ(storm.turbulence_source(), v1::StormDescription::TURBULENCE_SOURCE_GRADIENT);
   EXPECT_THAT(table.out, HasSubstr("turbulence from contrasts of the fields"));
-  EXPECT_THAT(table.out, HasSubstr("detail stays: no U and V in the file"));
+  EXPECT_THAT(table.out, HasSubstr("detail stays: no wind (U, V, W) was read from the file"));
+  const Outcome windy =
+      Run("inspect " THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc --time 1");
+  EXPECT_THAT(windy.out, HasSubstr("detail drifts with the mean wind of the lowest 6 km, 4.8 m/s "
+                                   "east, 2.3 north"));
 }
 
 TEST_F(CommandLineTest, MissingAndForeignFilesAreNamed) {

@@ -371,8 +371,10 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
   message.set_bytes_per_time(fields.Bytes());
   message.set_turbulence_source(MessageOf(kTurbulenceSources, fields.motion.source));
   message.set_turbulence_variable(fields.motion.variable);
-  message.set_steering_east_m_per_s(static_cast<float>(fields.motion.steering_m_per_s.x));
-  message.set_steering_north_m_per_s(static_cast<float>(fields.motion.steering_m_per_s.y));
+  if (const glm::dvec2& steering = fields.motion.steering_m_per_s; steering != glm::dvec2(0.0)) {
+    message.set_steering_east_m_per_s(static_cast<float>(steering.x));
+    message.set_steering_north_m_per_s(static_cast<float>(steering.y));
+  }
   if (!fields.condensate.Empty()) {
     const volume::WorldBox box = BoxOf(fields.grid, fields.condensate);
     SetPosition(box.low_m, *message.mutable_condensate_low());

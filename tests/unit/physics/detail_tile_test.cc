@@ -126,15 +126,16 @@ TEST(DetailWarp, IsNoneAtTheFacesOfEmptySpace) {
 }
 
 TEST(DetailDrift, GoesWithTheWindAndNeverJumps) {
-  constexpr double kTile_m = 6000.0;
+  constexpr double kTile_m = 12e3;  // on a grid of 500 m
+  const double rounded_by = 0.5 * kTile_m / 10800.0;
   const glm::dvec2 wind(12.0, -4.0);
   for (double time_s = -20000.0; time_s < 40000.0; time_s += 60.0) {
     const glm::dvec2 here = DetailDrift_m(wind, time_s, kTile_m);
     const glm::dvec2 moved = DetailDrift_m(wind, time_s + 60.0, kTile_m) - here;
     // Whole tiles are no motion.
     const glm::dvec2 seen = moved - kTile_m * glm::round(moved / kTile_m);
-    EXPECT_NEAR(seen.x, 60.0 * wind.x, 60.0 * 0.3) << time_s;
-    EXPECT_NEAR(seen.y, 60.0 * wind.y, 60.0 * 0.3) << time_s;
+    EXPECT_NEAR(seen.x, 60.0 * wind.x, 60.0 * rounded_by) << time_s;
+    EXPECT_NEAR(seen.y, 60.0 * wind.y, 60.0 * rounded_by) << time_s;
   }
   EXPECT_EQ(DetailDrift_m(glm::dvec2(0.0), 1234.0, kTile_m), glm::dvec2(0.0));
 }

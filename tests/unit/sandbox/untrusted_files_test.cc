@@ -176,6 +176,18 @@ TEST_F(UntrustedFilesTest, ATrustedFileCanBeReadByItsOwnDescription) {
   EXPECT_TRUE(BytesOf(*fields) == BytesOf(*expected));
 }
 
+// What the archive forgets both sides of ExpectSameStorm lack.
+TEST_F(UntrustedFilesTest, TheWindComesThrough) {
+  const auto file = Files()->Describe(THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc");
+  ASSERT_TRUE(file.ok()) << file.status();
+  const auto grid = file->reader->ReadVerticalGrid(0);
+  ASSERT_TRUE(grid.ok()) << grid.status();
+  const auto fields = file->reader->Read(1, *grid, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR(fields->motion.steering_m_per_s.x, 4.8, 0.1);
+  EXPECT_EQ(fields->motion.time_s, 958858200.0);
+}
+
 // The cost beside reading the same in the process; for docs/reliability.md.
 TEST_F(UntrustedFilesTest, Cost) {
   const std::string path = THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc";
