@@ -27,11 +27,13 @@ constexpr double kLevelsOfBillows = 4.0;  // that tell octaves apart; the coarse
 // Light is given to cells: what they cannot tell apart must not flicker from one to the next.
 constexpr double kLightFootprintInCells = 1.0;
 
-std::vector<DetailLayer> LayersOf(const Medium& medium, DetailNoises* noises) {
+std::vector<DetailLayer> LayersOf(const Medium& medium, const volume::AirMotion& motion,
+                                  DetailNoises* noises) {
   std::vector<DetailLayer> layers;
   for (scene::DetailLayer& layer : scene::DetailLayersOf(medium.groups)) {
     auto noise = noises->Get(layer.detail.octaves, layer.detail.seed);
-    layers.push_back({std::move(layer), std::move(noise)});
+    const glm::dvec2 drift_m = layer.Drift_m(motion);
+    layers.push_back({std::move(layer), std::move(noise), drift_m});
   }
   return layers;
 }
@@ -105,7 +107,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
-  details_ = LayersOf(content_, noises);
+  details_ = LayersOf(content_, fields.motion, noises);
   // Half floats of each group, and the detail's control, on their way to the device.
   const base::MemoryReservation on_the_way =
       gl::DeviceMemory::ReserveBeside(fields.grid.CellCount() * (2 * content_.groups.size() + 2));
@@ -142,9 +144,6 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     detail_control_ = gl::Texture3D(GL_RG8, bounds_.grid.cells);
     detail_control_.Upload(GL_RG, GL_UNSIGNED_BYTE, computed.detail_control.data());
     detail_fibres_ = glm::mat3(physics::FibresAlong(fields.motion.shear_m_per_s));
-    for (const DetailLayer& layer : details_) {
-      detail_drifts_m_.push_back(layer.Drift_m(fields.motion));
-    }
   }
   cost->upload_ms = stopwatch.ElapsedMs();
 }
@@ -182,9 +181,8 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
     sizes.emplace_back(layer.Tile_m() / extent_m);
-    // Not reduced modulo the tile: the tile of fibres has another size.
-    corners.emplace_back((glm::dvec3(detail_drifts_m_[i], 0.0) - bounds_.grid.low_corner_m) /
-                         extent_m);
+    // The corner's own part is not reduced modulo the tile: the tile of fibres has another size.
+    corners.emplace_back((glm::dvec3(layer.drift_m, 0.0) - bounds_.grid.low_corner_m) / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
   }

@@ -27,6 +27,7 @@ using Medium = scene::GroupedFields;
 // One noise on the device, and how much of each group it multiplies.
 struct DetailLayer : scene::DetailLayer {
   std::shared_ptr<const DetailNoise> noise;
+  glm::dvec2 drift_m{0.0};  // Drift_m of the storm's motion
 };
 
 // The variant of common/medium.glsl.
@@ -112,8 +113,7 @@ class ResidentMedium {
   int block_count_ = 0;
   Boxes occupied_boxes_;
   std::vector<DetailLayer> details_;
-  gl::Texture3D detail_control_;             // volume::DetailControlOf
-  std::vector<glm::dvec2> detail_drifts_m_;  // of each of details_
+  gl::Texture3D detail_control_;  // volume::DetailControlOf
   glm::mat3 detail_fibres_{1.0F};
   PhaseCurves phase_curves_;
 };

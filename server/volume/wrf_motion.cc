@@ -116,24 +116,29 @@ std::vector<float> LayerMeans(const std::vector<float>& at_interfaces, int level
   return means;
 }
 
-std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind) {
-  const auto mean = [](const std::vector<float>& values, std::size_t first, std::size_t count) {
+std::vector<double> LevelMeans(const std::vector<float>& values, int levels) {
+  const std::size_t count = values.size() / static_cast<std::size_t>(levels);
+  std::vector<double> means;
+  for (std::size_t first = 0; first < values.size(); first += count) {
     double sum = 0.0;
-    std::size_t present = 0;
+    double present = 0.0;
     for (std::size_t i = first; i < first + count; ++i) {
       if (!std::isfinite(values[i])) continue;
       sum += static_cast<double>(values[i]);
-      ++present;
+      present += 1.0;
     }
-    return present > 0 ? sum / static_cast<double>(present) : 0.0;
-  };
-  const auto levels = static_cast<std::size_t>(wind.cells.z);
+    means.push_back(sum / present);
+  }
+  return means;
+}
+
+std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind) {
+  const std::vector<double> u = LevelMeans(wind.u_m_per_s, wind.cells.z);
+  const std::vector<double> v = LevelMeans(wind.v_m_per_s, wind.cells.z);
   std::vector<glm::dvec2> winds;
-  for (std::size_t level = 0; level < levels; ++level) {
-    const std::size_t u_count = wind.u_m_per_s.size() / levels;
-    const std::size_t v_count = wind.v_m_per_s.size() / levels;
-    winds.emplace_back(mean(wind.u_m_per_s, level * u_count, u_count),
-                       mean(wind.v_m_per_s, level * v_count, v_count));
+  for (std::size_t level = 0; level < u.size(); ++level) {
+    winds.emplace_back(std::isnan(u[level]) ? 0.0 : u[level],
+                       std::isnan(v[level]) ? 0.0 : v[level]);
   }
   return winds;
 }

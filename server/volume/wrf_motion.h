@@ -30,6 +30,9 @@ std::vector<float> EnergyOfDeformation(const StaggeredWind& wind,
 std::vector<float> LayerMeans(const std::vector<float>& at_interfaces, int levels,
                               std::size_t columns);
 
+// Means of the values of each of `levels` levels, missing ones left out; NaN where all are missing.
+std::vector<double> LevelMeans(const std::vector<float>& values, int levels);
+
 // The mean wind over all cells of each level; 0 where all are missing.
 std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind);
 

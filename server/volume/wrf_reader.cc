@@ -382,23 +382,6 @@ std::optional<double> MeanHeight_m(const HydrometeorFields& fields, bool frozen)
   return moment / mass;
 }
 
-// Mean heights of the interfaces; NaN where all columns miss one.
-std::vector<double> MeanHeights_m(const LayerAir& air) {
-  std::vector<double> heights_m;
-  for (auto at = air.interface_height_m.begin(); at != air.interface_height_m.end();) {
-    const auto end = at + static_cast<std::ptrdiff_t>(air.columns);
-    double sum = 0.0;
-    double count = 0.0;
-    for (; at != end; ++at) {
-      if (!std::isfinite(*at)) continue;
-      sum += static_cast<double>(*at);
-      count += 1.0;
-    }
-    heights_m.push_back(sum / count);
-  }
-  return heights_m;
-}
-
 // The wind at a height of the first column's layers, by `winds` of each level.
 glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds, const LayerAir& air) {
   std::size_t level = 0;
@@ -425,7 +408,8 @@ absl::Status TimeReader::ReadMotion(HydrometeorFields& result) {
     for (float& value : ascent) value = value > 0.0F ? value / kAscentUnit_m_per_s : 0.0F;
     motion.ascent = RemapBytes(ascent);
     const std::vector<glm::dvec2> winds = MeanWinds(wind);
-    motion.steering_m_per_s = SteeringWind_m_per_s(winds, MeanHeights_m(air_));
+    motion.steering_m_per_s =
+        SteeringWind_m_per_s(winds, LevelMeans(air_.interface_height_m, air_.levels + 1));
     motion.time_s = absl::ToDoubleSeconds(metadata_.times[record_] - absl::UnixEpoch());
     const std::optional<double> cloud_m = MeanHeight_m(result, false);
     const std::optional<double> ice_m = MeanHeight_m(result, true);

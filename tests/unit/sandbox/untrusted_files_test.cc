@@ -176,7 +176,8 @@ TEST_F(UntrustedFilesTest, ATrustedFileCanBeReadByItsOwnDescription) {
   EXPECT_TRUE(BytesOf(*fields) == BytesOf(*expected));
 }
 
-// What the archive forgets both sides of ExpectSameStorm lack.
+// ExpectSameStorm compares what the archive writes of both storms, so it does not notice a member
+// that the archive leaves out.
 TEST_F(UntrustedFilesTest, TheWindComesThrough) {
   const auto file = Files()->Describe(THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc");
   ASSERT_TRUE(file.ok()) << file.status();

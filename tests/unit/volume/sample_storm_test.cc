@@ -404,8 +404,7 @@ TEST(FinerSampleStorm, TellsTheMotionOfItsAir) {
   // The storm was made with westerly shear, and its anvil lies in the east.
   EXPECT_GT(motion.shear_m_per_s.x, 10.0);
   EXPECT_LT(std::abs(motion.shear_m_per_s.y), motion.shear_m_per_s.x);
-  // As ncdump has it at 21:30 on 20 May 2000; the storm moves by (5.2, 2.0) m/s in these 10
-  // minutes.
+  // Computed with numpy; 21:30 on 20 May 2000.
   EXPECT_NEAR(motion.steering_m_per_s.x, 4.766, 0.005);
   EXPECT_NEAR(motion.steering_m_per_s.y, 2.325, 0.005);
   EXPECT_EQ(motion.time_s, 958858200.0);
