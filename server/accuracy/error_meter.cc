@@ -11,7 +11,6 @@
 #include "reference/near_sun.h"
 #include "reference/philox.h"
 #include "reference/scene_problem.h"
-#include "reference/trace_rays.h"
 #include "reference/trace_scene.h"
 
 namespace thunderhead::accuracy {
@@ -130,13 +129,15 @@ std::size_t ErrorMeter::ChoosePixel(std::uint64_t count) const {
 
 void ErrorMeter::Measure(double seconds, const std::stop_token& stop) {
   if (!IsMeasurable()) return;
+  const auto wanted = [&stop] {
+    return stop.stop_requested() ? absl::CancelledError("stopped") : absl::OkStatus();
+  };
   const base::Stopwatch stopwatch;
-  do {
-    Step();
-  } while (!stop.stop_requested() && stopwatch.ElapsedMs() < 1e3 * seconds);
+  while (Step(wanted).ok() && stopwatch.ElapsedMs() < 1e3 * seconds) {
+  }
 }
 
-void ErrorMeter::Step() {
+absl::Status ErrorMeter::Step(const reference::IsWanted& wanted) {
   THUNDERHEAD_CHECK(estimate_.has_value(), "no picture that can be measured was shown");
   const base::Stopwatch stopwatch;
   if (estimate_->Pixels() >= kPilotPixels) {
@@ -160,8 +161,10 @@ void ErrorMeter::Step() {
       rays.push_back(camera_.RayThrough(2.0 * x / size_px.x - 1.0, 1.0 - 2.0 * y / size_px.y));
     }
   }
-  const std::vector<glm::dvec3> radiance = reference::TraceRays(
-      *medium_, surroundings_, rays, {seed_ + batch, 1, threads_, reference::kSimilarAfter});
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::vector<glm::dvec3> radiance,
+      reference::TraceRays(*medium_, surroundings_, rays,
+                           {seed_ + batch, 1, threads_, reference::kSimilarAfter, wanted}));
   for (std::size_t i = 0; i < pixels; ++i) {
     const double weight = 1.0 / (ChanceOf(indices[i]) * static_cast<double>(pixels_));
     const double usual = std::max(MeanColor(drawn_.radiance[indices[i]]), kDark * mean_drawn_);
@@ -173,6 +176,7 @@ void ErrorMeter::Step() {
     traced_.push_back(pixel);
   }
   traced_s_ += 1e-3 * stopwatch.ElapsedMs();
+  return absl::OkStatus();
 }
 
 std::optional<MeasuredError> ErrorMeter::Result() const {

@@ -9,12 +9,14 @@
 #include <stop_token>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "accuracy/error_estimate.h"
 #include "picture/linear_picture.h"
 #include "reference/camera.h"
 #include "reference/medium.h"
 #include "reference/surroundings.h"
+#include "reference/trace_rays.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -37,8 +39,8 @@ class ErrorMeter {
   bool IsMeasurable() const;
 
   // Traces pixels of the picture for some tenths of a second; one that is measurable must have been
-  // shown.
-  void Step();
+  // shown. Fails only as `wanted` does, and has traced nothing then.
+  absl::Status Step(const reference::IsWanted& wanted = nullptr);
   // Steps for about `seconds`, or until `stop` asks to stop; not at all if nothing is measurable.
   void Measure(double seconds, const std::stop_token& stop);
 

@@ -91,7 +91,8 @@ absl::StatusOr<ErrorMeters::Kept*> ErrorMeters::For(const scene::Scene& measured
 }
 
 absl::StatusOr<ErrorProgress> ErrorMeters::Step(const scene::Scene& scene, const Fields& fields,
-                                                std::int64_t light_paths, const Draw& draw) {
+                                                std::int64_t light_paths, const Draw& draw,
+                                                const reference::IsWanted& wanted) {
   DropUnused();
   if (!IsMeasurable(*fields)) return ErrorProgress{.ended = true};
   const scene::Scene measured = MeasuredScene(scene);
@@ -111,7 +112,7 @@ absl::StatusOr<ErrorProgress> ErrorMeters::Step(const scene::Scene& scene, const
     kept->meter->Show(std::move(picture));
     kept->drawn_paths = light_paths;
   } else if (!progress().ended) {
-    kept->meter->Step();
+    THUNDERHEAD_RETURN_IF_ERROR(kept->meter->Step(wanted));
   }
   kept->since_used.Restart();
   return progress();

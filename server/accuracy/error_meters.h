@@ -53,10 +53,12 @@ class ErrorMeters {
       : memory_(std::move(memory)), max_meters_(max_meters), busy_s_(busy_s), unused_s_(unused_s) {}
 
   // A step for the scene: draws with `draw` if it is new or its light is corrected by many more
-  // paths than it was (`light_paths`), and else traces, unless it has ended. RESOURCE_EXHAUSTED if
-  // too many other scenes are being measured, or there is no memory for another storm.
+  // paths than it was (`light_paths`), and else traces, unless it has ended or is not `wanted`.
+  // RESOURCE_EXHAUSTED if too many other scenes are being measured, or there is no memory for
+  // another storm.
   absl::StatusOr<ErrorProgress> Step(const scene::Scene& scene, const Fields& fields,
-                                     std::int64_t light_paths, const Draw& draw);
+                                     std::int64_t light_paths, const Draw& draw,
+                                     const reference::IsWanted& wanted = nullptr);
 
   // Drops the one that was used longest ago, unless all are busy; false then.
   bool DropOldest();

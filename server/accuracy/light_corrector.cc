@@ -145,16 +145,16 @@ scene::Camera LightCorrector::NextCamera() const {
 absl::Status LightCorrector::Step() {
   ++progress_.steps;
   if (ground_passes_ < kFirstGroundPasses) {
-    for (int i = 0; i < kGroundPassesOfStep; ++i) TraceGround();
+    for (int i = 0; i < kGroundPassesOfStep; ++i) THUNDERHEAD_RETURN_IF_ERROR(TraceGround());
     return absl::OkStatus();
   }
   if (pictures_ % kPicturesPerGround == 0) UpdateGround();
-  TraceGround();
+  THUNDERHEAD_RETURN_IF_ERROR(TraceGround());
   scene_.camera = NextCamera();
   ++pictures_;
   THUNDERHEAD_ASSIGN_OR_RETURN(const Probe probe,
                                programs_->Pieces().During([this] { return DrawProbe(); }));
-  TraceProbe(probe);
+  THUNDERHEAD_RETURN_IF_ERROR(TraceProbe(probe));
   correction_.reset();
   return absl::OkStatus();
 }
@@ -188,7 +188,15 @@ absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   return probe;
 }
 
-void LightCorrector::TraceProbe(const Probe& probe) {
+absl::StatusOr<std::vector<glm::dvec3>> LightCorrector::Traced(
+    const reference::Surroundings& surroundings, const std::vector<reference::Ray>& rays,
+    std::uint64_t seed, int paths_of_ray) const {
+  return reference::TraceRays(*medium_, surroundings, rays,
+                              {seed, paths_of_ray, threads_, reference::kSimilarAfter,
+                               [this] { return programs_->Pieces().Wanted(); }});
+}
+
+absl::Status LightCorrector::TraceProbe(const Probe& probe) {
   const reference::Camera camera = reference::CameraOf(scene_, *fields_);
   std::vector<reference::Ray> rays;
   std::vector<std::size_t> firsts;  // of each ray's pixel
@@ -205,8 +213,8 @@ void LightCorrector::TraceProbe(const Probe& probe) {
       reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded);
   surroundings.disc.reset();
   const int paths_of_ray = pictures_ > kPicturesOfOnePath ? kPathsOfRay : 1;
-  const std::vector<glm::dvec3> traced = reference::TraceRays(
-      *medium_, surroundings, rays, {pictures_, paths_of_ray, threads_, reference::kSimilarAfter});
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec3> traced,
+                               Traced(surroundings, rays, pictures_, paths_of_ray));
   const auto value = [](const std::vector<float>& values, std::size_t first) {
     return glm::dvec3(values[first], values[first + 1], values[first + 2]);
   };
@@ -216,13 +224,14 @@ void LightCorrector::TraceProbe(const Probe& probe) {
                     value(probe.whole, firsts[i]) - behind, traced[i] - behind});
   }
   progress_.paths += paths_of_ray * static_cast<std::int64_t>(rays.size());
+  return absl::OkStatus();
 }
 
 // Rays from random places on the ground in cosine-distributed directions, so that their mean
 // radiance is the ground's irradiance over pi.
-void LightCorrector::TraceGround() {
+absl::Status LightCorrector::TraceGround() {
   const std::uint64_t pass = ++ground_passes_;
-  if (!over_ground_.ground.has_value() || !over_ground_.sky) return;
+  if (!over_ground_.ground.has_value() || !over_ground_.sky) return absl::OkStatus();
   std::vector<reference::Ray> rays;
   std::vector<glm::dvec3> places;
   std::vector<glm::dvec3> skies;
@@ -237,12 +246,13 @@ void LightCorrector::TraceGround() {
     sky_sum_ += skies.back();
   }
   const glm::dvec3 mean_sky = sky_sum_ / static_cast<double>(pass * kGroundRays);
-  const std::vector<glm::dvec3> traced = reference::TraceRays(
-      *medium_, over_ground_, rays, {kGroundSeed + pass, 1, threads_, reference::kSimilarAfter});
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec3> traced,
+                               Traced(over_ground_, rays, kGroundSeed + pass, 1));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Control variate: with the clear sky's known mean, rays that miss the storm add no noise.
     ground_fit_.Add({places[i], glm::dvec3(0.0), mean_sky, mean_sky + traced[i] - skies[i]});
   }
+  return absl::OkStatus();
 }
 
 std::shared_ptr<renderers::LightCorrection> LightCorrector::WithGround() const {

@@ -17,6 +17,7 @@
 #include "accuracy/light_progress.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
+#include "reference/brick_walk.h"
 #include "reference/medium.h"
 #include "reference/surroundings.h"
 #include "renderers/light_correction.h"
@@ -48,6 +49,7 @@ class LightCorrector {
   void LookAs(const scene::Scene& scene);
 
   // Traces some thousand paths: of the ground alone in the first steps, then one picture a step.
+  // Fails if it cannot draw, or nobody wants it any more (gl::Pieces::Wanted).
   absl::Status Step();
   // Steps until LightProgress::HasTraced(paths); CANCELLED if `stop` asks to stop before.
   // `observer`, which may be null, gets the share of paths traced.
@@ -75,8 +77,11 @@ class LightCorrector {
 
   scene::Camera NextCamera() const;
   absl::StatusOr<Probe> DrawProbe();
-  void TraceProbe(const Probe& probe);
-  void TraceGround();
+  absl::Status TraceProbe(const Probe& probe);
+  absl::Status TraceGround();
+  absl::StatusOr<std::vector<glm::dvec3>> Traced(const reference::Surroundings& surroundings,
+                                                 const std::vector<reference::Ray>& rays,
+                                                 std::uint64_t seed, int paths_of_ray) const;
   std::shared_ptr<renderers::LightCorrection> WithGround() const;
   void UpdateGround();
 

@@ -12,6 +12,8 @@ class DeviceTurn {
   // Waits for it. An error, CANCELLED if nobody wants what is drawn any more, ends the drawing.
   virtual absl::Status Take() = 0;
   virtual void GiveBack() = 0;
+  // Why Take would end the drawing; OK while it would not. Does not wait; safe from any thread.
+  virtual absl::Status Wanted() const { return absl::OkStatus(); }
 };
 
 }  // namespace thunderhead::base

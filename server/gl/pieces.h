@@ -67,6 +67,10 @@ class Pieces {
   // True the first time for a program, which must be compiled off turn before its first piece.
   bool IsNew(unsigned int program);
 
+  // Why work without the turn, which takes long, must end; OK while it may go on. Safe from any
+  // thread.
+  absl::Status Wanted() const { return turn_ == nullptr ? absl::OkStatus() : turn_->Wanted(); }
+
   // How long drawing has waited for turns in all.
   double WaitedMs() const { return waited_ms_; }
 

@@ -1,6 +1,9 @@
 #include "reference/trace_rays.h"
 
 #include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <utility>
 
 #include "base/status.h"
 #include "reference/parallel.h"
@@ -9,17 +12,34 @@
 namespace thunderhead::reference {
 namespace {
 
+// Some milliseconds.
 constexpr std::size_t kRaysInPiece = 64;
 
 }  // namespace
 
-std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surroundings,
-                                  const std::vector<Ray>& rays, const TraceRaysOptions& options) {
+absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
+                                                  const Surroundings& surroundings,
+                                                  const std::vector<Ray>& rays,
+                                                  const TraceRaysOptions& options) {
   THUNDERHEAD_CHECK(options.similar_after == 0 || medium.HasSimilar(), "no similar medium");
   std::vector<glm::dvec3> radiance(rays.size(), glm::dvec3(0.0));
   const PathOptions of_path{.similar_after = options.similar_after};
   const std::size_t pieces = (rays.size() + kRaysInPiece - 1) / kRaysInPiece;
+  std::mutex mutex;
+  absl::Status ended = absl::OkStatus();
+  std::atomic<bool> has_ended{false};
+  const auto goes_on = [&] {
+    if (options.wanted == nullptr) return true;
+    if (has_ended) return false;
+    absl::Status wanted = options.wanted();
+    if (wanted.ok()) return true;
+    const std::lock_guard lock(mutex);
+    ended = std::move(wanted);
+    has_ended = true;
+    return false;
+  };
   ParallelFor(options.threads, static_cast<int>(pieces), [&](int piece) {
+    if (!goes_on()) return;
     const std::size_t first = static_cast<std::size_t>(piece) * kRaysInPiece;
     for (std::size_t i = first; i < std::min(first + kRaysInPiece, rays.size()); ++i) {
       for (int path = 0; path < options.paths_per_ray; ++path) {
@@ -29,6 +49,7 @@ std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surr
       radiance[i] /= static_cast<double>(options.paths_per_ray);
     }
   });
+  if (!ended.ok()) return ended;
   return radiance;
 }
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "glm/vec3.hpp"
 #include "reference/brick_walk.h"
 #include "reference/medium.h"
@@ -16,16 +19,22 @@ namespace thunderhead::reference {
 // (docs/decisions/0056-similar-medium.md).
 inline constexpr int kSimilarAfter = 4;
 
+// Why tracing must end; OK while it may go on. Asked every few milliseconds, by any thread.
+using IsWanted = std::function<absl::Status()>;
+
 struct TraceRaysOptions {
   std::uint64_t seed = 0;
   int paths_per_ray = 1;
-  int threads = 0;        // 0: as many as the machine has
-  int similar_after = 0;  // PathOptions::similar_after
+  int threads = 0;            // 0: as many as the machine has
+  int similar_after = 0;      // PathOptions::similar_after
+  IsWanted wanted = nullptr;  // null: always
 };
 
 // Radiance that arrives along each of `rays`: the mean of `paths_per_ray` estimates. The same, bit
-// for bit, for any number of threads.
-std::vector<glm::dvec3> TraceRays(const Medium& medium, const Surroundings& surroundings,
-                                  const std::vector<Ray>& rays, const TraceRaysOptions& options);
+// bit, for any number of threads. Fails only as `wanted` does.
+absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
+                                                  const Surroundings& surroundings,
+                                                  const std::vector<Ray>& rays,
+                                                  const TraceRaysOptions& options);
 
 }  // namespace thunderhead::reference

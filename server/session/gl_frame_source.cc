@@ -113,7 +113,7 @@ class GlFrameSource final : public FrameSource {
     if (!HasRoomToMeasure(scene, *fields)) return accuracy::ErrorProgress{.ended = true};
     const Correction correction = CorrectionOf(scene, fields);
     return base::OrOutOfMemory([&] {
-      return meters_.Step(scene, fields, correction.paths, [&](const scene::Scene& measured) {
+      const auto draw = [&](const scene::Scene& measured) {
         return Watched([&]() -> absl::StatusOr<picture::LinearPicture> {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                        renderers_.Draw(measured, fields, Applied(correction, {})));
@@ -122,7 +122,9 @@ class GlFrameSource final : public FrameSource {
           if (!HasRoomToMeasure(scene, *fields)) renderers_.DropUnusedFor(0.0);
           return picture;
         });
-      });
+      };
+      return meters_.Step(scene, fields, correction.paths, draw,
+                          [this] { return programs_->Pieces().Wanted(); });
     });
   }
 

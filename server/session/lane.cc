@@ -144,6 +144,11 @@ void Lane::GiveBack() {
   changed_.notify_all();
 }
 
+absl::Status Lane::Wanted() const {
+  const std::lock_guard lock(mutex_);
+  return Ended();
+}
+
 void Lane::Run() {
   base::LowerPriority(niceness_);
   const auto not_made = [] { return absl::UnavailableError("not made yet"); };

@@ -74,6 +74,7 @@ class Lane {
     explicit Turn(Lane& lane) : lane_(lane) {}
     absl::Status Take() override { return lane_.Take(); }
     void GiveBack() override { lane_.GiveBack(); }
+    absl::Status Wanted() const override { return lane_.Wanted(); }
 
    private:
     Lane& lane_;
@@ -83,6 +84,7 @@ class Lane {
 
   absl::Status Take();
   void GiveBack();
+  absl::Status Wanted() const;
   // Why the work is to end; OK if it is not. With the mutex held.
   absl::Status Ended() const;
   // Of this work, without waiting. With the mutex held.

@@ -79,7 +79,8 @@ LightTracer::Progress LightTracer::Trace(FrameSource& source, const Request& req
     step.error = *std::move(error);
     return step;
   }
-  if (gl::IsDeviceLost(error.status())) return error.status();
+  // The device was lost, or the server ends.
+  if (absl::IsUnavailable(error.status())) return error.status();
   // The picture is as good without; what others keep busy is tried again with the next step.
   if (MayPass(error.status())) {
     if (!request.light) return error.status();

@@ -77,10 +77,8 @@ class AirShadeTest : public testing::Test {
                                        1.0 - 2.0 * (row + 0.5) / kHeight_px));
     }
     glm::dvec3 sum(0.0);
-    for (const glm::dvec3& radiance :
-         reference::TraceRays(**medium, surroundings, rays, {7, 8000, 0})) {
-      sum += radiance;
-    }
+    const auto traced = *reference::TraceRays(**medium, surroundings, rays, {7, 8000, 0});
+    for (const glm::dvec3& radiance : traced) sum += radiance;
     return sum / static_cast<double>(rays.size());
   }
 

@@ -72,10 +72,8 @@ class GroundLightTest : public testing::Test {
       for (const double x : {-0.75, -0.25, 0.25, 0.75}) rays.push_back(camera.RayThrough(x, y));
     }
     glm::dvec3 sum(0.0);
-    for (const glm::dvec3& radiance :
-         reference::TraceRays(**medium, surroundings, rays, {7, 1500, 0})) {
-      sum += radiance;
-    }
+    const auto traced = *reference::TraceRays(**medium, surroundings, rays, {7, 1500, 0});
+    for (const glm::dvec3& radiance : traced) sum += radiance;
     return sum / static_cast<double>(rays.size());
   }
 

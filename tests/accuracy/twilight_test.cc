@@ -82,7 +82,7 @@ class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
       rays.push_back(camera.RayThrough((kWidth_px / 2 + 0.5) / kWidth_px * 2.0 - 1.0,
                                        1.0 - 2.0 * (row + 0.5) / kHeight_px));
     }
-    return reference::TraceRays(
+    return *reference::TraceRays(
         **medium, reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded),
         rays, {7, 1'000'000, 0});
   }

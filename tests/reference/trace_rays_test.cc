@@ -1,9 +1,11 @@
 #include "reference/trace_rays.h"
 
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <vector>
 
+#include "absl/status/status.h"
 #include "comparisons.h"
 #include "gtest/gtest.h"
 #include "reference/scene_problem.h"
@@ -38,10 +40,10 @@ class TraceRaysTest : public testing::Test {
 };
 
 TEST_F(TraceRaysTest, TheNumberOfThreadsChangesNothing) {
-  const auto one = TraceRays(*medium_, surroundings_, rays_, {5, 3, 1});
-  const auto two = TraceRays(*medium_, surroundings_, rays_, {5, 3, 2});
+  const auto one = *TraceRays(*medium_, surroundings_, rays_, {5, 3, 1});
+  const auto two = *TraceRays(*medium_, surroundings_, rays_, {5, 3, 2});
   EXPECT_EQ(one, two);
-  EXPECT_NE(one, TraceRays(*medium_, surroundings_, rays_, {6, 3, 2}));
+  EXPECT_NE(one, *TraceRays(*medium_, surroundings_, rays_, {6, 3, 2}));
 }
 
 TEST_F(TraceRaysTest, MeansAreThoseOfThePicture) {
@@ -54,7 +56,7 @@ TEST_F(TraceRaysTest, MeansAreThoseOfThePicture) {
   limits.samples_per_pixel = 20'000;
   const LinearPicture picture = TraceScene(narrow, *fields_, kPeakCut_deg, limits, {}, {})->image;
   const Ray ray = CameraOf(narrow, *fields_).RayThrough(0.0, 0.0);
-  const auto traced = TraceRays(*medium_, surroundings_, {ray}, {1, 20'000, 0});
+  const auto traced = *TraceRays(*medium_, surroundings_, {ray}, {1, 20'000, 0});
   for (int color = 0; color < 3; ++color) {
     EXPECT_NEAR(traced.front()[color], picture.radiance.front()[color],
                 5.0 * 1.42 * picture.standard_error.front()[color]);
@@ -80,7 +82,8 @@ FluxShare Reflected(double optical_depth, double asymmetry, double albedo, int s
   const std::vector<Ray> rays(kRays, {{0.0, 0.0, slab->High_m().z}, {0.0, 0.0, -1.0}});
   SampleMean mean;
   TraceRaysOptions options{.seed = 3, .paths_per_ray = 400, .similar_after = similar_after};
-  for (const glm::dvec3& radiance : TraceRays(*slab, sun, rays, options)) mean.Add(radiance.y);
+  const auto traced = *TraceRays(*slab, sun, rays, options);
+  for (const glm::dvec3& radiance : traced) mean.Add(radiance.y);
   return mean.Share();
 }
 
@@ -112,7 +115,21 @@ TEST(SimilarPaths, AreLessNoisy) {
 }
 
 TEST_F(TraceRaysTest, NoRaysNoRadiance) {
-  EXPECT_TRUE(TraceRays(*medium_, surroundings_, {}, {}).empty());
+  EXPECT_TRUE(TraceRays(*medium_, surroundings_, {}, {})->empty());
+}
+
+TEST_F(TraceRaysTest, EndsWithinAFewRaysWhenNobodyWantsItAnyMore) {
+  constexpr int kWantedFor = 3;
+  std::atomic<int> asked{0};
+  TraceRaysOptions options{.seed = 1, .paths_per_ray = 1, .threads = 2};
+  options.wanted = [&] {
+    return ++asked <= kWantedFor ? absl::OkStatus() : absl::CancelledError("nobody wants it");
+  };
+  const std::vector<Ray> many(100'000, rays_.front());
+  const auto traced = TraceRays(*medium_, surroundings_, many, options);
+  EXPECT_EQ(traced.status(), absl::CancelledError("nobody wants it"));
+  EXPECT_GT(asked, kWantedFor);
+  EXPECT_LE(asked, kWantedFor + 2) << "both threads ask no more";
 }
 
 }  // namespace

@@ -155,6 +155,25 @@ TEST_F(LaneTest, WhatNobodyWantsFreesTheDeviceAtOnce) {
   }
 }
 
+// Paths are traced without the device, so nothing is drawn at whose next piece they could end.
+TEST_F(LaneTest, TracingEndsWhenNobodyWantsItAnyMore) {
+  absl::StatusOr<accuracy::LightProgress> light = absl::UnknownError("not traced");
+  absl::StatusOr<accuracy::ErrorProgress> error = absl::UnknownError("not measured");
+  lane_->Begin(
+      [&](const absl::StatusOr<FrameSource*>& source) {
+        const scene::Scene scene = SceneOf(160, 90, 64);
+        drawn_ = (*source)->MeasureError(scene, fields_).status();
+        *cancelled_ = true;
+        error = (*source)->MeasureError(scene, fields_);
+        light = (*source)->TraceLight(scene, fields_, 1'000'000, nullptr);
+      },
+      {cancelled_});
+  Finish();
+  EXPECT_TRUE(drawn_.ok()) << drawn_ << ", before it was cancelled";
+  EXPECT_TRUE(absl::IsCancelled(error.status())) << error.status();
+  EXPECT_TRUE(absl::IsCancelled(light.status())) << light.status();
+}
+
 TEST_F(LaneTest, MoreTimeThanItsLimitEndsTheWork) {
   lane_->Begin(
       [this](const absl::StatusOr<FrameSource*>& source) {

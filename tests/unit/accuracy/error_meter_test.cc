@@ -99,7 +99,7 @@ TEST(ErrorMeter, IntervalsHoldTheErrorOfAPictureThatIsWrongByAKnownAmount) {
     const auto meter =
         *ErrorMeter::Create(scene, fields, 0, static_cast<std::uint64_t>(trial) << 20U);
     meter->Show(wrong.picture);
-    for (int step = 0; step < 6; ++step) meter->Step();
+    for (int step = 0; step < 6; ++step) ASSERT_TRUE(meter->Step().ok());
     const auto error = meter->Result();
     ASSERT_TRUE(error.has_value());
     const auto holds = [](const Estimated& interval, double value) {
@@ -123,7 +123,7 @@ TEST(ErrorMeter, PathsCountForTheNextPictureToo) {
   const Wrong wrong = WrongBy(truth);
   const auto meter = *ErrorMeter::Create(scene, fields, 0);
   meter->Show(wrong.picture);
-  for (int step = 0; step < 8; ++step) meter->Step();
+  for (int step = 0; step < 8; ++step) ASSERT_TRUE(meter->Step().ok());
   const std::int64_t paths = meter->Result()->paths;
   meter->Show(truth);
   EXPECT_EQ(meter->Result()->paths, paths);
@@ -142,7 +142,7 @@ TEST(ErrorMeter, FalseColorsAreNoError) {
   const picture::LinearPicture truth = TruthOf(scene, *fields);
   const auto meter = *ErrorMeter::Create(scene, fields, 0);
   meter->Show(truth);
-  for (int step = 0; step < 8; ++step) meter->Step();
+  for (int step = 0; step < 8; ++step) ASSERT_TRUE(meter->Step().ok());
   EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
 }
 
@@ -174,7 +174,7 @@ TEST(ErrorMeter, TheAureoleThatTheReferenceLeavesOutIsNoError) {
   const auto meter = *ErrorMeter::Create(scene, fields, 0);
   meter->Show(drawn);
   ASSERT_TRUE(meter->IsMeasurable());
-  for (int step = 0; step < 8; ++step) meter->Step();
+  for (int step = 0; step < 8; ++step) ASSERT_TRUE(meter->Step().ok());
   EXPECT_LT(meter->Result()->relative_rmse.low, noise);
 }
 
