@@ -35,7 +35,7 @@ void Follow(double measured_ms, double* mean_ms) {
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
   // Of a sparse picture's whole time over that with a ray for each pixel, as measured at 1280 x 720
   // (docs/performance.md); a smaller picture takes more, which is learnt from the next frames.
-  constexpr double kSparseShare = 0.3;
+  constexpr double kSparseShare = 0.2;
   const double scale = scene.rendering.image_scale * quality.Scale();
   const double pixels =
       static_cast<double>(scene.output.width_px) * scene.output.height_px * scale * scale;

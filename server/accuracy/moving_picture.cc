@@ -17,6 +17,10 @@ namespace {
 
 constexpr std::size_t kChannels = 3;
 
+// Power of the pixels by which the contrast of larger pictures grows, and how far.
+constexpr double kContrastGrowth = 0.4;
+constexpr double kMostContrast = 2.25;
+
 // The colours of the rays of `frame` in the order in which they were chosen.
 absl::StatusOr<std::vector<std::uint16_t>> ColorsOf(const renderers::ChosenFrame& frame,
                                                     std::size_t count,
@@ -56,6 +60,12 @@ double Sum_ms(const renderers::StageTimes& times) {
 
 }  // namespace
 
+double MovingContrast(const scene::Scene& scene) {
+  const double pixels = 1.0 * scene.output.width_px * scene.output.height_px;
+  return kMovingContrast *
+         std::clamp(std::pow(pixels / kMovingContrastPixels, kContrastGrowth), 1.0, kMostContrast);
+}
+
 double MovingOutputScale(const scene::Scene& scene) {
   const double pixels = 1.0 * scene.output.width_px * scene.output.height_px;
   return std::min(std::sqrt(kMaxMovingPixels / pixels), 1.0);
@@ -91,9 +101,9 @@ absl::StatusOr<CompletedPicture> CompleteMoving(
   const double waited_ms = pieces.WaitedMs();
   CompletedPicture whole;
   frame::ToneMapped& mapped = whole.mapped;
-  THUNDERHEAD_ASSIGN_OR_RETURN(mapped, tone_mapper.Map(*coarse.radiance, scene));
+  THUNDERHEAD_ASSIGN_OR_RETURN(mapped.exposure_ev, tone_mapper.SetTone(*coarse.radiance, scene));
   THUNDERHEAD_ASSIGN_OR_RETURN(frame::FineImage coarsest, tone_mapper.MapFine(*coarse.radiance));
-  double drawing_ms = mapped.read_back_ms;
+  double drawing_ms = 0.0;
   const auto draw_places =
       [&](const std::vector<glm::vec2>& places) -> absl::StatusOr<std::vector<std::uint16_t>> {
     THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::ChosenFrame chosen, draw(places));
@@ -101,15 +111,16 @@ absl::StatusOr<CompletedPicture> CompleteMoving(
     drawing_ms += Sum_ms(chosen.stages);
     return ColorsOf(chosen, places.size(), tone_mapper);
   };
-  const double contrast = kMovingContrast / (quality.image_scale * quality.image_scale);
+  // Smaller image_scales take more, in proportion to the pixels that they stand for.
+  const double contrast = MovingContrast(scene) / (quality.image_scale * quality.image_scale);
   // Most of it is the processors' work: others may draw meanwhile.
   absl::StatusOr<frame::FineImage> completed;
   THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
-    completed = frame::CompletePicture(
-        std::move(coarsest), {scene.output.width_px, scene.output.height_px},
-        static_cast<int>(std::lround(contrast)), [&](const std::vector<glm::vec2>& places) {
-          return pieces.During([&] { return draw_places(places); });
-        });
+    completed =
+        frame::CompletePicture(std::move(coarsest), {scene.output.width_px, scene.output.height_px},
+                               contrast, [&](const std::vector<glm::vec2>& places) {
+                                 return pieces.During([&] { return draw_places(places); });
+                               });
     if (completed.ok()) mapped.rgb = frame::Dithered(*completed);
   }));
   THUNDERHEAD_ASSIGN_OR_RETURN(whole.fine, std::move(completed));

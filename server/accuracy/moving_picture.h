@@ -15,9 +15,12 @@
 
 namespace thunderhead::accuracy {
 
-// As frame::CompletePicture takes it, of pictures at the full image_scale; smaller ones take more,
-// in proportion to their pixels.
-inline constexpr int kMovingContrast = 18;
+// As frame::CompletePicture takes it, of the scene's pictures: kMovingContrast up to
+// kMovingContrastPixels; larger ones may differ by more within a pixel, 2.2 times as much at 1280
+// x 720, as smaller pixels are seen less (docs/decisions/0052-sparse-pictures.md).
+double MovingContrast(const scene::Scene& scene);
+inline constexpr double kMovingContrast = 16.0;
+inline constexpr double kMovingContrastPixels = 480.0 * 270.0;
 
 // Of the light while the sun or a field changes, and in the first picture at rest after it
 // (renderers::DrawQuality).

@@ -12,32 +12,51 @@
 
 #include "base/status.h"
 #include "glm/common.hpp"
+#include "glm/vec4.hpp"
 
 namespace thunderhead::frame {
 namespace {
 
 constexpr std::size_t kSparseChannels = 3;
-constexpr int kRowsInShare = 16;
-constexpr int kOne = 64;         // of weights of interpolation
+constexpr int kRowsInShare = 48;
 constexpr int kFineSteps = 257;  // of a FineImage in one of 8 bits
+
+constexpr std::size_t kTaps = 4;
 
 // Where a finer picture's columns or rows are in the one before it.
 struct Places {
   std::vector<int> parent;  // in whose place each is
-  std::vector<int> before;  // the nearer of the two that it is interpolated from on the low side
-  std::vector<int> after;
-  std::vector<int> weight;  // of `after`, out of kOne
+  // What each is interpolated from, and by which weights: cubic convolution with a = -1/2 (Keys
+  // 1981, "Cubic convolution interpolation for digital image processing", eq. 15).
+  std::vector<std::array<int, kTaps>> taps;
+  std::vector<std::array<float, kTaps>> weights;
 
   Places(int count, int parents) {
     for (int i = 0; i < count; ++i) {
       const double place = (i + 0.5) * parents / count;
-      const double from = std::max(place - 0.5, 0.0);
-      const int low = static_cast<int>(from);
       parent.push_back(std::min(static_cast<int>(place), parents - 1));
-      before.push_back(low);
-      after.push_back(std::min(low + 1, parents - 1));
-      weight.push_back(static_cast<int>(std::lround((from - low) * kOne)));
+      const double from = std::clamp(place - 0.5, 0.0, parents - 1.0);
+      const int before = static_cast<int>(from);
+      const auto t = static_cast<float>(from - before);
+      std::array<float, kTaps> weight{
+          t * (-0.5F + t * (1.0F - 0.5F * t)), 1.0F + t * t * (-2.5F + 1.5F * t),
+          t * (0.5F + t * (2.0F - 1.5F * t)), t * t * (0.5F * t - 0.5F)};
+      // Beyond the picture's edges it goes on as a line.
+      if (before == 0) Extend(&weight[0], &weight[1], &weight[2]);
+      if (before == parents - 2) Extend(&weight[3], &weight[2], &weight[1]);
+      weights.push_back(weight);
+      std::array<int, kTaps>& tap = taps.emplace_back();
+      for (int k = 0; k < static_cast<int>(kTaps); ++k) {
+        tap[static_cast<std::size_t>(k)] = std::clamp(before - 1 + k, 0, parents - 1);
+      }
     }
+  }
+
+ private:
+  static void Extend(float* beyond, float* last, float* last_but_one) {
+    *last += 2.0F * *beyond;
+    *last_but_one -= *beyond;
+    *beyond = 0.0F;
   }
 };
 
@@ -46,74 +65,132 @@ std::size_t Offset(const glm::ivec2& size_px, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
+// Calls `work` with the first row of some and the one after their last.
 template <typename Work>
-void ForRows(int rows, const Work& work) {
+void ForShares(int rows, const Work& work) {
   tbb::parallel_for(0, (rows + kRowsInShare - 1) / kRowsInShare, [&](int share) {
-    const int end = std::min((share + 1) * kRowsInShare, rows);
-    for (int y = share * kRowsInShare; y < end; ++y) work(y);
+    work(share * kRowsInShare, std::min((share + 1) * kRowsInShare, rows));
   });
 }
 
+template <typename Work>
+void ForRows(int rows, const Work& work) {
+  ForShares(rows, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) work(y);
+  });
+}
+
+const std::uint16_t* RowOf(const FineImage& picture, int y) {
+  return picture.rgb.data() + kSparseChannels * Offset({picture.width_px, picture.height_px}, 0, y);
+}
+
+// A row with its first and last pixel twice.
+void CopyPadded(const FineImage& picture, int y, std::vector<int>* padded) {
+  const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
+  const std::uint16_t* const row = RowOf(picture, std::clamp(y, 0, picture.height_px - 1));
+  padded->resize(width + 2 * kSparseChannels);
+  std::copy_n(row, kSparseChannels, padded->begin());
+  std::copy_n(row, width, padded->begin() + kSparseChannels);
+  std::copy_n(row + width - kSparseChannels, kSparseChannels,
+              padded->begin() + static_cast<std::ptrdiff_t>(width + kSparseChannels));
+}
+
 // 1 for each pixel whose place in the next picture needs rays of its own.
-std::vector<std::uint8_t> Rough(const FineImage& picture, int contrast) {
-  const glm::ivec2 size(picture.width_px, picture.height_px);
-  const int most = contrast * kFineSteps;
+std::vector<std::uint8_t> Rough(const FineImage& picture, double contrast) {
+  const int most = static_cast<int>(std::lround(contrast * kFineSteps));
+  const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
   std::vector<std::uint8_t> rough(picture.rgb.size() / kSparseChannels, 0);
-  ForRows(size.y, [&](int y) {
-    const auto row = [&](int of) {
-      return picture.rgb.data() + kSparseChannels * Offset(size, 0, std::clamp(of, 0, size.y - 1));
-    };
-    const std::uint16_t* const above = row(y - 1);
-    const std::uint16_t* const here = row(y);
-    const std::uint16_t* const below = row(y + 1);
-    for (int x = 0; x < size.x; ++x) {
-      const std::size_t middle = kSparseChannels * static_cast<std::size_t>(x);
-      const std::size_t left = x > 0 ? middle - kSparseChannels : middle;
-      const std::size_t right = x + 1 < size.x ? middle + kSparseChannels : middle;
-      int off = 0;
-      for (std::size_t c = 0; c < kSparseChannels; ++c) {
-        const int twice = 2 * here[middle + c];
-        off = std::max({off, std::abs(here[left + c] + here[right + c] - twice),
-                        std::abs(above[middle + c] + below[middle + c] - twice),
-                        std::abs(above[left + c] + below[right + c] - twice),
-                        std::abs(above[right + c] + below[left + c] - twice)});
+  ForShares(picture.height_px, [&](int begin, int end) {
+    std::array<std::vector<int>, 3> rows;
+    std::vector<int> off(width);
+    CopyPadded(picture, begin - 1, &rows[0]);
+    CopyPadded(picture, begin, &rows[1]);
+    for (int y = begin; y < end; ++y) {
+      CopyPadded(picture, y + 1, &rows[2]);
+      const int* const above = rows[0].data();
+      const int* const here = rows[1].data();
+      const int* const below = rows[2].data();
+      int* const apart = off.data();
+      // Simple enough for the compiler to do several at once.
+      for (std::size_t i = 0; i < width; ++i) {
+        const std::size_t middle = i + kSparseChannels;
+        const std::size_t right = middle + kSparseChannels;
+        const int twice = 2 * here[middle];
+        const int across = std::abs(here[i] + here[right] - twice);
+        const int up = std::abs(above[middle] + below[middle] - twice);
+        const int falling = std::abs(above[i] + below[right] - twice);
+        const int rising = std::abs(above[right] + below[i] - twice);
+        const int straight = across > up ? across : up;
+        const int slanted = falling > rising ? falling : rising;
+        apart[i] = straight > slanted ? straight : slanted;
       }
-      rough[Offset(size, x, y)] = off > most ? 1 : 0;
+      for (int x = 0; x < picture.width_px; ++x) {
+        const int* const pixel = apart + kSparseChannels * static_cast<std::size_t>(x);
+        rough[Offset({picture.width_px, picture.height_px}, x, y)] =
+            std::max({pixel[0], pixel[1], pixel[2]}) > most ? 1 : 0;
+      }
+      std::swap(rows[0], rows[1]);
+      std::swap(rows[1], rows[2]);
     }
   });
   return rough;
 }
 
-// Interpolated between the pixels of the picture before.
-FineImage Spread(const FineImage& from, const glm::ivec2& size_px, const Places& columns,
-                 const Places& rows) {
-  FineImage to{size_px.x, size_px.y, {}};
-  const std::size_t width = kSparseChannels * static_cast<std::size_t>(size_px.x);
-  const std::size_t from_width = kSparseChannels * static_cast<std::size_t>(from.width_px);
-  to.rgb.resize(width * static_cast<std::size_t>(size_px.y));
-  ForRows(size_px.y, [&](int y) {
-    const auto row = static_cast<std::size_t>(y);
-    const std::uint16_t* const low =
-        from.rgb.data() + from_width * static_cast<std::size_t>(rows.before[row]);
-    const std::uint16_t* const high =
-        from.rgb.data() + from_width * static_cast<std::size_t>(rows.after[row]);
-    const int up = rows.weight[row];
-    thread_local std::vector<int> blended;
-    blended.resize(from_width);
-    int* const mixed = blended.data();
-    for (std::size_t i = 0; i < from_width; ++i) {
-      mixed[i] = ((kOne - up) * low[i] + up * high[i]) / kOne;
+// An interpolated value, between those on both sides: beside an edge it would shoot beyond them.
+inline float Limited(float value, float before, float after) {
+  const float low = before < after ? before : after;
+  const float high = before < after ? after : before;
+  const float above = value > low ? value : low;
+  return above < high ? above : high;
+}
+
+// Row `y` of a picture with the columns of a finer one. Pixels are of four values, which the
+// compiler works on at once.
+void Widen(const FineImage& from, int y, const Places& columns, float* out) {
+  thread_local std::vector<glm::vec4> pixels;
+  pixels.resize(static_cast<std::size_t>(from.width_px));
+  const std::uint16_t* row = RowOf(from, y);
+  for (glm::vec4& pixel : pixels) {
+    pixel = glm::vec4(row[0], row[1], row[2], 0.0F);
+    row += kSparseChannels;
+  }
+  const glm::vec4* const in = pixels.data();
+  for (std::size_t x = 0; x < columns.taps.size(); ++x, out += kSparseChannels) {
+    const auto [of_a, of_b, of_c, of_d] = columns.weights[x];
+    const auto [a, b, c, d] = columns.taps[x];
+    const glm::vec4 sum = (of_a * in[a] + of_b * in[b]) + (of_c * in[c] + of_d * in[d]);
+    for (int i = 0; i < static_cast<int>(kSparseChannels); ++i) {
+      out[i] = Limited(sum[i], in[b][i], in[c][i]);
     }
-    std::uint16_t* out = to.rgb.data() + width * row;
-    for (int x = 0; x < size_px.x; ++x, out += kSparseChannels) {
-      const auto column = static_cast<std::size_t>(x);
-      const int* const a =
-          mixed + kSparseChannels * static_cast<std::size_t>(columns.before[column]);
-      const int* const b =
-          mixed + kSparseChannels * static_cast<std::size_t>(columns.after[column]);
-      const int right = columns.weight[column];
-      for (std::size_t c = 0; c < kSparseChannels; ++c) {
-        out[c] = static_cast<std::uint16_t>(((kOne - right) * a[c] + right * b[c]) / kOne);
+  }
+}
+
+// Interpolated between the pixels of the picture before.
+FineImage Spread(const FineImage& from, const Places& columns, const Places& rows) {
+  const std::size_t width = kSparseChannels * columns.taps.size();
+  FineImage to{static_cast<int>(columns.taps.size()), static_cast<int>(rows.taps.size()), {}};
+  to.rgb.resize(width * rows.taps.size());
+  ForShares(to.height_px, [&](int begin, int end) {
+    const int first = rows.taps[static_cast<std::size_t>(begin)].front();
+    const int last = rows.taps[static_cast<std::size_t>(end) - 1].back();
+    thread_local std::vector<float> widened;
+    widened.resize(width * static_cast<std::size_t>(last - first + 1));
+    const auto wide = [&](int y) {
+      return widened.data() + width * static_cast<std::size_t>(y - first);
+    };
+    for (int y = first; y <= last; ++y) Widen(from, y, columns, wide(y));
+    for (int y = begin; y < end; ++y) {
+      const auto row = static_cast<std::size_t>(y);
+      const auto [a, b, c, d] = rows.taps[row];
+      const auto [of_a, of_b, of_c, of_d] = rows.weights[row];
+      const std::array<const float*, kTaps> in{wide(a), wide(b), wide(c), wide(d)};
+      std::uint16_t* const out = to.rgb.data() + width * row;
+      for (std::size_t i = 0; i < width; ++i) {
+        const float value =
+            Limited((of_a * in[0][i] + of_b * in[1][i]) + (of_c * in[2][i] + of_d * in[3][i]),
+                    in[1][i], in[2][i]) +
+            0.5F;
+        out[i] = static_cast<std::uint16_t>(static_cast<int>(value));
       }
     }
   });
@@ -152,15 +229,20 @@ std::vector<glm::ivec2> ChildrenOf(const std::vector<std::uint8_t>& rough,
 glm::ivec2 CoarsestOf(const glm::ivec2& size_px) { return (size_px + 3) / 4; }
 
 absl::StatusOr<FineImage> CompletePicture(FineImage coarsest, const glm::ivec2& size_px,
-                                          int contrast, const DrawPlaces& draw) {
+                                          double contrast, const DrawPlaces& draw) {
   FineImage picture = std::move(coarsest);
-  for (const glm::ivec2& finer_px : {(size_px + 1) / 2, size_px}) {
+  struct Finer {
+    glm::ivec2 size_px;
+    double contrast;
+  };
+  for (const auto& [finer_px, most] :
+       {Finer{(size_px + 1) / 2, contrast}, Finer{size_px, kLastContrast * contrast}}) {
     const glm::ivec2 before_px(picture.width_px, picture.height_px);
     const Places columns(finer_px.x, before_px.x);
     const Places rows(finer_px.y, before_px.y);
     const std::vector<glm::ivec2> chosen =
-        ChildrenOf(Rough(picture, contrast), before_px, columns, rows);
-    picture = Spread(picture, finer_px, columns, rows);
+        ChildrenOf(Rough(picture, most), before_px, columns, rows);
+    picture = Spread(picture, columns, rows);
     if (chosen.empty()) continue;
     std::vector<glm::vec2> places;
     places.reserve(chosen.size());

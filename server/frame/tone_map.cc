@@ -105,19 +105,23 @@ absl::StatusOr<float> ToneMapper::ExposureOf(const gl::Texture2D& linear,
                     kExposureAtZeroEv * kMaxFactor);
 }
 
-absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const scene::Scene& scene) {
+absl::StatusOr<double> ToneMapper::SetTone(const gl::Texture2D& linear, const scene::Scene& scene) {
   const scene::Display& display = scene.display;
-  base::Stopwatch stopwatch;
   const WhiteCard& card = white_cards_.Of(scene);
   const glm::vec3 balance = display.white_balance ? card.balance : glm::vec3(1.0F);
   THUNDERHEAD_ASSIGN_OR_RETURN(const float exposure, ExposureOf(linear, display, balance, card));
   tone_ = {exposure * balance, display.tone_map == scene::ToneMap::kFilmic};
+  return std::log2(exposure / kExposureAtZeroEv);
+}
+
+absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const scene::Scene& scene) {
+  base::Stopwatch stopwatch;
+  ToneMapped mapped;
+  THUNDERHEAD_ASSIGN_OR_RETURN(mapped.exposure_ev, SetTone(linear, scene));
   gl::Pieces& pieces = programs_->Pieces();
   double waited_ms = pieces.WaitedMs();
   THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA8, /*noise=*/true, &display_));
   glFinish();
-  ToneMapped mapped;
-  mapped.exposure_ev = std::log2(exposure / kExposureAtZeroEv);
   mapped.tone_ms = stopwatch.Restart() - (pieces.WaitedMs() - waited_ms);
   waited_ms = pieces.WaitedMs();
   THUNDERHEAD_ASSIGN_OR_RETURN(mapped.rgb, pixels_.Rgb(display_.texture, pieces));

@@ -44,8 +44,11 @@ class ToneMapper {
   // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
   absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
-  // The picture that Map was given last, which must still be there, as it was mapped; or another,
-  // with the tone of that.
+  // Sets the tone of what MapFine maps from now on: the exposure, whose EV it returns, the white
+  // balance and the curve of `linear`, a picture of `scene`, without mapping it. Map does it too.
+  absl::StatusOr<double> SetTone(const gl::Texture2D& linear, const scene::Scene& scene);
+
+  // A picture with the tone set last.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
 
   // In which it draws.
@@ -73,7 +76,7 @@ class ToneMapper {
   gl::WholeTarget whole_target_;
   PixelReader pixels_;
   gl::Texture2D brightest_;
-  Tone tone_;  // of the picture mapped last
+  Tone tone_;
   Display display_;
   Display fine_display_;
 };

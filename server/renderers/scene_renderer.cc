@@ -15,7 +15,7 @@ namespace thunderhead::renderers {
 namespace {
 
 // The air of coarse frames suits a picture so much larger along each side.
-constexpr int kCoarseAirScale = 2;
+constexpr float kCoarseAirScale = 1.4F;
 
 glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   const glm::dvec2 size(scene.output.width_px, scene.output.height_px);
@@ -223,7 +223,9 @@ absl::Status SceneRenderer::ShadeAir(const scene::Scene& scene, const RenderSett
   return Timed(workspace_.Pieces(), scene::FrameStage::kAir, times, [&] {
     return workspace_.surroundings.ShadeAir(
         scene, settings.view, workspace_.ground, Box(), workspace_.medium,
-        settings.detail_size.has_value() ? kCoarseAirScale * settings.eye_size : picture_px);
+        settings.detail_size.has_value()
+            ? glm::ivec2(kCoarseAirScale * glm::vec2(settings.eye_size))
+            : picture_px);
   });
 }
 

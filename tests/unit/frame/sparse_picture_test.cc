@@ -76,6 +76,28 @@ TEST(SparsePicture, FollowsASlopeWithoutAnyRays) {
   }
 }
 
+// Lines between pixels would be off by 3.5 steps.
+TEST(SparsePicture, FollowsACurveByItsNeighbours) {
+  Canvas canvas{[](glm::vec2 place) { return 0.5 + 0.4 * std::tanh(10.0 * place.x); }, {128, 96}};
+  const auto rgb = canvas.Complete(1000);
+  EXPECT_EQ(canvas.drawn, 0U);
+  EXPECT_LE(canvas.WorstOf(rgb, 0), 2.0);
+}
+
+// A bump of the half picture is not worth rays of the whole one, which it would be in the place of
+// a pixel of the quarter.
+TEST(SparsePicture, TheLastPicturesPixelsMayDifferByMore) {
+  const auto drawn_of = [](double height) {
+    Canvas canvas{[=](glm::vec2 place) { return place.x > 0.0F ? 0.3 + height : 0.3; }, {128, 96}};
+    std::vector<std::size_t> sizes;
+    canvas.Complete(kContrast);
+    return canvas.drawn;
+  };
+  // A step of one and a half of the contrast is drawn in the half picture alone, 4 columns of 48.
+  EXPECT_EQ(drawn_of(1.5 * kContrast / 255.0), 4U * 48U);
+  EXPECT_GT(drawn_of(1.5 * kLastContrast * kContrast / 255.0), 4U * 48U);
+}
+
 TEST(SparsePicture, AnEdgeIsAsSharpAsWithARayForEachPixel) {
   for (const glm::ivec2& size_px : {glm::ivec2(128, 96), glm::ivec2(121, 83)}) {
     Canvas canvas{[](glm::vec2 place) { return place.x + 0.4F * place.y > 0.13F ? 0.8 : 0.3; },
