@@ -90,6 +90,7 @@ renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuali
   if (!MovesSparsely(scene)) return drawn;
   drawn.coarse_px = frame::CoarsestOf({scene.output.width_px, scene.output.height_px});
   drawn.light_tolerance = kMovingLightTolerance;
+  drawn.light_layer = kMovingLightLayer;
   return drawn;
 }
 

@@ -25,6 +25,7 @@ inline constexpr double kMovingContrastPixels = 480.0 * 270.0;
 // Of the light while the sun or a field changes, and in the first picture at rest after it
 // (renderers::DrawQuality).
 inline constexpr double kMovingLightTolerance = 4e-3;
+inline constexpr double kMovingLightLayer = 1.6;
 
 // Frames of a moving scene that asks for more pixels have so many: the work that is done for each
 // of a picture's pixels, however few have rays, holds up all others (docs/reliability.md).

@@ -96,6 +96,7 @@ class Texture3D {
   void Upload(GLenum format, GLenum type, const void* texels);
 
   GLuint Get() const { return name_.Get(); }
+  GLenum InternalFormat() const { return internal_format_; }
   glm::ivec3 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/half_float.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "glm/common.hpp"
@@ -64,7 +65,7 @@ std::unique_ptr<Leaf> FilledLeaf(const VdbGrid& source, const glm::ivec3& first)
       for (int x = 0; x < cells.x; ++x) {
         const float value =
             values[static_cast<std::size_t>((z * kVdbBlockCells + y) * kVdbBlockCells + x)];
-        if (volume::HalfFromFloat(value) == 0) continue;
+        if (base::HalfFromFloat(value) == 0) continue;
         leaf->setValueOn(openvdb::Coord(first.x + x, first.y + y, first.z + z), value);
       }
     }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "absl/strings/str_format.h"
+#include "base/half_float.h"
 #include "measure/extremes_internal.h"
 #include "volume/extinction.h"
 #include "volume/field_scan.h"
@@ -64,7 +65,7 @@ Extreme HalfFloats() {
             double worst = 0.0;
             for (int i = 0; i <= kValues; ++i) {
               const auto single = static_cast<float>(6.2e-5 * std::exp(span * i / kValues));
-              const float half = FloatFromHalf(volume::HalfFromFloat(single));
+              const float half = FloatFromHalf(base::HalfFromFloat(single));
               worst = std::max(worst, std::abs(static_cast<double>(half) / single - 1.0));
             }
             return AtMost(worst, 0x1p-11);

@@ -3,6 +3,7 @@
 // no GL.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "glm/vec2.hpp"
@@ -35,17 +36,31 @@ class LitGround {
   float ShareAt(const glm::dvec3& place_m, const glm::vec3& outward = glm::vec3(0.0F)) const;
 
  private:
+  // Of 1 less the share, so that beyond the map there is none: it has a rim of zeros, one texel at
+  // the low sides and two at the high ones, by which nothing is looked up outside.
   struct Level {
-    glm::ivec2 size{0};
-    std::vector<float> dark;  // 1 less the share, so that beyond the map there is none
+    Level(const glm::ivec2& level_size, float level_scale);
+    float& At(const glm::ivec2& texel) { return dark[Index(texel)]; }
+    float At(const glm::ivec2& texel) const { return dark[Index(texel)]; }
+    std::size_t Index(const glm::ivec2& texel) const {
+      return static_cast<std::size_t>((texel.y + 1) * row + texel.x + 1);
+    }
+
+    glm::ivec2 size;
+    float scale;  // its texels in one of the map's
+    int row;      // with the rim
+    std::vector<float> dark;
   };
 
   static Level HalfOf(const Level& fine);
-  float Dark(const Level& level, const glm::vec2& texel) const;
-  float DarkWithin(const glm::vec2& texel, float radius_texels) const;
+  static float Dark(const Level& level, const glm::vec2& texel);
+  // Within a disc of the radius of a texel of level number `level`.
+  float DarkWithin(const glm::vec2& texel, float level) const;
   float GroundHeight(const glm::vec2& texel) const;
 
   GroundMap map_;
+  glm::dvec2 texels_per_m_{1.0};
+  double mean_texels_per_m_ = 1.0;
   std::vector<Level> levels_;
 };
 

@@ -65,6 +65,8 @@ struct DrawQuality {
   std::optional<glm::ivec2> coarse_px{};
   // Of the light that the diffusion equation gives; light that is known better is kept.
   double light_tolerance = kLightTolerance;
+  // Length of the light volume's layers over the usual one, at least 1; finer light is kept.
+  double light_layer = 1.0;
 
   bool operator==(const DrawQuality&) const = default;
 };

@@ -59,6 +59,7 @@ scene::Stage SceneRenderer::FirstStageAt(const scene::Scene& scene, const Fields
   const scene::Stage first = FirstStage(scene, fields);
   if (quality.light_detail != drawn_quality_.light_detail ||
       quality.light_tolerance < drawn_light_tolerance_ ||
+      quality.light_layer < drawn_light_layer_ ||
       quality.single_precision != drawn_quality_.single_precision) {
     return std::min(first, scene::Stage::kLight);
   }
@@ -100,7 +101,10 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(asked, fields);
   drawn_scene_.reset();
   if (first <= scene::Stage::kView) coarse_settings_.reset();
-  if (first <= scene::Stage::kLight) drawn_light_tolerance_ = quality.light_tolerance;
+  if (first <= scene::Stage::kLight) {
+    drawn_light_tolerance_ = quality.light_tolerance;
+    drawn_light_layer_ = quality.light_layer;
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
   StageTimes times;
   if (first <= scene::Stage::kExtinction) {

@@ -117,7 +117,9 @@ class SceneRenderer {
   std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
   DrawQuality drawn_quality_;
   bool view_is_drawn_ = false;  // else drawing it was cancelled
+  // Of the light as it is.
   double drawn_light_tolerance_ = kLightTolerance;
+  double drawn_light_layer_ = 1.0;
   std::optional<RenderSettings> coarse_settings_;  // of the last frame, if that is coarse
   int drawn_slices_ = 0;
   bool sunlight_changed_ = true;  // since the frame before

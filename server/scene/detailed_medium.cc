@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/half_float.h"
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/vector_relational.hpp"
@@ -100,7 +101,7 @@ volume::DrawnMedium::Channels DetailedMedium::Largest_per_m() const {
     const auto channels = static_cast<std::size_t>(plane.channels);
     for (std::size_t i = 0; i < plane.texels.size(); ++i) {
       float& of_channel = largest[first + i % channels];
-      of_channel = std::max(of_channel, volume::FloatFromHalf(plane.texels[i]));
+      of_channel = std::max(of_channel, base::FloatFromHalf(plane.texels[i]));
     }
     first += channels;
   }

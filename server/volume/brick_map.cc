@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/half_float.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
 
@@ -37,8 +38,7 @@ glm::ivec3 CellsAcross(const RegularGrid& grid, double side_in_coarsest) {
 
 // Half floats of 0 or more compare as their bits do.
 std::uint16_t TexelOf(double extinction_per_m, const ExtinctionVolume& volume) {
-  return HalfFromFloat(
-      std::min(static_cast<float>(extinction_per_m) / volume.extinction_per_m, 65504.0F));
+  return base::HalfFromFloat(static_cast<float>(extinction_per_m) / volume.extinction_per_m);
 }
 
 // Raises each cell's filling to that of the largest of its `channels` values.

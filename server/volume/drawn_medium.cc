@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/half_float.h"
 #include "glm/common.hpp"
 #include "glm/vec2.hpp"
 #include "glm/vector_relational.hpp"
@@ -102,7 +103,7 @@ void DrawnMedium::AddPlane(const ExtinctionPlane& plane, const Place& from, cons
   for (std::size_t i = 0; i < kCorners; ++i) {
     const std::uint16_t* texel = plane.texels.data() + kPlaneChannels * (from.cell + corners_[i]);
     for (std::size_t channel = 0; channel < kPlaneChannels; ++channel) {
-      sums[channel] += from.weights[i] * FloatFromHalf(texel[channel]);
+      sums[channel] += from.weights[i] * base::FloatFromHalf(texel[channel]);
     }
   }
   for (std::size_t channel = 0; channel < kPlaneChannels; ++channel) {

@@ -1,11 +1,11 @@
 #include "volume/extinction.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "base/half_float.h"
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
@@ -120,21 +120,12 @@ void FillPlane(const HydrometeorFields& fields, const std::vector<ExtinctionTerm
                       source, width, row.data() + channel, stride);
       }
       std::uint16_t* texels = plane->texels.data() + volume.grid.Offset(0, y, z) * stride;
-      for (std::size_t i = 0; i < row.size(); ++i) texels[i] = HalfFromFloat(row[i]);
+      for (std::size_t i = 0; i < row.size(); ++i) texels[i] = base::HalfFromFloat(row[i]);
     }
   }
 }
 
 }  // namespace
-
-std::uint16_t HalfFromFloat(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  // Adding 0.5 aligns a half's subnormal step with a float's last bit, so the addition itself
-  // rounds.
-  const std::uint32_t subnormal = std::bit_cast<std::uint32_t>(value + 0.5F) - 0x3F000000U;
-  const std::uint32_t normal = (bits + 0xFFFU + ((bits >> 13U) & 1U) - 0x38000000U) >> 13U;
-  return static_cast<std::uint16_t>(bits < 0x38800000U ? subnormal : normal);
-}
 
 float NegligibleExtinction_per_m(const RegularGrid& grid, float maximum_per_m) {
   const double diagonal_m = glm::length(glm::dvec3(grid.cells) * grid.spacing_m);

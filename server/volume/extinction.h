@@ -6,7 +6,6 @@
 // q_f: Riley et al. 2003 (AMS), eq. 4.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -63,14 +62,5 @@ float NegligibleExtinction_per_m(const RegularGrid& grid, float maximum_per_m);
 // Adds up `terms`, which use channels 0 to `channels` - 1.
 ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
                                    const std::vector<ExtinctionTerm>& terms, int channels);
-
-// The IEEE half float nearest to `value`, which is finite and from 0 to 65504.
-std::uint16_t HalfFromFloat(float value);
-
-// The value of a half float that is neither negative nor infinite.
-inline float FloatFromHalf(std::uint16_t half) {
-  // Moves the exponent from a half's bias to a float's, subnormal halves included.
-  return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 13U) * 0x1p112F;
-}
 
 }  // namespace thunderhead::volume

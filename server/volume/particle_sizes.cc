@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/half_float.h"
 #include "physics/particle_size.h"
 #include "volume/extinction.h"
 
@@ -65,7 +66,7 @@ ParticleSizes SizesOf(const ParticleSizes& origin, const std::vector<float>& con
         std::clamp(concentration_per_radius[cell] / concentration[cell],
                    1.0F / physics::kMaxRadius_m, 1.0F / physics::kMinRadius_m);
     sizes.inverse_radius[cell - sizes.first_cell] =
-        HalfFromFloat(inverse_radius_per_m / kInverseRadiusUnit_per_m);
+        base::HalfFromFloat(inverse_radius_per_m / kInverseRadiusUnit_per_m);
     mass += concentration[cell];
     mass_per_radius += static_cast<double>(concentration[cell]) * inverse_radius_per_m;
   }

@@ -5,14 +5,13 @@
 #include <limits>
 #include <thread>
 
+#include "base/half_float.h"
 #include "glm/common.hpp"
 #include "glm/vec3.hpp"
 #include "physics/chunked_work.h"
 
 namespace thunderhead::volume {
 namespace {
-
-constexpr float kLargestHalf = 65504.0F;
 
 using Channels = DrawnMedium::Channels;
 
@@ -110,7 +109,7 @@ std::vector<float> SumsWithout(const ExtinctionVolume& volume) {
   const glm::ivec3& size = volume.grid.cells;
   std::vector<float> sums(volume.grid.Offset(0, 0, 1) * channels, 0.0F);
   ForEachTexel(volume.planes, size.z, [&](std::uint16_t texel, std::size_t channel) {
-    sums[channel] += FloatFromHalf(texel);
+    sums[channel] += base::FloatFromHalf(texel);
   });
   const auto smooth = [&](std::size_t stride, int count, std::size_t at_first) {
     for (std::size_t channel = 0; channel < channels; ++channel) {
@@ -159,8 +158,8 @@ std::vector<float> WaterPathFactors(const std::vector<std::uint8_t>& control,
 void ScaleColumns(const std::vector<float>& factors, ExtinctionVolume* volume) {
   ForEachTexel(volume->planes, volume->grid.cells.z,
                [&](std::uint16_t& texel, std::size_t channel) {
-                 const float product = FloatFromHalf(texel) * factors[channel];
-                 texel = HalfFromFloat(std::min(product, kLargestHalf));
+                 const float product = base::FloatFromHalf(texel) * factors[channel];
+                 texel = base::HalfFromFloat(product);
                });
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/half_float.h"
 #include "comparisons.h"
 #include "glm/geometric.hpp"
 #include "glm/vector_relational.hpp"
@@ -89,7 +90,7 @@ TEST(MediumOf, HasTheBoxAndExtinctionThatTheRenderersDraw) {
         const float here = static_cast<float>(medium->Extinction_per_m(centre_m));
         const std::uint16_t texel = drawn.planes[0].texels[drawn.grid.Offset(x, y, z)];
         // Half floats round to 2^-11; double interpolation may land on the other side.
-        EXPECT_NEAR(volume::HalfFromFloat(here / drawn.extinction_per_m), texel, 1);
+        EXPECT_NEAR(base::HalfFromFloat(here / drawn.extinction_per_m), texel, 1);
       }
     }
   }

@@ -115,7 +115,8 @@ void DiffuseLight::Number() {
 }
 
 // Adds 1 / depth^2 of the nearer exit along an axis.
-void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all) {
+void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all,
+                             std::vector<glm::vec3>* outward) {
   const int length = cells_.size[axis];
   const std::array<int, 2> other = {(axis + 1) % 3, (axis + 2) % 3};
   glm::ivec3 unit(0);
@@ -149,7 +150,7 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
         const float low = 1.0F / std::max(down[i] * down[i], 1e-18F);
         const float high = 1.0F / std::max(depth * depth, 1e-18F);
         (*all)[cell] += low + high;
-        outward_[cell][axis] = high - low;
+        (*outward)[cell][axis] = high - low;
         sky_seen_[cell] += low * kSkySeen[static_cast<std::size_t>(2 * axis)] +
                            high * kSkySeen[static_cast<std::size_t>(2 * axis + 1)];
       }
@@ -163,14 +164,17 @@ void DiffuseLight::FindExits() {
   std::vector<float> sum(number_.size(), 0.0F);
   std::vector<float> all(number_.size(), 0.0F);
   sky_seen_.assign(number_.size(), glm::vec2(0.0F));
-  outward_.assign(number_.size(), glm::vec3(0.0F));
-  for (int axis = 0; axis < 3; ++axis) ScanExits(axis, &sum, &all);
+  std::vector<glm::vec3> outward(number_.size(), glm::vec3(0.0F));
+  for (int axis = 0; axis < 3; ++axis) ScanExits(axis, &sum, &all, &outward);
   exit_root_.assign(number_.size(), 0.0F);
   for (const std::int32_t cell : cell_of_) {
     const auto i = static_cast<std::size_t>(cell);
     exit_root_[i] = std::pow(sum[i], -0.25F);
     sky_seen_[i] /= all[i];
-    outward_[i] /= all[i];
+    outward_.push_back(outward[i] / all[i]);
+    const float exit = exit_root_[i] * exit_root_[i];
+    optics_.push_back({cells_.light_per_m[i], cells_.absorption_per_m[i], exit,
+                       exit * cells_.transport_per_m[i] / cells_.light_per_m[i]});
   }
   for (std::size_t i = 0; i < number_.size(); ++i) {
     if (number_[i] == kNone) sky_seen_[i] = glm::vec2(0.0F);
@@ -179,33 +183,35 @@ void DiffuseLight::FindExits() {
 
 void DiffuseLight::MakeLinks() {
   const double farthest_hop_m = kFarthestHop * cells_.cell_m.z * cells_.size.z;
-  links_.resize(cell_of_.size());
+  down_.resize(cell_of_.size());
+  up_.resize(cell_of_.size());
+  slack_.resize(cell_of_.size());
   diagonal_.assign(cell_of_.size(), 0.0F);
   for (std::size_t n = 0; n < cell_of_.size(); ++n) {
     const auto i = static_cast<std::size_t>(cell_of_[n]);
     const glm::ivec3 cell = cells_.CellAt(i);
     const float here = cells_.transport_per_m[i];
-    const float exit = exit_root_[i] * exit_root_[i];  // of light, as are the ways out below
+    const float exit = optics_[n].exit;  // of light, as are the ways out below
     for (int side = 0; side < 6; ++side) {
       const int axis = side / 2;
       glm::ivec3 next = cell;
       next[axis] += side % 2 == 1 ? 1 : -1;
       const bool inside = next[axis] >= 0 && next[axis] < cells_.size[axis];
       const std::size_t j = inside ? cells_.Offset(next) : 0;
-      Links& links = links_[n];
-      links.to[side] = inside ? number_[j] : kNone;
-      const float there = links.to[side] == kNone ? 0.0F : cells_.transport_per_m[j];
+      const std::int32_t to = inside ? number_[j] : kNone;
+      const float there = to == kNone ? 0.0F : cells_.transport_per_m[j];
       const float depth = static_cast<float>(0.5 * cells_.cell_m[axis]) * (here + there);
       const float out = static_cast<float>(0.5 * cells_.cell_m[axis]) * cells_.light_per_m[i];
-      if (links.to[side] == kNone) {
-        links.slack[side] = 2.0F * std::clamp(out / exit, 1.0F, kMaxSlant);
+      float& slack = slack_[n][static_cast<std::size_t>(side)];
+      if (to == kNone) {
+        slack = 2.0F * std::clamp(out / exit, 1.0F, kMaxSlant);
       } else {
-        links.slack[side] =
-            axis == 2 ? 0.0F : static_cast<float>(cells_.cell_m[axis] / farthest_hop_m);
+        slack = axis == 2 ? 0.0F : static_cast<float>(cells_.cell_m[axis] / farthest_hop_m);
       }
-      links.conductance[side] =
-          area_[axis] / std::max(3.0F * depth + links.slack[side], kMinResistance);
-      diagonal_[n] += links.conductance[side];
+      Links& links = side % 2 == 1 ? up_[n] : down_[n];
+      links.to[axis] = to;
+      links.conductance[axis] = area_[axis] / std::max(3.0F * depth + slack, kMinResistance);
+      diagonal_[n] += links.conductance[axis];
     }
     diagonal_[n] += static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i];
   }
@@ -219,10 +225,10 @@ void DiffuseLight::Factor() {
   ForBlocks([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       float pivot = diagonal_[n];
-      for (const int side : {0, 2, 4}) {
-        const std::int32_t to = links_[n].to[side];
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t to = down_[n].to[axis];
         if (to < static_cast<std::int32_t>(begin)) continue;  // kNone, too
-        const float conductance = links_[n].conductance[side];
+        const float conductance = down_[n].conductance[axis];
         pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
       }
       inverse_pivot_[n] = 1.0F / pivot;
@@ -241,19 +247,21 @@ void DiffuseLight::Precondition(const std::vector<float>& from, std::vector<floa
   ForBlocks([&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       float sum = from[n];
-      for (const int side : {0, 2, 4}) {
-        const std::int32_t other = links_[n].to[side];
+      const Links& down = down_[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t other = down.to[axis];
         if (other < static_cast<std::int32_t>(begin)) continue;  // kNone, too
-        sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
+        sum += down.conductance[axis] * x[static_cast<std::size_t>(other)];
       }
       x[n] = sum * inverse_pivot_[n];
     }
     for (std::size_t n = end; n-- > begin;) {
       float sum = 0.0F;
-      for (const int side : {1, 3, 5}) {
-        const std::int32_t other = links_[n].to[side];
+      const Links& up = up_[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t other = up.to[axis];
         if (other == kNone || other >= static_cast<std::int32_t>(end)) continue;
-        sum += links_[n].conductance[side] * x[static_cast<std::size_t>(other)];
+        sum += up.conductance[axis] * x[static_cast<std::size_t>(other)];
       }
       x[n] += sum * inverse_pivot_[n];
     }
@@ -264,10 +272,14 @@ void DiffuseLight::Apply(const std::vector<float>& from, std::vector<float>* to)
   ForShares(from.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       float sum = diagonal_[n] * from[n];
-      for (int side = 0; side < 6; ++side) {
-        const std::int32_t other = links_[n].to[side];
-        if (other == kNone) continue;
-        sum -= links_[n].conductance[side] * from[static_cast<std::size_t>(other)];
+      const Links& down = down_[n];
+      const Links& up = up_[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const Links* links : {&down, &up}) {
+          const std::int32_t other = links->to[axis];
+          if (other == kNone) continue;
+          sum -= links->conductance[axis] * from[static_cast<std::size_t>(other)];
+        }
       }
       (*to)[n] = sum;
     }
@@ -309,11 +321,6 @@ void DiffuseLight::Solve(const std::vector<float>& right, double tolerance,
   }
 }
 
-float DiffuseLight::TransportExit(std::size_t cell) const {
-  return exit_root_[cell] * exit_root_[cell] * cells_.transport_per_m[cell] /
-         cells_.light_per_m[cell];
-}
-
 void DiffuseLight::SolveSky() {
   sky_inward_.assign(number_.size(), glm::vec2(0.0F));
   for (int part = 0; part < 2; ++part) SolveSkyPart(part);
@@ -324,9 +331,10 @@ void DiffuseLight::SolveSky() {
 void DiffuseLight::SolveSkyPart(int part) {
   std::vector<float> right(cell_of_.size(), 0.0F);
   for (std::size_t n = 0; n < right.size(); ++n) {
-    for (std::size_t side = 0; side < 6; ++side) {
-      if (links_[n].to[side] != kNone) continue;
-      right[n] += links_[n].conductance[side] * kSkySeen[side][part];
+    for (int side = 0; side < 6; ++side) {
+      const Links& links = LinksOf(n, side);
+      if (links.to[side / 2] != kNone) continue;
+      right[n] += links.conductance[side / 2] * kSkySeen[static_cast<std::size_t>(side)][part];
     }
   }
   std::vector<float> share(right.size(), 0.5F * static_cast<float>(part));
@@ -335,7 +343,7 @@ void DiffuseLight::SolveSkyPart(int part) {
   for (std::size_t n = 0; n < share.size(); ++n) {
     const auto i = static_cast<std::size_t>(cell_of_[n]);
     const float seen = sky_seen_[i][part];
-    sky_inward_[i][part] = (seen - share[n]) / (3.0F * TransportExit(i) + 2.0F);
+    sky_inward_[i][part] = (seen - share[n]) / (3.0F * optics_[n].transport_exit + 2.0F);
     sky_seen_[i][part] = (1.0F - walls_.Hidden()[i]) * seen;
     own[i] = sky_seen_[i][part] - 4.0F * sky_inward_[i][part];
   }
@@ -360,7 +368,7 @@ void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
     for (std::size_t n = begin; n < end; ++n) {
       SunAt& here = sun_[n];
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::int32_t to = links_[n].to[2 * axis + 1];
+        const std::int32_t to = up_[n].to[axis];
         if (to == kNone) continue;
         const SunAt& there = sun_[static_cast<std::size_t>(to)];
         const float most = std::max(here.transmittance, there.transmittance);
@@ -373,8 +381,7 @@ void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
 
 // Sunlight that cell number `n` makes diffuse.
 float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const {
-  const auto i = static_cast<std::size_t>(cell_of_[n]);
-  const Links& links = links_[n];
+  const Optics& here = optics_[n];
   const float depth = sun_[n].depth;
   float scattered = 0.0F;
   float mean_transmittance = 0.0F;
@@ -384,30 +391,31 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
     // Component of the sunlight's direction of travel along this side's outward normal.
     const auto along = (up ? -1.0F : 1.0F) * static_cast<float>(towards_sun[axis]);
     const auto half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
+    const Links& links = LinksOf(n, side);
+    const float slack = slack_[n][static_cast<std::size_t>(side)];
     float flux = 0.0F;
     float transmittance = 0.0F;
-    if (links.to[side] != kNone) {
-      const auto other = static_cast<std::size_t>(links.to[side]);
-      const auto j = static_cast<std::size_t>(cell_of_[other]);
-      const float between = half_m * (cells_.light_per_m[i] + cells_.light_per_m[j]);
+    if (links.to[axis] != kNone) {
+      const auto other = static_cast<std::size_t>(links.to[axis]);
+      const float between = half_m * (here.light_per_m + optics_[other].light_per_m);
       transmittance = sun_[up ? n : other].mean_transmittance_up[axis];
       if (transmittance == 0.0F) continue;
-      flux = along * (3.0F * between + links.slack[side]) * transmittance;
+      flux = along * (3.0F * between + slack) * transmittance;
     } else {
-      const float out = half_m * cells_.light_per_m[i];
+      const float out = half_m * here.light_per_m;
       // The optical depth of sunlight at the surface, where it enters or leaves.
       const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
                                          : depth + out / std::max(along, 1e-3F);
       const float surface_transmittance = std::exp(-surface);
       transmittance =
           MeanTransmittance(std::max(sun_[n].transmittance, surface_transmittance), depth, surface);
-      flux = along * (3.0F * out * transmittance + links.slack[side] * surface_transmittance);
+      flux = along * (3.0F * out * transmittance + slack * surface_transmittance);
     }
-    scattered -= links.conductance[side] * flux;
+    scattered -= links.conductance[axis] * flux;
     mean_transmittance += transmittance / 6.0F;
   }
   return scattered -
-         static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i] * mean_transmittance;
+         static_cast<float>(cells_.cell_m.z) * here.absorption_per_m * mean_transmittance;
 }
 
 void DiffuseLight::BeginFluence(const glm::dvec3& towards_sun) {
@@ -438,33 +446,47 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
   });
   BeginFluence(towards_sun);
   Solve(right, tolerance, &fluence_);
-  net_inward_.assign(number_.size(), 0.0F);
-  std::vector<float> own(number_.size(), 0.0F);
+  std::vector<float> inward(count);
+  std::vector<float> own(count);
   ForShares(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const auto i = static_cast<std::size_t>(cell_of_[n]);
-      const float exit = exit_root_[i] * exit_root_[i];
+      const float exit = optics_[n].exit;
       const float depth = sun_[n].depth;
       const float lit = physics::glsl::lit_fluence(exit, depth);
-      net_inward_[i] = (lit - fluence_[n]) / (3.0F * TransportExit(i) + 2.0F);
-      own[i] = 4.0F * ((exit < depth ? exit / depth : 1.0F) - net_inward_[i]);
+      inward[n] = (lit - fluence_[n]) / (3.0F * optics_[n].transport_exit + 2.0F);
+      own[n] = 4.0F * ((exit < depth ? exit / depth : 1.0F) - inward[n]);
     }
   });
-  from_walls_ = walls_.Arriving(own);
+  from_walls_ = walls_.Arriving(ByCell(own));
+  net_inward_ = ByCell(inward);
   Spread(&net_inward_);
   return net_inward_;
 }
 
 std::vector<float> DiffuseLight::AtCells(const CellValue& value) const {
-  std::vector<float> values(number_.size(), 0.0F);
-  ForShares(cell_of_.size(), [&](std::size_t begin, std::size_t end) {
+  std::vector<float> values(cell_of_.size());
+  ForShares(values.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const auto i = static_cast<std::size_t>(cell_of_[n]);
-      values[i] = value((glm::dvec3(cells_.CellAt(i)) + 0.5) * cells_.cell_m, outward_[i]);
+      const glm::ivec3 cell = cells_.CellAt(static_cast<std::size_t>(cell_of_[n]));
+      values[n] = value((glm::dvec3(cell) + 0.5) * cells_.cell_m, outward_[n]);
     }
   });
-  Spread(&values);
-  return values;
+  std::vector<float> by_cell = ByCell(values);
+  Spread(&by_cell);
+  return by_cell;
+}
+
+// Cell by cell, as those are next to each other in memory, and all that there is by number is not
+// much.
+std::vector<float> DiffuseLight::ByCell(const std::vector<float>& by_number) const {
+  std::vector<float> by_cell(number_.size());
+  ForShares(by_cell.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::int32_t n = number_[i];
+      by_cell[i] = n == kNone ? 0.0F : by_number[static_cast<std::size_t>(n)];
+    }
+  });
+  return by_cell;
 }
 
 void DiffuseLight::FindFringe() {

@@ -7,6 +7,7 @@
 // depth is the mean of its ends', times its length.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -54,13 +55,20 @@ class DiffuseLight {
 
  private:
   static constexpr std::int32_t kNone = -1;
-  // The six sides of a cell: even numbers down, odd ones up an axis.
+  // A cell's links down each axis, or up each. Apart, as the solver reads one kind after the other,
+  // and waits for memory most of its time.
   struct Links {
-    std::int32_t to[6];
-    float conductance[6];
-    // Resistance to diffuse light besides three times the optical depth: at a surface twice the
-    // reciprocal of the face's cosine to it (Marshak's condition), else the limit of a hop.
-    float slack[6];
+    std::int32_t to[3];  // numbers; kNone: out of the medium
+    float conductance[3];
+  };
+  // Of one of a cell's six sides: even numbers down, odd ones up an axis.
+  const Links& LinksOf(std::size_t n, int side) const { return side % 2 == 1 ? up_[n] : down_[n]; }
+
+  struct Optics {
+    float light_per_m;
+    float absorption_per_m;
+    float exit;            // optical depth of `light` to the nearest exit
+    float transport_exit;  // the same path's of `transport`
   };
 
   // Sunlight in a cell, by number, of the sun that is being solved for.
@@ -79,8 +87,8 @@ class DiffuseLight {
   void FindTransmittances(const std::vector<float>& arrived_root);
   float SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const;
   void FindExits();
-  void ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all);
-  float TransportExit(std::size_t cell) const;
+  void ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all,
+                 std::vector<glm::vec3>* outward);
   void MakeLinks();
   // Calls `work` with the first number of each block and that after its last, on all threads.
   template <typename Work>
@@ -93,6 +101,8 @@ class DiffuseLight {
   // Makes of the last fluence the start for another sun.
   void BeginFluence(const glm::dvec3& towards_sun);
   void Solve(const std::vector<float>& right, double tolerance, std::vector<float>* solution);
+  // Values by number as values by cell: 0 in empty ones.
+  std::vector<float> ByCell(const std::vector<float>& by_number) const;
   // Sets empty cells beside others to the mean of those.
   template <typename Value>
   void Spread(std::vector<Value>* values) const;
@@ -103,11 +113,15 @@ class DiffuseLight {
   std::vector<std::int32_t> cell_of_;  // by number: column by column, upwards
   std::vector<std::size_t> blocks_;    // of whole columns: their first numbers, and the count
   std::vector<std::int32_t> fringe_;   // empty cells beside others
-  std::vector<Links> links_;           // by number
-  std::vector<float> diagonal_;        // by number
-  std::vector<float> inverse_pivot_;   // of the incomplete Cholesky factor
+  std::vector<Optics> optics_;         // by number, as are the next
+  std::vector<Links> down_, up_;
+  // By side. Resistance to diffuse light besides three times the optical depth: at a surface twice
+  // the reciprocal of the face's cosine to it (Marshak's condition), else the limit of a hop.
+  std::vector<std::array<float, 6>> slack_;
+  std::vector<float> diagonal_;       // by number
+  std::vector<float> inverse_pivot_;  // of the incomplete Cholesky factor
   std::vector<float> exit_root_;
-  std::vector<glm::vec3> outward_;  // of AtCells
+  std::vector<glm::vec3> outward_;  // of AtCells, by number
   std::vector<glm::vec2> sky_seen_;
   std::vector<glm::vec2> sky_inward_;
   std::vector<float> from_walls_;

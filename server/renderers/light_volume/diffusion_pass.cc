@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/half_float.h"
 #include "base/status.h"
 #include "gl/device_memory.h"
 #include "glm/common.hpp"
@@ -25,7 +26,7 @@ constexpr std::size_t kTexelsInShare = 32768;  // that a thread works on at a ti
 // Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
 // that is not empty.
 constexpr std::size_t kBytesPerCell = 64;
-constexpr std::size_t kBytesPerFullCell = 128;
+constexpr std::size_t kBytesPerFullCell = 160;
 
 std::size_t BytesFor(const DiffusionCells& cells) {
   const auto full = static_cast<std::size_t>(
@@ -67,14 +68,15 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
         light_->AtCells([&](const glm::dvec3& from_corner_m, const glm::vec3& outward) {
           return ground.ShareAt(medium.Bounds().grid.low_corner_m + from_corner_m, outward);
         });
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sun.size(), kTexelsInShare),
-                      [&](const auto& share) {
-                        for (std::size_t i = share.begin(); i != share.end(); ++i) {
-                          net_inward_texels_[i] = {sun[i], light_->FromWalls()[i],
-                                                   light_->SkyInward()[i].y, from_ground[i]};
-                        }
-                      });
-    net_inward_.Upload(GL_RGBA, GL_FLOAT, net_inward_texels_.data());
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, sun.size(), kTexelsInShare), [&](const auto& share) {
+          for (std::size_t i = share.begin(); i != share.end(); ++i) {
+            net_inward_texels_[i] = {
+                base::HalfFromFloat(sun[i]), base::HalfFromFloat(light_->FromWalls()[i]),
+                base::HalfFromFloat(light_->SkyInward()[i].y), base::HalfFromFloat(from_ground[i])};
+          }
+        });
+    net_inward_.Upload(GL_RGBA, GL_HALF_FLOAT, net_inward_texels_.data());
   });
 }
 
@@ -132,6 +134,19 @@ void DiffusionPass::SolveCells(DiffusionCells cells) {
 }
 
 absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
+  if (arrived.Size() == size_ && arrived.InternalFormat() == GL_R16F) {
+    // As it is, without a pass over cells of which most are empty.
+    arrived_halves_.resize(arrived_root_.size());
+    arrived.Download(GL_RED, GL_HALF_FLOAT, arrived_halves_.size() * sizeof(std::uint16_t),
+                     arrived_halves_.data());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, arrived_root_.size(), kTexelsInShare),
+                      [&](const auto& share) {
+                        for (std::size_t i = share.begin(); i != share.end(); ++i) {
+                          arrived_root_[i] = base::FloatFromHalf(arrived_halves_[i]);
+                        }
+                      });
+    return absl::OkStatus();
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::Compute("light_volume/sample_light.comp")));

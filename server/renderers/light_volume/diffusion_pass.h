@@ -4,6 +4,7 @@
 // context's thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -74,7 +75,8 @@ class DiffusionPass {
   // LitGround::ShareAt.
   gl::Texture3D net_inward_;
   std::vector<float> arrived_root_;
-  std::vector<glm::vec4> net_inward_texels_;
+  std::vector<std::uint16_t> arrived_halves_;
+  std::vector<std::array<std::uint16_t, 4>> net_inward_texels_;  // half floats
 };
 
 }  // namespace thunderhead::renderers

@@ -22,9 +22,9 @@ constexpr double kLayerInCells = 1.5;        // along them, of the path through 
 constexpr std::array kCorrectionUnits = {shaders::kCorrectionRedUnit, shaders::kCorrectionGreenUnit,
                                          shaders::kCorrectionBlueUnit};
 constexpr double kNearInTexels = 1.5;  // sampled next to a cell
-// Texels from cells that scatter within which the carried light is read: towards the sun, and over
-// one more along each axis by interpolation.
-constexpr double kReadTexels = kNearInTexels + 1.74;
+// Texels beyond those within which the carried light is read: over one more along each axis, by
+// interpolation.
+constexpr double kReadBeyond = 1.74;
 constexpr int kMaxGroupsInRow = 65535;      // what OpenGL 4.5 guarantees along each axis
 constexpr double kMarchedSample_ns = 15.0;  // what a sample of the medium may cost
 constexpr gl::PieceCost kArriveBlock{"arrive", 12000.0};
@@ -54,7 +54,8 @@ glm::vec2 NearStep(int slices) {
 struct LightVolumeRenderer::LightBox {
   LightFrame frame;
   double reach_m = 0.0;  // half its depth
-  double texel_m = 0.0;  // the longest side of a texel
+  double near_m = 0.0;   // sampled next to a cell towards the sun
+  double read_m = 0.0;   // from cells that scatter, within which the carried light is read
   glm::ivec3 size{1};
   int half_layer_steps = 1;  // samples of the medium in half a layer
 
@@ -74,21 +75,28 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   const int max_texels =
       std::max(static_cast<int>(kMaxLightTexels * settings.quality.light_detail), 1);
   // Finer texels than cells would carry no more detail.
-  texel_m =
+  const double texel_m =
       std::max(std::max(across_m.x, across_m.y) / max_texels,
                kLightTexelInCells / settings.quality.light_detail * std::min(cell_m.x, cell_m.y));
   const glm::dvec3 through_m = cell_m / glm::max(glm::abs(towards_sun), glm::dvec3(1e-6));
   const double layer_m = std::min(texel_m, kLayerInCells / settings.quality.light_detail *
                                                std::min({through_m.x, through_m.y, through_m.z}));
-  size = glm::clamp(glm::ivec3(glm::ceil(glm::dvec3(across_m / texel_m, 2.0 * reach_m / layer_m))),
-                    glm::ivec3(1), glm::ivec3(max_texels));
+  const auto layers_of = [&](double one_m) {
+    return std::clamp(static_cast<int>(std::ceil(2.0 * reach_m / one_m)), 1, max_texels);
+  };
+  int usual_layers = layers_of(layer_m);
+  size = glm::ivec3(
+      glm::clamp(glm::ivec2(glm::ceil(across_m / texel_m)), glm::ivec2(1), glm::ivec2(max_texels)),
+      layers_of(settings.quality.light_layer * layer_m));
   if (settings.Medium().transport == scene::Transport::kPaper) {
     // The paper's transport depends on the number of its steps: they are the scene's slices.
     const int slices = *scene::SlicesOf(settings.technique);
-    size.z = std::clamp((slices + 1) / 2, 1, max_texels);
+    size.z = usual_layers = std::clamp((slices + 1) / 2, 1, max_texels);
     half_layer_steps = std::max(1, (slices + size.z) / (2 * size.z));
   }
-  texel_m = std::max(texel_m, 2.0 * reach_m / size.z);
+  // Longer layers than usual leave what is sampled next to a cell as it is.
+  near_m = kNearInTexels * std::max(texel_m, 2.0 * reach_m / usual_layers);
+  read_m = near_m + kReadBeyond * std::max(texel_m, 2.0 * reach_m / size.z);
 }
 
 glm::mat4x3 LightVolumeRenderer::LightBox::FromLocal() const {
@@ -149,11 +157,10 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   program->Set(uniform::light_right_m, glm::vec3(box.frame.right * box.frame.half_extent_m.x));
   program->Set(uniform::light_up_m, glm::vec3(box.frame.up * box.frame.half_extent_m.y));
   program->Set(uniform::light_reach_m, static_cast<float>(box.reach_m));
-  const double read_m = kReadTexels * box.texel_m;
-  program->Set(uniform::read_m, static_cast<float>(read_m));
+  program->Set(uniform::read_m, static_cast<float>(box.read_m));
   program->Set(uniform::half_layer_steps, box.half_layer_steps);
   program->Set(uniform::read_bricks,
-               static_cast<int>(std::ceil(read_m / medium.ShortestBrickSide_m())));
+               static_cast<int>(std::ceil(box.read_m / medium.ShortestBrickSide_m())));
   program->Set(uniform::light_weights, medium.Weights(weights.light));
   program->Set(uniform::transport_weights, medium.Weights(weights.transport));
   program->Set(uniform::cumulative_phase, weights.cumulative_phase);
@@ -183,7 +190,7 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   program->Set(uniform::cell_count, cells);
   program->Set(uniform::light_from_local, box.FromLocal());
   program->Set(uniform::towards_sun, glm::vec3(box.frame.towards_sun));
-  program->Set(uniform::near_m, static_cast<float>(kNearInTexels * box.texel_m));
+  program->Set(uniform::near_m, static_cast<float>(box.near_m));
   program->Set(uniform::light_weights, medium.Weights(weights.light));
   carried_.Bind(shaders::kCarriedUnit);
   thickness_.Bind(shaders::kThicknessUnit);

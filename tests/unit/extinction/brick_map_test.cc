@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "base/half_float.h"
 #include "glm/common.hpp"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -28,7 +29,7 @@ ExtinctionVolume VolumeWith(const glm::ivec3& cells, const std::vector<Filled>& 
   plane.texels.assign(2 * volume.grid.CellCount(), 0);
   for (const Filled& fill : filled) {
     plane.texels[2 * volume.grid.Offset(fill.cell.x, fill.cell.y, fill.cell.z) + 1] =
-        HalfFromFloat(fill.extinction_per_m / volume.extinction_per_m);
+        base::HalfFromFloat(fill.extinction_per_m / volume.extinction_per_m);
   }
   volume.planes.push_back(std::move(plane));
   return volume;
@@ -139,8 +140,8 @@ TEST(BrickMap, TakesTheMostOfAllChannelsOfAllPlanes) {
     plane.texels.assign(static_cast<std::size_t>(channels) * volume.grid.CellCount(), 0);
     volume.planes.push_back(std::move(plane));
   }
-  volume.planes[0].texels[4 * volume.grid.Offset(2, 2, 2) + 3] = HalfFromFloat(100.0F);
-  volume.planes[1].texels[volume.grid.Offset(6, 6, 6)] = HalfFromFloat(1e-3F);
+  volume.planes[0].texels[4 * volume.grid.Offset(2, 2, 2) + 3] = base::HalfFromFloat(100.0F);
+  volume.planes[1].texels[volume.grid.Offset(6, 6, 6)] = base::HalfFromFloat(1e-3F);
   const BrickMap map = BrickMapOf(volume);
   EXPECT_EQ(ContentAt(map, 2, 2, 1), BrickMap::kThick);
   EXPECT_EQ(ContentAt(map, 6, 6, 3), BrickMap::kThin);

@@ -30,16 +30,6 @@ float TexelPerM(const ExtinctionVolume& volume, int x, int y, int z, int channel
   return glm::unpackHalf1x16(plane.texels[offset]) * volume.extinction_per_m;
 }
 
-TEST(HalfFromFloat, RoundsToTheNearestHalf) {
-  for (std::uint32_t half = 0; half < 0x7BFF; ++half) {
-    const float low = glm::unpackHalf1x16(static_cast<std::uint16_t>(half));
-    const float high = glm::unpackHalf1x16(static_cast<std::uint16_t>(half + 1));
-    ASSERT_EQ(HalfFromFloat(low), half);
-    ASSERT_EQ(HalfFromFloat(low + 0.4F * (high - low)), half);
-    ASSERT_EQ(HalfFromFloat(low + 0.6F * (high - low)), half + 1);
-  }
-}
-
 TEST(Extinction, AddsFieldsIntoTheirChannels) {
   HydrometeorFields fields = TwoFields();
   fields.fields[0].concentration_kg_per_m3[fields.grid.Offset(3, 2, 1)] = 1e-3F;

@@ -1,0 +1,32 @@
+// IEEE half floats, as textures have them.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace thunderhead::base {
+
+inline constexpr float kLargestHalf = 65504.0F;
+
+// The half float nearest to `value`, which is a number; one that is too large becomes the largest
+// of its sign.
+inline std::uint16_t HalfFromFloat(float value) {
+  const float size = std::min(std::abs(value), kLargestHalf);
+  const auto bits = std::bit_cast<std::uint32_t>(size);
+  // Adding 0.5 aligns a half's subnormal step with a float's last bit, so the addition itself
+  // rounds.
+  const std::uint32_t subnormal = std::bit_cast<std::uint32_t>(size + 0.5F) - 0x3F000000U;
+  const std::uint32_t normal = (bits + 0xFFFU + ((bits >> 13U) & 1U) - 0x38000000U) >> 13U;
+  const std::uint32_t sign = (std::bit_cast<std::uint32_t>(value) >> 16U) & 0x8000U;
+  return static_cast<std::uint16_t>((bits < 0x38800000U ? subnormal : normal) | sign);
+}
+
+// The value of a half float that is neither negative nor infinite.
+inline float FloatFromHalf(std::uint16_t half) {
+  // Moves the exponent from a half's bias to a float's, subnormal halves included.
+  return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 13U) * 0x1p112F;
+}
+
+}  // namespace thunderhead::base
