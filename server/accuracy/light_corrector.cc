@@ -230,11 +230,15 @@ absl::Status LightCorrector::TraceProbe(const Probe& probe) {
 // Rays from random places on the ground in cosine-distributed directions, so that their mean
 // radiance is the ground's irradiance over pi.
 absl::Status LightCorrector::TraceGround() {
-  const std::uint64_t pass = ++ground_passes_;
-  if (!over_ground_.ground.has_value() || !over_ground_.sky) return absl::OkStatus();
+  const std::uint64_t pass = ground_passes_ + 1;
+  if (!over_ground_.ground.has_value() || !over_ground_.sky) {
+    ground_passes_ = pass;
+    return absl::OkStatus();
+  }
   std::vector<reference::Ray> rays;
   std::vector<glm::dvec3> places;
   std::vector<glm::dvec3> skies;
+  glm::dvec3 sky_sum = sky_sum_;
   for (int i = 0; i < kGroundRays; ++i) {
     reference::RandomStream random(kGroundSeed, pass, static_cast<std::uint32_t>(i));
     const glm::dvec2 place(random.Uniform(), random.Uniform());
@@ -243,15 +247,17 @@ absl::Status LightCorrector::TraceGround() {
     rays.push_back({glm::dvec3(from_m, over_ground_.ground->height_m + kAboveGround_m),
                     reference::SampleCosine({0.0, 0.0, 1.0}, &random)});
     skies.push_back(over_ground_.sky(rays.back().direction));
-    sky_sum_ += skies.back();
+    sky_sum += skies.back();
   }
-  const glm::dvec3 mean_sky = sky_sum_ / static_cast<double>(pass * kGroundRays);
+  const glm::dvec3 mean_sky = sky_sum / static_cast<double>(pass * kGroundRays);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec3> traced,
                                Traced(over_ground_, rays, kGroundSeed + pass, 1));
   for (std::size_t i = 0; i < rays.size(); ++i) {
     // Control variate: with the clear sky's known mean, rays that miss the storm add no noise.
     ground_fit_.Add({places[i], glm::dvec3(0.0), mean_sky, mean_sky + traced[i] - skies[i]});
   }
+  sky_sum_ = sky_sum;
+  ground_passes_ = pass;
   return absl::OkStatus();
 }
 

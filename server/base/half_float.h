@@ -10,9 +10,10 @@ namespace thunderhead::base {
 
 inline constexpr float kLargestHalf = 65504.0F;
 
-// The half float nearest to `value`, which is a number; one that is too large becomes the largest
-// of its sign.
+// The half float nearest to `value`; a number that is too large becomes the largest of its sign.
 inline std::uint16_t HalfFromFloat(float value) {
+  constexpr std::uint16_t kNotANumber = 0x7E00;
+  if (std::isnan(value)) return kNotANumber;
   const float size = std::min(std::abs(value), kLargestHalf);
   const auto bits = std::bit_cast<std::uint32_t>(size);
   // Adding 0.5 aligns a half's subnormal step with a float's last bit, so the addition itself
@@ -23,7 +24,7 @@ inline std::uint16_t HalfFromFloat(float value) {
   return static_cast<std::uint16_t>((bits < 0x38800000U ? subnormal : normal) | sign);
 }
 
-// The value of a half float that is neither negative nor infinite.
+// The value of a half float that is a number and not negative; infinity becomes 65536.
 inline float FloatFromHalf(std::uint16_t half) {
   // Moves the exponent from a half's bias to a float's, subnormal halves included.
   return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 13U) * 0x1p112F;

@@ -19,7 +19,6 @@
 #include "base/whole_file.h"
 #include "glm/common.hpp"
 #include "glm/vec2.hpp"
-#include "volume/extinction.h"
 
 namespace thunderhead::interchange {
 namespace {

@@ -7,7 +7,6 @@
 #include "absl/strings/str_format.h"
 #include "base/half_float.h"
 #include "measure/extremes_internal.h"
-#include "volume/extinction.h"
 #include "volume/field_scan.h"
 
 namespace thunderhead::measure::internal {

@@ -31,7 +31,7 @@ struct TraceRaysOptions {
 };
 
 // Radiance that arrives along each of `rays`: the mean of `paths_per_ray` estimates. The same, bit
-// bit, for any number of threads. Fails only as `wanted` does.
+// for bit, for any number of threads. Fails only as `wanted` does.
 absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
                                                   const Surroundings& surroundings,
                                                   const std::vector<Ray>& rays,

@@ -57,9 +57,9 @@ LitGround::Level LitGround::HalfOf(const Level& fine) {
 
 // Interpolated between texels' centres, at a place in the map's texels.
 float LitGround::Dark(const Level& level, const glm::vec2& texel) {
-  // From the middle of the rim's first texel.
+  // From the middle of the rim's first texel. In this order what is no number becomes 0.
   const glm::vec2 place =
-      glm::clamp(texel * level.scale + 0.5F, glm::vec2(0.0F), glm::vec2(level.size) + 1.0F);
+      glm::min(glm::max(glm::vec2(0.0F), texel * level.scale + 0.5F), glm::vec2(level.size) + 1.0F);
   const glm::ivec2 first(place);
   const glm::vec2 at = place - glm::vec2(first);
   const float* const south = &level.dark[static_cast<std::size_t>(first.y * level.row + first.x)];
@@ -80,7 +80,7 @@ float LitGround::DarkWithin(const glm::vec2& texel, float level) const {
 }
 
 float LitGround::GroundHeight(const glm::vec2& texel) const {
-  const glm::ivec2 cell(glm::clamp(texel, glm::vec2(0.0F), glm::vec2(map_.size - 1)));
+  const glm::ivec2 cell(glm::min(glm::max(glm::vec2(0.0F), texel), glm::vec2(map_.size - 1)));
   return map_.height_m[static_cast<std::size_t>(cell.y * map_.size.x + cell.x)];
 }
 
@@ -90,10 +90,11 @@ float LitGround::ShareAt(const glm::dvec3& place_m, const glm::vec3& outward) co
   const double height_m = std::max(place_m.z - GroundHeight(glm::vec2(below)), 0.0);
   const glm::vec2 texel(below + kWallSees * height_m * glm::dvec2(outward) * texels_per_m_);
   const auto height_texels = static_cast<float>(height_m * mean_texels_per_m_);
-  const float level = std::log2(std::max(height_texels, 1e-6F));
+  const float level = std::log2(std::max(1e-6F, height_texels));
   float dark = 0.0F;
-  for (const float of_disc : kDiscLevels)
+  for (const float of_disc : kDiscLevels) {
     dark += DarkWithin(texel, std::max(level + of_disc, 0.0F));
+  }
   return 1.0F - dark / static_cast<float>(kDiscRadii.size());
 }
 

@@ -27,7 +27,8 @@ class Lane {
   using Work = std::function<void(const absl::StatusOr<FrameSource*>& source)>;
 
   struct Limits {
-    // True ends the work at its next piece, with CANCELLED.
+    // True ends the work at its next piece, or where it traces within some rays
+    // (base::DeviceTurn::Wanted), with CANCELLED. So do the others.
     std::shared_ptr<const std::atomic<bool>> cancelled = nullptr;
     // Of all its pieces; more ends it with RESOURCE_EXHAUSTED.
     double max_ms = 1e15;

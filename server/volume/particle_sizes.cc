@@ -6,7 +6,6 @@
 
 #include "base/half_float.h"
 #include "physics/particle_size.h"
-#include "volume/extinction.h"
 
 namespace thunderhead::volume {
 

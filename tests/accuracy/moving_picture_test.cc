@@ -200,7 +200,7 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   const auto coarse = renderer_->Draw(scene_, fields_, quality);
   ASSERT_TRUE(coarse.ok()) << coarse.status();
   // An image_scale so large that no contrast is small enough.
-  const FrameQuality all{.image_scale = 100.0, .sparse = true};
+  const FrameQuality all{.image_scale = 1e4, .sparse = true};
   renderers::StageTimes times;
   const auto whole = CompleteMoving(
       *coarse, scene_, all, *tone_mapper_,

@@ -161,7 +161,7 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
 
 TEST(WatchFramesTest, CoarseWhileChangingRefinedAtRest) {
   FakeService service;
-  service.machine->ms_per_mega_sample = 4000.0;  // 147 ms a full frame: refined in one step
+  service.machine->ms_per_mega_sample = 4800.0;  // 177 ms a full frame: refined in one step
   const std::string id = service.Open(SmallScene());
   Watcher watcher(service.stub(), id);
   ASSERT_TRUE(watcher.AwaitFrame(1, true));

@@ -165,13 +165,16 @@ void DiffuseLight::FindExits() {
   std::vector<float> all(number_.size(), 0.0F);
   sky_seen_.assign(number_.size(), glm::vec2(0.0F));
   std::vector<glm::vec3> outward(number_.size(), glm::vec3(0.0F));
+  outward_.reserve(cell_of_.size());
+  optics_.reserve(cell_of_.size());
   for (int axis = 0; axis < 3; ++axis) ScanExits(axis, &sum, &all, &outward);
   exit_root_.assign(number_.size(), 0.0F);
   for (const std::int32_t cell : cell_of_) {
     const auto i = static_cast<std::size_t>(cell);
     exit_root_[i] = std::pow(sum[i], -0.25F);
     sky_seen_[i] /= all[i];
-    outward_.push_back(outward[i] / all[i]);
+    // Where all depths are too great for numbers, no way out is nearer than another.
+    outward_.push_back(all[i] > 0.0F ? outward[i] / all[i] : glm::vec3(0.0F));
     const float exit = exit_root_[i] * exit_root_[i];
     optics_.push_back({cells_.light_per_m[i], cells_.absorption_per_m[i], exit,
                        exit * cells_.transport_per_m[i] / cells_.light_per_m[i]});

@@ -26,7 +26,7 @@ constexpr std::size_t kTexelsInShare = 32768;  // that a thread works on at a ti
 // Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
 // that is not empty.
 constexpr std::size_t kBytesPerCell = 64;
-constexpr std::size_t kBytesPerFullCell = 160;
+constexpr std::size_t kBytesPerFullCell = 172;
 
 std::size_t BytesFor(const DiffusionCells& cells) {
   const auto full = static_cast<std::size_t>(
@@ -90,7 +90,7 @@ absl::StatusOr<DiffusionCells> DiffusionPass::SampleCells(const ResidentMedium& 
   if (size_ != size) {
     size_ = size;
     sampled_cells_ = gl::Texture3D(GL_RGBA32F, size);
-    sampled_light_ = gl::Texture3D(GL_R32F, size);
+    sampled_light_ = {};
     exits_ = gl::Texture3D(GL_RGBA16F, size);
     net_inward_ = gl::Texture3D(GL_RGBA16F, size);
   }
@@ -150,6 +150,7 @@ absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::Compute("light_volume/sample_light.comp")));
+  if (sampled_light_.Size() != size_) sampled_light_ = gl::Texture3D(GL_R32F, size_);
   program->Set(uniform::cell_count, size_);
   arrived.Bind(shaders::kArrivedUnit);
   sampled_light_.BindImage(shaders::kSampledLightImage, GL_WRITE_ONLY);

@@ -22,8 +22,8 @@ constexpr double kLayerInCells = 1.5;        // along them, of the path through 
 constexpr std::array kCorrectionUnits = {shaders::kCorrectionRedUnit, shaders::kCorrectionGreenUnit,
                                          shaders::kCorrectionBlueUnit};
 constexpr double kNearInTexels = 1.5;  // sampled next to a cell
-// Texels beyond those within which the carried light is read: over one more along each axis, by
-// interpolation.
+// Texels beyond the end of that path within which the carried light is read: one along each axis,
+// by interpolation.
 constexpr double kReadBeyond = 1.74;
 constexpr int kMaxGroupsInRow = 65535;      // what OpenGL 4.5 guarantees along each axis
 constexpr double kMarchedSample_ns = 15.0;  // what a sample of the medium may cost

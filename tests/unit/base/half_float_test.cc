@@ -27,5 +27,12 @@ TEST(HalfFromFloat, WhatIsTooLargeIsTheLargest) {
   EXPECT_EQ(HalfFromFloat(-std::numeric_limits<float>::infinity()), 0xFBFF);
 }
 
+TEST(HalfFromFloat, WhatIsNoNumberStaysNone) {
+  const std::uint16_t half = HalfFromFloat(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_TRUE(std::isnan(glm::unpackHalf1x16(half)));
+}
+
+TEST(FloatFromHalf, InfinityIsBeyondTheLargest) { EXPECT_EQ(FloatFromHalf(0x7C00), 65536.0F); }
+
 }  // namespace
 }  // namespace thunderhead::base

@@ -84,12 +84,11 @@ TEST(SparsePicture, FollowsACurveByItsNeighbours) {
   EXPECT_LE(canvas.WorstOf(rgb, 0), 2.0);
 }
 
-// A bump of the half picture is not worth rays of the whole one, which it would be in the place of
-// a pixel of the quarter.
+// A step that is worth rays in the place of a pixel of the quarter is not worth any in that of one
+// of the half picture.
 TEST(SparsePicture, TheLastPicturesPixelsMayDifferByMore) {
   const auto drawn_of = [](double height) {
     Canvas canvas{[=](glm::vec2 place) { return place.x > 0.0F ? 0.3 + height : 0.3; }, {128, 96}};
-    std::vector<std::size_t> sizes;
     canvas.Complete(kContrast);
     return canvas.drawn;
   };

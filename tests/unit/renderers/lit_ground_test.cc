@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
+#include "glm/common.hpp"
 #include "glm/geometric.hpp"
 #include "gtest/gtest.h"
 
@@ -38,6 +40,48 @@ TEST(LitGround, OpenGroundIsLitAlike) {
   for (const double height_m : {300.0, 900.0, 2e4}) {
     EXPECT_FLOAT_EQ(open.ShareAt({-7e3, 25e3, height_m}), 1.0F);
   }
+}
+
+// Of any shape; on the ground the share is that of the map, interpolated.
+TEST(LitGround, OnTheGroundItIsTheMap) {
+  for (const glm::ivec2& size :
+       {glm::ivec2(1), glm::ivec2(1, 7), glm::ivec2(5, 192), glm::ivec2(3, 2)}) {
+    GroundMap map;
+    map.size = size;
+    map.texel_m = {200.0, 500.0};
+    map.low_m = {-1000.0, 3000.0};
+    for (int i = 0; i < size.x * size.y; ++i) {
+      map.share.push_back(0.1F * static_cast<float>(i % 7));
+      map.height_m.push_back(50.0F);
+    }
+    const LitGround ground(map);
+    const auto dark = [&](int x, int y) {
+      if (x < 0 || y < 0 || x >= size.x || y >= size.y) return 0.0;
+      return 1.0 - static_cast<double>(map.share[static_cast<std::size_t>(y * size.x + x)]);
+    };
+    for (double y = -2.25; y < size.y + 2.0; y += 0.75) {
+      for (double x = -2.25; x < size.x + 2.0; x += 0.75) {
+        const double west = std::floor(x - 0.5);
+        const double south = std::floor(y - 0.5);
+        const glm::ivec2 at(west, south);
+        const glm::dvec2 share(x - 0.5 - west, y - 0.5 - south);
+        const double expected =
+            glm::mix(glm::mix(dark(at.x, at.y), dark(at.x + 1, at.y), share.x),
+                     glm::mix(dark(at.x, at.y + 1), dark(at.x + 1, at.y + 1), share.x), share.y);
+        const glm::dvec2 place_m = map.low_m + glm::dvec2(x, y) * map.texel_m;
+        ASSERT_NEAR(ground.ShareAt({place_m, 50.0}), 1.0 - expected, 1e-5)
+            << size.x << " x " << size.y << ": " << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(LitGround, WhatIsNoNumberIsLookedUpNowhereElse) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const LitGround ground = DarkDisc(3000.0);
+  (void)ground.ShareAt({0.0, 0.0, 900.0}, glm::vec3(none));
+  (void)ground.ShareAt(glm::dvec3(static_cast<double>(none)));
+  (void)ground.ShareAt({1e30, -1e30, 900.0}, glm::vec3(1e30F));
 }
 
 TEST(LitGround, AboveADarkDiscComesWhatALevelFaceGets) {
