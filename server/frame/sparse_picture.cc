@@ -26,8 +26,9 @@ constexpr std::size_t kTaps = 4;
 // Where a finer picture's columns or rows are in the one before it.
 struct Places {
   std::vector<int> parent;  // in whose place each is
-  // What each is interpolated from, and by which weights: cubic convolution with a = -1/2 (Keys
-  // 1981, "Cubic convolution interpolation for digital image processing", eq. 15).
+  // Columns or rows of that picture from which each is interpolated, and their weights: cubic
+  // convolution with a = -1/2 (Keys 1981, "Cubic convolution interpolation for digital image
+  // processing", eq. 15).
   std::vector<std::array<int, kTaps>> taps;
   std::vector<std::array<float, kTaps>> weights;
 

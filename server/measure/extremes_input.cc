@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_format.h"
 #include "base/half_float.h"
+#include "glm/gtc/packing.hpp"
 #include "measure/extremes_internal.h"
 #include "volume/field_scan.h"
 
@@ -50,12 +51,6 @@ Extreme MixingRatios(const std::string& name, const std::vector<float>& values, 
           }};
 }
 
-float FloatFromHalf(std::uint16_t half) {
-  const int exponent = half >> 10U;
-  const float mantissa = static_cast<float>(half & 0x3FFU) / 1024.0F;
-  return exponent == 0 ? std::ldexp(mantissa, -14) : std::ldexp(1.0F + mantissa, exponent - 15);
-}
-
 Extreme HalfFloats() {
   return {"half floats: relative error from 6.1e-5 to 65504",
           [](Probe&) -> absl::StatusOr<Verdict> {
@@ -64,7 +59,7 @@ Extreme HalfFloats() {
             double worst = 0.0;
             for (int i = 0; i <= kValues; ++i) {
               const auto single = static_cast<float>(6.2e-5 * std::exp(span * i / kValues));
-              const float half = FloatFromHalf(base::HalfFromFloat(single));
+              const float half = glm::unpackHalf1x16(base::HalfFromFloat(single));
               worst = std::max(worst, std::abs(static_cast<double>(half) / single - 1.0));
             }
             return AtMost(worst, 0x1p-11);
