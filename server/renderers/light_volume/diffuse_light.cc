@@ -1,24 +1,19 @@
 #include "renderers/light_volume/diffuse_light.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 
 #include "base/status.h"
 #include "glm/geometric.hpp"
 #include "physics/optics.h"
+#include "renderers/light_volume/shares.h"
 
 namespace thunderhead::renderers {
 namespace {
 
-// Cells through which light loses less than this are empty.
-constexpr float kEmptyDepth = 1e-4F;
-constexpr int kMaxIterations = 200;
 constexpr double kSkyTolerance = 2e-4;
 // Maximum factor by which leaving a face aslant lengthens the path to the surface.
 constexpr float kMaxSlant = 4.0F;
@@ -46,72 +41,18 @@ float MeanTransmittance(float transmittance, float from, float to) {
   return transmittance * physics::glsl::mean_transmittance(std::abs(to - from));
 }
 
-// Cells that a thread works on at a time. Sums are of shares, in order, so that they do not depend
-// on the number of threads.
-constexpr std::size_t kShare = 4096;
-
-// Calls `work` with the shares of `count` cells, on all threads.
-template <typename Work>
-void ForShares(std::size_t count, const Work& work) {
-  tbb::parallel_for(std::size_t{0}, (count + kShare - 1) / kShare, [&](std::size_t share) {
-    work(share * kShare, std::min((share + 1) * kShare, count));
-  });
-}
-
-double Dot(const std::vector<float>& a, const std::vector<float>& b) {
-  std::vector<double> sums((a.size() + kShare - 1) / kShare);
-  ForShares(a.size(), [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t n = begin; n < end; ++n) sum += static_cast<double>(a[n] * b[n]);
-    sums[begin / kShare] = sum;
-  });
-  return std::accumulate(sums.begin(), sums.end(), 0.0);
-}
-
-// Blocks of columns that are preconditioned each by itself, at the same time.
-constexpr std::size_t kMaxBlocks = 16;
-
 }  // namespace
 
-DiffuseLight::DiffuseLight(DiffusionCells cells) : cells_(std::move(cells)), walls_(cells_) {
+DiffuseLight::DiffuseLight(DiffusionCells cells)
+    : cells_(std::move(cells)), walls_(cells_), numbered_(cells_) {
   const glm::dvec3& h = cells_.cell_m;
   area_[0] = static_cast<float>(h.z / h.x);
   area_[1] = static_cast<float>(h.z / h.y);
   area_[2] = 1.0F;
-  Number();
-  FindFringe();
   FindExits();
-  MakeLinks();
-  Factor();
+  Link();
   SolveSky();
-  fluence_.assign(cell_of_.size(), 0.0F);
-}
-
-void DiffuseLight::Number() {
-  const auto smallest =
-      static_cast<float>(std::min({cells_.cell_m.x, cells_.cell_m.y, cells_.cell_m.z}));
-  number_.assign(cells_.light_per_m.size(), kNone);
-  const glm::ivec3& size = cells_.size;
-  std::vector<std::int32_t> column_of;  // by number
-  for (int y = 0; y < size.y; ++y) {
-    for (int x = 0; x < size.x; ++x) {
-      for (int z = 0; z < size.z; ++z) {
-        const std::size_t i = cells_.Offset({x, y, z});
-        if (cells_.light_per_m[i] * smallest <= kEmptyDepth) continue;
-        number_[i] = static_cast<std::int32_t>(cell_of_.size());
-        cell_of_.push_back(static_cast<std::int32_t>(i));
-        column_of.push_back(y * size.x + x);
-      }
-    }
-  }
-  const std::size_t count = cell_of_.size();
-  const std::size_t usual = std::max((count + kMaxBlocks - 1) / kMaxBlocks, kShare);
-  blocks_ = {0};
-  for (std::size_t n = 1; n < count; ++n) {
-    const bool begins_column = column_of[n] != column_of[n - 1];
-    if (begins_column && n >= blocks_.back() + usual) blocks_.push_back(n);
-  }
-  blocks_.push_back(count);
+  fluence_.assign(numbered_.Count(), 0.0F);
 }
 
 // Adds 1 / depth^2 of the nearer exit along an axis.
@@ -134,7 +75,7 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
       float before = 0.0F;
       for (std::size_t i = 0; i < down.size(); ++i) {
         const std::size_t cell = first + i * stride;
-        const float here = number_[cell] == kNone ? 0.0F : cells_.light_per_m[cell];
+        const float here = numbered_.IsEmpty(cell) ? 0.0F : cells_.light_per_m[cell];
         depth = before > 0.0F ? depth + half_m * (before + here) : half_m * here;
         down[i] = depth;
         before = here;
@@ -142,7 +83,7 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
       depth = before = 0.0F;
       for (std::size_t i = down.size(); i-- > 0;) {
         const std::size_t cell = first + i * stride;
-        const float here = number_[cell] == kNone ? 0.0F : cells_.light_per_m[cell];
+        const float here = numbered_.IsEmpty(cell) ? 0.0F : cells_.light_per_m[cell];
         depth = before > 0.0F ? depth + half_m * (before + here) : half_m * here;
         before = here;
         const float nearer = std::max(std::min(down[i], depth), 1e-9F);
@@ -161,16 +102,16 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
 // For a plane surface with normal n, the distance out along axis k is t / |n_k|, so that squares of
 // reciprocals add up to that of the shortest distance t, in whatever direction the surface faces.
 void DiffuseLight::FindExits() {
-  std::vector<float> sum(number_.size(), 0.0F);
-  std::vector<float> all(number_.size(), 0.0F);
-  sky_seen_.assign(number_.size(), glm::vec2(0.0F));
-  std::vector<glm::vec3> outward(number_.size(), glm::vec3(0.0F));
-  outward_.reserve(cell_of_.size());
-  optics_.reserve(cell_of_.size());
+  std::vector<float> sum(numbered_.AllCells(), 0.0F);
+  std::vector<float> all(numbered_.AllCells(), 0.0F);
+  sky_seen_.assign(numbered_.AllCells(), glm::vec2(0.0F));
+  std::vector<glm::vec3> outward(numbered_.AllCells(), glm::vec3(0.0F));
+  outward_.reserve(numbered_.Count());
+  optics_.reserve(numbered_.Count());
   for (int axis = 0; axis < 3; ++axis) ScanExits(axis, &sum, &all, &outward);
-  exit_root_.assign(number_.size(), 0.0F);
-  for (const std::int32_t cell : cell_of_) {
-    const auto i = static_cast<std::size_t>(cell);
+  exit_root_.assign(numbered_.AllCells(), 0.0F);
+  for (std::size_t n = 0; n < numbered_.Count(); ++n) {
+    const std::size_t i = numbered_.CellOf(n);
     exit_root_[i] = std::pow(sum[i], -0.25F);
     sky_seen_[i] /= all[i];
     // Where all depths are too great for numbers, no way out is nearer than another.
@@ -179,19 +120,19 @@ void DiffuseLight::FindExits() {
     optics_.push_back({cells_.light_per_m[i], cells_.absorption_per_m[i], exit,
                        exit * cells_.transport_per_m[i] / cells_.light_per_m[i]});
   }
-  for (std::size_t i = 0; i < number_.size(); ++i) {
-    if (number_[i] == kNone) sky_seen_[i] = glm::vec2(0.0F);
+  for (std::size_t i = 0; i < numbered_.AllCells(); ++i) {
+    if (numbered_.IsEmpty(i)) sky_seen_[i] = glm::vec2(0.0F);
   }
 }
 
-void DiffuseLight::MakeLinks() {
+void DiffuseLight::Link() {
   const double farthest_hop_m = kFarthestHop * cells_.cell_m.z * cells_.size.z;
-  down_.resize(cell_of_.size());
-  up_.resize(cell_of_.size());
-  slack_.resize(cell_of_.size());
-  diagonal_.assign(cell_of_.size(), 0.0F);
-  for (std::size_t n = 0; n < cell_of_.size(); ++n) {
-    const auto i = static_cast<std::size_t>(cell_of_[n]);
+  std::vector<Links> down(numbered_.Count());
+  std::vector<Links> up(numbered_.Count());
+  std::vector<float> loss(numbered_.Count());
+  slack_.resize(numbered_.Count());
+  for (std::size_t n = 0; n < numbered_.Count(); ++n) {
+    const std::size_t i = numbered_.CellOf(n);
     const glm::ivec3 cell = cells_.CellAt(i);
     const float here = cells_.transport_per_m[i];
     const float exit = optics_[n].exit;  // of light, as are the ways out below
@@ -201,168 +142,64 @@ void DiffuseLight::MakeLinks() {
       next[axis] += side % 2 == 1 ? 1 : -1;
       const bool inside = next[axis] >= 0 && next[axis] < cells_.size[axis];
       const std::size_t j = inside ? cells_.Offset(next) : 0;
-      const std::int32_t to = inside ? number_[j] : kNone;
-      const float there = to == kNone ? 0.0F : cells_.transport_per_m[j];
+      const std::int32_t to = inside ? numbered_.NumberOf(j) : NumberedCells::kNone;
+      const float there = to == NumberedCells::kNone ? 0.0F : cells_.transport_per_m[j];
       const float depth = static_cast<float>(0.5 * cells_.cell_m[axis]) * (here + there);
       const float out = static_cast<float>(0.5 * cells_.cell_m[axis]) * cells_.light_per_m[i];
       float& slack = slack_[n][static_cast<std::size_t>(side)];
-      if (to == kNone) {
+      if (to == NumberedCells::kNone) {
         slack = 2.0F * std::clamp(out / exit, 1.0F, kMaxSlant);
       } else {
         slack = axis == 2 ? 0.0F : static_cast<float>(cells_.cell_m[axis] / farthest_hop_m);
       }
-      Links& links = side % 2 == 1 ? up_[n] : down_[n];
+      Links& links = side % 2 == 1 ? up[n] : down[n];
       links.to[axis] = to;
       links.conductance[axis] = area_[axis] / std::max(3.0F * depth + slack, kMinResistance);
-      diagonal_[n] += links.conductance[axis];
     }
-    diagonal_[n] += static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i];
+    loss[n] = static_cast<float>(cells_.cell_m.z) * cells_.absorption_per_m[i];
   }
-}
-
-// Incomplete Cholesky with no fill: of a matrix with these links only its diagonal changes. Links
-// between blocks are left out: those are between columns, where light goes through more resistance
-// than along them.
-void DiffuseLight::Factor() {
-  inverse_pivot_.resize(diagonal_.size());
-  ForBlocks([&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      float pivot = diagonal_[n];
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t to = down_[n].to[axis];
-        if (to < static_cast<std::int32_t>(begin)) continue;  // kNone, too
-        const float conductance = down_[n].conductance[axis];
-        pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
-      }
-      inverse_pivot_[n] = 1.0F / pivot;
-    }
-  });
-}
-
-template <typename Work>
-void DiffuseLight::ForBlocks(const Work& work) const {
-  tbb::parallel_for(std::size_t{1}, blocks_.size(),
-                    [&](std::size_t block) { work(blocks_[block - 1], blocks_[block]); });
-}
-
-void DiffuseLight::Precondition(const std::vector<float>& from, std::vector<float>* to) const {
-  std::vector<float>& x = *to;
-  ForBlocks([&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      float sum = from[n];
-      const Links& down = down_[n];
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t other = down.to[axis];
-        if (other < static_cast<std::int32_t>(begin)) continue;  // kNone, too
-        sum += down.conductance[axis] * x[static_cast<std::size_t>(other)];
-      }
-      x[n] = sum * inverse_pivot_[n];
-    }
-    for (std::size_t n = end; n-- > begin;) {
-      float sum = 0.0F;
-      const Links& up = up_[n];
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t other = up.to[axis];
-        if (other == kNone || other >= static_cast<std::int32_t>(end)) continue;
-        sum += up.conductance[axis] * x[static_cast<std::size_t>(other)];
-      }
-      x[n] += sum * inverse_pivot_[n];
-    }
-  });
-}
-
-void DiffuseLight::Apply(const std::vector<float>& from, std::vector<float>* to) const {
-  ForShares(from.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      float sum = diagonal_[n] * from[n];
-      const Links& down = down_[n];
-      const Links& up = up_[n];
-      for (int axis = 0; axis < 3; ++axis) {
-        for (const Links* links : {&down, &up}) {
-          const std::int32_t other = links->to[axis];
-          if (other == kNone) continue;
-          sum -= links->conductance[axis] * from[static_cast<std::size_t>(other)];
-        }
-      }
-      (*to)[n] = sum;
-    }
-  });
-}
-
-// Preconditioned conjugate gradients.
-void DiffuseLight::Solve(const std::vector<float>& right, double tolerance,
-                         std::vector<float>* solution) {
-  const std::size_t count = right.size();
-  residual_.resize(count);
-  direction_.assign(count, 0.0F);
-  image_.resize(count);
-  better_.resize(count);
-  Apply(*solution, &image_);
-  for (std::size_t n = 0; n < count; ++n) residual_[n] = right[n] - image_[n];
-  Precondition(right, &better_);
-  const double goal = tolerance * tolerance * Dot(right, better_);
-  double before = 0.0;
-  for (last_iterations_ = 0; last_iterations_ < kMaxIterations; ++last_iterations_) {
-    Precondition(residual_, &better_);
-    const double now = Dot(residual_, better_);
-    if (!(now > goal)) break;
-    const auto beta = static_cast<float>(before > 0.0 ? now / before : 0.0);
-    before = now;
-    ForShares(count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) direction_[n] = better_[n] + beta * direction_[n];
-    });
-    Apply(direction_, &image_);
-    const double curvature = Dot(direction_, image_);
-    if (!(curvature > 0.0)) break;
-    const auto step = static_cast<float>(now / curvature);
-    ForShares(count, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t n = begin; n < end; ++n) {
-        (*solution)[n] += step * direction_[n];
-        residual_[n] -= step * image_[n];
-      }
-    });
-  }
+  linked_ = LinkedCells(std::move(down), std::move(up), loss, numbered_.Blocks());
 }
 
 void DiffuseLight::SolveSky() {
-  sky_inward_.assign(number_.size(), glm::vec2(0.0F));
+  sky_inward_.assign(numbered_.AllCells(), glm::vec2(0.0F));
   for (int part = 0; part < 2; ++part) SolveSkyPart(part);
-  Spread(&sky_inward_);
-  Spread(&sky_seen_);
+  numbered_.Spread(&sky_inward_);
+  numbered_.Spread(&sky_seen_);
 }
 
 void DiffuseLight::SolveSkyPart(int part) {
-  std::vector<float> right(cell_of_.size(), 0.0F);
+  std::vector<float> right(numbered_.Count(), 0.0F);
   for (std::size_t n = 0; n < right.size(); ++n) {
     for (int side = 0; side < 6; ++side) {
-      const Links& links = LinksOf(n, side);
-      if (links.to[side / 2] != kNone) continue;
+      const Links& links = linked_.LinksOf(n, side);
+      if (links.to[side / 2] != NumberedCells::kNone) continue;
       right[n] += links.conductance[side / 2] * kSkySeen[static_cast<std::size_t>(side)][part];
     }
   }
   std::vector<float> share(right.size(), 0.5F * static_cast<float>(part));
-  Solve(right, kSkyTolerance, &share);
-  std::vector<float> own(number_.size(), 0.0F);
+  linked_.Solve(right, kSkyTolerance, &share);
+  std::vector<float> own(numbered_.AllCells(), 0.0F);
   for (std::size_t n = 0; n < share.size(); ++n) {
-    const auto i = static_cast<std::size_t>(cell_of_[n]);
+    const std::size_t i = numbered_.CellOf(n);
     const float seen = sky_seen_[i][part];
     sky_inward_[i][part] = (seen - share[n]) / (3.0F * optics_[n].transport_exit + 2.0F);
     sky_seen_[i][part] = (1.0F - walls_.Hidden()[i]) * seen;
     own[i] = sky_seen_[i][part] - 4.0F * sky_inward_[i][part];
   }
   const std::vector<float> from_walls = walls_.Arriving(own);
-  for (const std::int32_t cell : cell_of_) {
-    const auto i = static_cast<std::size_t>(cell);
+  for (std::size_t n = 0; n < numbered_.Count(); ++n) {
+    const std::size_t i = numbered_.CellOf(n);
     sky_seen_[i][part] += from_walls[i];
   }
 }
 
 // Transmittance of sunlight to each cell, and its mean on the path to the neighbour up each axis.
 void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
-  sun_.resize(cell_of_.size());
+  sun_.resize(numbered_.Count());
   ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const float root = arrived_root[static_cast<std::size_t>(cell_of_[n])];
+      const float root = arrived_root[numbered_.CellOf(n)];
       sun_[n].depth = root * root;
       sun_[n].transmittance = std::exp(-sun_[n].depth);
     }
@@ -371,8 +208,8 @@ void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
     for (std::size_t n = begin; n < end; ++n) {
       SunAt& here = sun_[n];
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::int32_t to = up_[n].to[axis];
-        if (to == kNone) continue;
+        const std::int32_t to = linked_.Up(n).to[axis];
+        if (to == NumberedCells::kNone) continue;
         const SunAt& there = sun_[static_cast<std::size_t>(to)];
         const float most = std::max(here.transmittance, there.transmittance);
         here.mean_transmittance_up[axis] =
@@ -394,11 +231,11 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
     // Component of the sunlight's direction of travel along this side's outward normal.
     const auto along = (up ? -1.0F : 1.0F) * static_cast<float>(towards_sun[axis]);
     const auto half_m = static_cast<float>(0.5 * cells_.cell_m[axis]);
-    const Links& links = LinksOf(n, side);
+    const Links& links = linked_.LinksOf(n, side);
     const float slack = slack_[n][static_cast<std::size_t>(side)];
     float flux = 0.0F;
     float transmittance = 0.0F;
-    if (links.to[axis] != kNone) {
+    if (links.to[axis] != NumberedCells::kNone) {
       const auto other = static_cast<std::size_t>(links.to[axis]);
       const float between = half_m * (here.light_per_m + optics_[other].light_per_m);
       transmittance = sun_[up ? n : other].mean_transmittance_up[axis];
@@ -440,15 +277,16 @@ void DiffuseLight::BeginFluence(const glm::dvec3& towards_sun) {
 const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
                                                  const std::vector<float>& arrived_root,
                                                  double tolerance) {
-  THUNDERHEAD_CHECK(arrived_root.size() == number_.size(), std::to_string(arrived_root.size()));
-  const std::size_t count = cell_of_.size();
+  THUNDERHEAD_CHECK(arrived_root.size() == numbered_.AllCells(),
+                    std::to_string(arrived_root.size()));
+  const std::size_t count = numbered_.Count();
   FindTransmittances(arrived_root);
   std::vector<float> right(count, 0.0F);
   ForShares(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) right[n] = SunlightScattered(n, towards_sun);
   });
   BeginFluence(towards_sun);
-  Solve(right, tolerance, &fluence_);
+  last_iterations_ = linked_.Solve(right, tolerance, &fluence_);
   std::vector<float> inward(count);
   std::vector<float> own(count);
   ForShares(count, [&](std::size_t begin, std::size_t end) {
@@ -460,77 +298,23 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
       own[n] = 4.0F * ((exit < depth ? exit / depth : 1.0F) - inward[n]);
     }
   });
-  from_walls_ = walls_.Arriving(ByCell(own));
-  net_inward_ = ByCell(inward);
-  Spread(&net_inward_);
+  from_walls_ = walls_.Arriving(numbered_.ByCell(own));
+  net_inward_ = numbered_.ByCell(inward);
+  numbered_.Spread(&net_inward_);
   return net_inward_;
 }
 
 std::vector<float> DiffuseLight::AtCells(const CellValue& value) const {
-  std::vector<float> values(cell_of_.size());
+  std::vector<float> values(numbered_.Count());
   ForShares(values.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const glm::ivec3 cell = cells_.CellAt(static_cast<std::size_t>(cell_of_[n]));
+      const glm::ivec3 cell = cells_.CellAt(numbered_.CellOf(n));
       values[n] = value((glm::dvec3(cell) + 0.5) * cells_.cell_m, outward_[n]);
     }
   });
-  std::vector<float> by_cell = ByCell(values);
-  Spread(&by_cell);
+  std::vector<float> by_cell = numbered_.ByCell(values);
+  numbered_.Spread(&by_cell);
   return by_cell;
-}
-
-// Cell by cell, as those are next to each other in memory, and all that there is by number is not
-// much.
-std::vector<float> DiffuseLight::ByCell(const std::vector<float>& by_number) const {
-  std::vector<float> by_cell(number_.size());
-  ForShares(by_cell.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::int32_t n = number_[i];
-      by_cell[i] = n == kNone ? 0.0F : by_number[static_cast<std::size_t>(n)];
-    }
-  });
-  return by_cell;
-}
-
-void DiffuseLight::FindFringe() {
-  for (std::size_t i = 0; i < number_.size(); ++i) {
-    if (number_[i] != kNone) continue;
-    bool beside = false;
-    ForNeighbours(i, [&](std::size_t) { beside = true; });
-    if (beside) fringe_.push_back(static_cast<std::int32_t>(i));
-  }
-}
-
-template <typename Use>
-void DiffuseLight::ForNeighbours(std::size_t cell, const Use& use) const {
-  const glm::ivec3 at = cells_.CellAt(cell);
-  const glm::ivec3 low = glm::max(at - 1, glm::ivec3(0));
-  const glm::ivec3 high = glm::min(at + 1, cells_.size - 1);
-  for (int z = low.z; z <= high.z; ++z) {
-    for (int y = low.y; y <= high.y; ++y) {
-      const std::size_t row = cells_.Offset({0, y, z});
-      for (int x = low.x; x <= high.x; ++x) {
-        const std::size_t beside = row + static_cast<std::size_t>(x);
-        if (number_[beside] != kNone) use(beside);
-      }
-    }
-  }
-}
-
-template <typename Value>
-void DiffuseLight::Spread(std::vector<Value>* values) const {
-  ForShares(fringe_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const auto cell = static_cast<std::size_t>(fringe_[f]);
-      Value sum(0.0F);
-      int count = 0;
-      ForNeighbours(cell, [&](std::size_t beside) {
-        sum += (*values)[beside];
-        ++count;
-      });
-      (*values)[cell] = sum / static_cast<float>(count);
-    }
-  });
 }
 
 }  // namespace thunderhead::renderers

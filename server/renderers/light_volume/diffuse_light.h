@@ -15,6 +15,8 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "renderers/light_volume/diffusion_cells.h"
+#include "renderers/light_volume/linked_cells.h"
+#include "renderers/light_volume/numbered_cells.h"
 #include "renderers/light_volume/wall_light.h"
 
 namespace thunderhead::renderers {
@@ -54,16 +56,6 @@ class DiffuseLight {
   int LastIterations() const { return last_iterations_; }
 
  private:
-  static constexpr std::int32_t kNone = -1;
-  // A cell's links down each axis, or up each. Apart, as the solver reads one kind after the other,
-  // and waits for memory most of its time.
-  struct Links {
-    std::int32_t to[3];  // numbers; kNone: out of the medium
-    float conductance[3];
-  };
-  // Of one of a cell's six sides: even numbers down, odd ones up an axis.
-  const Links& LinksOf(std::size_t n, int side) const { return side % 2 == 1 ? up_[n] : down_[n]; }
-
   struct Optics {
     float light_per_m;
     float absorption_per_m;
@@ -79,47 +71,26 @@ class DiffuseLight {
     float mean_transmittance_up[3] = {};
   };
 
-  void Number();
-  void FindFringe();
-  // Calls `use` with those of the 26 neighbours of `cell` that are not empty.
-  template <typename Use>
-  void ForNeighbours(std::size_t cell, const Use& use) const;
   void FindTransmittances(const std::vector<float>& arrived_root);
   float SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const;
   void FindExits();
   void ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all,
                  std::vector<glm::vec3>* outward);
-  void MakeLinks();
-  // Calls `work` with the first number of each block and that after its last, on all threads.
-  template <typename Work>
-  void ForBlocks(const Work& work) const;
-  void Factor();
+  void Link();
   void SolveSky();
   void SolveSkyPart(int part);
-  void Precondition(const std::vector<float>& from, std::vector<float>* to) const;
-  void Apply(const std::vector<float>& from, std::vector<float>* to) const;
   // Makes of the last fluence the start for another sun.
   void BeginFluence(const glm::dvec3& towards_sun);
-  void Solve(const std::vector<float>& right, double tolerance, std::vector<float>* solution);
-  // Values by number as values by cell: 0 in empty ones.
-  std::vector<float> ByCell(const std::vector<float>& by_number) const;
-  // Sets empty cells beside others to the mean of those.
-  template <typename Value>
-  void Spread(std::vector<Value>* values) const;
 
   DiffusionCells cells_;
   WallLight walls_;
-  std::vector<std::int32_t> number_;   // by cell; kNone where there is nothing
-  std::vector<std::int32_t> cell_of_;  // by number: column by column, upwards
-  std::vector<std::size_t> blocks_;    // of whole columns: their first numbers, and the count
-  std::vector<std::int32_t> fringe_;   // empty cells beside others
-  std::vector<Optics> optics_;         // by number, as are the next
-  std::vector<Links> down_, up_;
-  // By side. Resistance to diffuse light besides three times the optical depth: at a surface twice
-  // the reciprocal of the face's cosine to it (Marshak's condition), else the limit of a hop.
+  NumberedCells numbered_;
+  LinkedCells linked_;
+  std::vector<Optics> optics_;  // by number
+  // By number and side. Resistance to diffuse light besides three times the optical depth: at a
+  // surface twice the reciprocal of the face's cosine to it (Marshak's condition), else the limit
+  // of a hop.
   std::vector<std::array<float, 6>> slack_;
-  std::vector<float> diagonal_;       // by number
-  std::vector<float> inverse_pivot_;  // of the incomplete Cholesky factor
   std::vector<float> exit_root_;
   std::vector<glm::vec3> outward_;  // of AtCells, by number
   std::vector<glm::vec2> sky_seen_;
@@ -131,7 +102,6 @@ class DiffuseLight {
   glm::dvec3 last_sun_{0.0};
   glm::dvec3 last_step_{0.0};  // from the sun before to that
   std::vector<float> net_inward_;
-  std::vector<float> residual_, direction_, image_, better_;
   float area_[3] = {};  // of a cell's faces, over that across z
   int last_iterations_ = 0;
 };

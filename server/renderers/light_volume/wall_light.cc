@@ -100,6 +100,7 @@ WallLight::WallLight(const DiffusionCells& cells)
     if (IsWall(i)) Look(i);
   }
   NumberWalls();
+  beside_walls_ = Fringe(cells_, walls_);
 }
 
 void WallLight::NumberWalls() {
@@ -187,30 +188,7 @@ std::vector<float> WallLight::Arriving(const std::vector<float>& own) const {
   for (std::size_t wall = 0; wall < walls_.size(); ++wall) {
     values[static_cast<std::size_t>(walls_[wall])] = arriving[wall];
   }
-  return WithNeighbours(std::move(values));
-}
-
-std::vector<float> WallLight::WithNeighbours(std::vector<float> values) const {
-  std::vector<std::uint8_t> times(values.size(), 0);
-  for (const std::int32_t wall : walls_) {
-    const glm::ivec3 at = cells_.CellAt(static_cast<std::size_t>(wall));
-    const float value = values[static_cast<std::size_t>(wall)];
-    const glm::ivec3 low = glm::max(at - 1, glm::ivec3(0));
-    const glm::ivec3 high = glm::min(at + 1, cells_.size - 1);
-    for (int z = low.z; z <= high.z; ++z) {
-      for (int y = low.y; y <= high.y; ++y) {
-        for (int x = low.x; x <= high.x; ++x) {
-          const std::size_t beside = cells_.Offset({x, y, z});
-          if (hidden_[beside] > 0.0F) continue;
-          values[beside] += value;
-          ++times[beside];
-        }
-      }
-    }
-  }
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (times[i] > 1) values[i] /= static_cast<float>(times[i]);
-  }
+  beside_walls_.Spread(&values);
   return values;
 }
 

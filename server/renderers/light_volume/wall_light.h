@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "renderers/light_volume/diffusion_cells.h"
+#include "renderers/light_volume/fringe.h"
 
 namespace thunderhead::renderers {
 
@@ -37,7 +38,6 @@ class WallLight {
   void Look(std::size_t wall);
   void NumberWalls();
   void Follow(std::size_t wall, int side, const glm::dvec3& ray);
-  std::vector<float> WithNeighbours(std::vector<float> values) const;
 
   DiffusionCells cells_;
   double wall_size_m_ = 0.0;
@@ -46,6 +46,7 @@ class WallLight {
   std::vector<std::int32_t> walls_;      // those that see others
   std::vector<std::size_t> first_seen_;  // in seen_, of each of these, and the end
   std::vector<float> hidden_;
+  Fringe beside_walls_;
 };
 
 }  // namespace thunderhead::renderers

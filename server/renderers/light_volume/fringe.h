@@ -1,0 +1,51 @@
+// The cells without a value beside those that have one: they are set to the mean of those, so that
+// what is looked up between cells does not fade towards the edge.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "renderers/light_volume/diffusion_cells.h"
+#include "renderers/light_volume/shares.h"
+
+namespace thunderhead::renderers {
+
+class Fringe {
+ public:
+  Fringe() = default;
+  // `holding` are the cells that have a value, in rising order.
+  Fringe(const DiffusionCells& cells, const std::vector<std::int32_t>& holding);
+
+  // Sets each cell of the fringe to the mean of those of its 26 neighbours that have a value.
+  template <typename Value>
+  void Spread(std::vector<Value>* values) const;
+
+ private:
+  static constexpr std::size_t kAround = 27;  // with the cell itself
+  struct Cell {
+    std::int32_t cell;
+    std::uint32_t neighbours;  // that have a value: bit k for the cell at cell + around_[k]
+  };
+
+  std::array<std::ptrdiff_t, kAround> around_{};
+  std::vector<Cell> cells_;
+};
+
+template <typename Value>
+void Fringe::Spread(std::vector<Value>* values) const {
+  ForShares(cells_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      Value* here = values->data() + cells_[f].cell;
+      Value sum(0.0F);
+      for (std::uint32_t left = cells_[f].neighbours; left != 0; left &= left - 1) {
+        sum += here[around_[static_cast<std::size_t>(std::countr_zero(left))]];
+      }
+      *here = sum / static_cast<float>(std::popcount(cells_[f].neighbours));
+    }
+  });
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,147 @@
+#include "renderers/light_volume/linked_cells.h"
+
+#include <tbb/parallel_for.h>
+
+#include <numeric>
+#include <utility>
+
+#include "renderers/light_volume/shares.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+constexpr int kMaxIterations = 200;
+
+double Dot(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<double> sums((a.size() + kShare - 1) / kShare);
+  ForShares(a.size(), [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t n = begin; n < end; ++n) sum += static_cast<double>(a[n] * b[n]);
+    sums[begin / kShare] = sum;
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+}  // namespace
+
+LinkedCells::LinkedCells(std::vector<Links> down, std::vector<Links> up,
+                         const std::vector<float>& loss, std::vector<std::size_t> blocks)
+    : down_(std::move(down)), up_(std::move(up)), blocks_(std::move(blocks)) {
+  diagonal_.assign(loss.size(), 0.0F);
+  for (std::size_t n = 0; n < loss.size(); ++n) {
+    for (int axis = 0; axis < 3; ++axis) {
+      diagonal_[n] += down_[n].conductance[axis];
+      diagonal_[n] += up_[n].conductance[axis];
+    }
+    diagonal_[n] += loss[n];
+  }
+  Factor();
+}
+
+// Incomplete Cholesky with no fill: of a matrix with these links only its diagonal changes. Links
+// between blocks are left out: those are between columns, where light goes through more resistance
+// than along them.
+void LinkedCells::Factor() {
+  inverse_pivot_.resize(diagonal_.size());
+  ForBlocks([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      float pivot = diagonal_[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t to = down_[n].to[axis];
+        if (to < static_cast<std::int32_t>(begin)) continue;  // NumberedCells::kNone, too
+        const float conductance = down_[n].conductance[axis];
+        pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
+      }
+      inverse_pivot_[n] = 1.0F / pivot;
+    }
+  });
+}
+
+template <typename Work>
+void LinkedCells::ForBlocks(const Work& work) const {
+  tbb::parallel_for(std::size_t{1}, blocks_.size(),
+                    [&](std::size_t block) { work(blocks_[block - 1], blocks_[block]); });
+}
+
+void LinkedCells::Precondition(const std::vector<float>& from, std::vector<float>* to) const {
+  std::vector<float>& x = *to;
+  ForBlocks([&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      float sum = from[n];
+      const Links& down = down_[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t other = down.to[axis];
+        if (other < static_cast<std::int32_t>(begin)) continue;  // NumberedCells::kNone, too
+        sum += down.conductance[axis] * x[static_cast<std::size_t>(other)];
+      }
+      x[n] = sum * inverse_pivot_[n];
+    }
+    for (std::size_t n = end; n-- > begin;) {
+      float sum = 0.0F;
+      const Links& up = up_[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::int32_t other = up.to[axis];
+        if (other == NumberedCells::kNone || other >= static_cast<std::int32_t>(end)) continue;
+        sum += up.conductance[axis] * x[static_cast<std::size_t>(other)];
+      }
+      x[n] += sum * inverse_pivot_[n];
+    }
+  });
+}
+
+void LinkedCells::Apply(const std::vector<float>& from, std::vector<float>* to) const {
+  ForShares(from.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      float sum = diagonal_[n] * from[n];
+      const Links& down = down_[n];
+      const Links& up = up_[n];
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const Links* links : {&down, &up}) {
+          const std::int32_t other = links->to[axis];
+          if (other == NumberedCells::kNone) continue;
+          sum -= links->conductance[axis] * from[static_cast<std::size_t>(other)];
+        }
+      }
+      (*to)[n] = sum;
+    }
+  });
+}
+
+// Preconditioned conjugate gradients.
+int LinkedCells::Solve(const std::vector<float>& right, double tolerance,
+                       std::vector<float>* solution) {
+  const std::size_t count = right.size();
+  residual_.resize(count);
+  direction_.assign(count, 0.0F);
+  image_.resize(count);
+  better_.resize(count);
+  Apply(*solution, &image_);
+  for (std::size_t n = 0; n < count; ++n) residual_[n] = right[n] - image_[n];
+  Precondition(right, &better_);
+  const double goal = tolerance * tolerance * Dot(right, better_);
+  double before = 0.0;
+  int iterations = 0;
+  for (; iterations < kMaxIterations; ++iterations) {
+    Precondition(residual_, &better_);
+    const double now = Dot(residual_, better_);
+    if (!(now > goal)) break;
+    const auto beta = static_cast<float>(before > 0.0 ? now / before : 0.0);
+    before = now;
+    ForShares(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) direction_[n] = better_[n] + beta * direction_[n];
+    });
+    Apply(direction_, &image_);
+    const double curvature = Dot(direction_, image_);
+    if (!(curvature > 0.0)) break;
+    const auto step = static_cast<float>(now / curvature);
+    ForShares(count, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) {
+        (*solution)[n] += step * direction_[n];
+        residual_[n] -= step * image_[n];
+      }
+    });
+  }
+  return iterations;
+}
+
+}  // namespace thunderhead::renderers

@@ -1,0 +1,23 @@
+// Work on many cells in shares of one size, on all threads.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace thunderhead::renderers {
+
+// Cells that a thread works on at a time. Sums are of shares, in order, so that they do not depend
+// on the number of threads.
+inline constexpr std::size_t kShare = 4096;
+
+// Calls `work` with the first of each share of `count` cells and the one after its last.
+template <typename Work>
+void ForShares(std::size_t count, const Work& work) {
+  tbb::parallel_for(std::size_t{0}, (count + kShare - 1) / kShare, [&](std::size_t share) {
+    work(share * kShare, std::min((share + 1) * kShare, count));
+  });
+}
+
+}  // namespace thunderhead::renderers
