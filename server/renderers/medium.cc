@@ -153,19 +153,27 @@ void ResidentMedium::Bind(const gl::Program& program) const {
     textures_[i].Bind(shaders::kMediumPlaneUnit + static_cast<GLuint>(i));
   }
   phase_curves_.Bind();
+  BindBox(program);
+  program.Set(uniform::extinction_weights,
+              Weights(std::vector<double>(content_.groups.size(), 1.0)));
+  if (!details_.empty()) BindDetails(program);
+}
+
+void ResidentMedium::BindBox(const gl::Program& program) const {
   const glm::dvec3 extent_m = glm::dvec3(bounds_.grid.cells) * bounds_.grid.spacing_m;
   program.Set(uniform::texture_from_local_scale, glm::vec3(1.0 / extent_m));
   program.Set(uniform::texture_from_local_offset,
               glm::vec3((Middle_m() - bounds_.grid.low_corner_m) / extent_m));
   program.Set(uniform::medium_low_m, glm::vec3(-HalfExtent_m()));
   program.Set(uniform::medium_high_m, glm::vec3(HalfExtent_m()));
-  program.Set(uniform::extinction_weights,
-              Weights(std::vector<double>(content_.groups.size(), 1.0)));
-  if (!details_.empty()) BindDetails(program);
 }
 
 void ResidentMedium::BindWithBricks(const gl::Program& program) const {
   Bind(program);
+  BindBricks(program);
+}
+
+void ResidentMedium::BindBricks(const gl::Program& program) const {
   bricks_.Bind(shaders::kBricksUnit);
   program.Set(uniform::brick_from_local_scale, glm::vec3(1.0 / brick_m_));
   program.Set(uniform::brick_from_local_offset, glm::vec3((Middle_m() - bricks_low_m_) / brick_m_));

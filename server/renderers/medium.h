@@ -70,8 +70,12 @@ class ResidentMedium {
   void Bind(const gl::Program& program) const;
   // The same, and those of common/bricks.glsl.
   void BindWithBricks(const gl::Program& program) const;
-  // After either: detail that is finer than a pixel of a picture of that size fades out. By default
-  // what is finer than cells does, as light needs it.
+  // Without the medium's own textures: those of common/medium_box.glsl, and the rest of
+  // common/bricks.glsl.
+  void BindBox(const gl::Program& program) const;
+  void BindBricks(const gl::Program& program) const;
+  // After the first or second: detail that is finer than a pixel of a picture of that size fades
+  // out. By default what is finer than cells does, as light needs it.
   void BindPixel(const gl::Program& program, const scene::View& view,
                  const glm::ivec2& size_px) const;
   std::size_t Bytes() const;

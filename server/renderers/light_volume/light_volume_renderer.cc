@@ -9,6 +9,7 @@
 #include "glm/geometric.hpp"
 #include "glm/mat4x3.hpp"
 #include "renderers/light_volume/bindings.h"
+#include "renderers/light_volume/cell_blocks.h"
 #include "renderers/view_uniforms.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
@@ -25,7 +26,6 @@ constexpr double kNearInTexels = 1.5;  // sampled next to a cell
 // Texels beyond the end of that path within which the carried light is read: one along each axis,
 // by interpolation.
 constexpr double kReadBeyond = 1.74;
-constexpr int kMaxGroupsInRow = 65535;      // what OpenGL 4.5 guarantees along each axis
 constexpr double kMarchedSample_ns = 15.0;  // what a sample of the medium may cost
 constexpr gl::PieceCost kArriveBlock{"arrive", 12000.0};
 
@@ -131,10 +131,10 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
   const GLenum one = settings.quality.single_precision ? GL_R32F : GL_R16F;
   const GLenum two = settings.quality.single_precision ? GL_RG32F : GL_RG16F;
   Resize(box.size, medium.Bounds().grid.cells, diffuse ? two : one);
-  const CarryVariant variant{.medium = medium.Variant(),
-                             .consistent = !scene::IsPaper(settings.Medium().transport),
+  const CarryVariant variant{.consistent = !scene::IsPaper(settings.Medium().transport),
                              .translucent = scene::IsTranslucent(settings.Medium().transport),
                              .diffuse = diffuse};
+  THUNDERHEAD_RETURN_IF_ERROR(light_medium_.Update(medium, weights, diffuse));
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
   THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
   if (!Diffuses(settings)) return absl::OkStatus();
@@ -151,7 +151,9 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
       programs_->Get(gl::ProgramSource::Compute("light_volume/carry.comp", variant.Defines())));
-  medium.BindWithBricks(*program);
+  medium.BindBox(*program);
+  medium.BindBricks(*program);
+  light_medium_.Bind(*program);
   program->Set(uniform::light_size, box.size);
   program->Set(uniform::towards_sun, glm::vec3(box.frame.towards_sun));
   program->Set(uniform::light_right_m, glm::vec3(box.frame.right * box.frame.half_extent_m.x));
@@ -161,8 +163,6 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
   program->Set(uniform::half_layer_steps, box.half_layer_steps);
   program->Set(uniform::read_bricks,
                static_cast<int>(std::ceil(box.read_m / medium.ShortestBrickSide_m())));
-  program->Set(uniform::light_weights, medium.Weights(weights.light));
-  program->Set(uniform::transport_weights, medium.Weights(weights.transport));
   program->Set(uniform::cumulative_phase, weights.cumulative_phase);
   carried_.BindImage(shaders::kCarriedImage, GL_WRITE_ONLY);
   thickness_.BindImage(shaders::kThicknessImage, GL_WRITE_ONLY);
@@ -184,28 +184,17 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
                                          const LightBox& box, const CarryVariant& variant) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get(gl::ProgramSource::Compute("light_volume/arrive.comp", variant.Defines())));
+      programs_->Get(gl::ProgramSource::Compute(
+          "light_volume/arrive.comp", gl::Joined(medium.Variant().Defines(), variant.Defines()))));
   medium.Bind(*program);
-  const glm::ivec3 cells = medium.Bounds().grid.cells;
-  program->Set(uniform::cell_count, cells);
+  program->Set(uniform::light_weights, medium.Weights(weights.light));
   program->Set(uniform::light_from_local, box.FromLocal());
   program->Set(uniform::towards_sun, glm::vec3(box.frame.towards_sun));
   program->Set(uniform::near_m, static_cast<float>(box.near_m));
-  program->Set(uniform::light_weights, medium.Weights(weights.light));
   carried_.Bind(shaders::kCarriedUnit);
   thickness_.Bind(shaders::kThicknessUnit);
-  medium.BindBlocks(*program);
   arrived_.BindImage(shaders::kArrivedImage, GL_WRITE_ONLY);
-  program->Use();
-  absl::Status arrived =
-      programs_->Pieces().Steps(kArriveBlock, medium.BlockCount(), [&](int begin, int end) {
-        const int count = end - begin;
-        const int rows = (count + kMaxGroupsInRow - 1) / kMaxGroupsInRow;
-        program->Set(uniform::first_block, begin);
-        program->Set(uniform::end_block, end);
-        glDispatchCompute(static_cast<GLuint>(std::min(count, kMaxGroupsInRow)),
-                          static_cast<GLuint>(rows), 1);
-      });
+  absl::Status arrived = ForBlocks(programs_->Pieces(), kArriveBlock, medium, *program);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return arrived;
 }
@@ -294,7 +283,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
 
 std::size_t LightVolumeRenderer::Bytes() const {
   std::size_t bytes = carried_.Bytes() + thickness_.Bytes() + shadow_.Bytes() + arrived_.Bytes() +
-                      diffusion_.Bytes();
+                      light_medium_.Bytes() + diffusion_.Bytes();
   for (const CoveredTarget& eye : eyes_) bytes += eye.Texture().Bytes() + eye.Distances().Bytes();
   return bytes;
 }

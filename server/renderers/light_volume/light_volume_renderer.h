@@ -20,6 +20,7 @@
 #include "renderers/group_weights.h"
 #include "renderers/light_frame.h"
 #include "renderers/light_volume/diffusion_pass.h"
+#include "renderers/light_volume/light_medium.h"
 #include "renderers/light_volume/variants.h"
 #include "renderers/lit_ground.h"
 #include "renderers/medium.h"
@@ -31,7 +32,7 @@ class LightVolumeRenderer {
  public:
   // Programs are linked in `programs`.
   explicit LightVolumeRenderer(std::shared_ptr<gl::ProgramCache> programs)
-      : programs_(std::move(programs)), diffusion_(programs_) {}
+      : programs_(std::move(programs)), light_medium_(programs_), diffusion_(programs_) {}
 
   // Finds the ground's light once Shadow is known.
   using GroundFinder = std::function<absl::StatusOr<LitGround>()>;
@@ -80,7 +81,8 @@ class LightVolumeRenderer {
   gl::WholeTarget whole_target_;
   std::array<CoveredTarget, 2> eyes_;  // the second is for chosen rays
   std::size_t drawn_ = 0;              // by the last DrawView
-  gl::Texture3D carried_;              // along the sun's rays
+  LightMedium light_medium_;
+  gl::Texture3D carried_;  // along the sun's rays
   gl::Texture2D thickness_;
   gl::Texture2D shadow_;
   gl::Texture3D arrived_;  // at the medium's cells

@@ -6,17 +6,14 @@
 
 namespace thunderhead::renderers {
 
-// Variant of carry.comp and arrive.comp.
+// Variant of carry.comp, and beside the medium's of arrive.comp.
 struct CarryVariant {
-  MediumVariant medium;
   gl::DefineValue consistent;   // transport
   gl::DefineValue translucent;  // light that is scattered goes on
   gl::DefineValue diffuse;      // light scattered many times is found in closed form
 
   gl::Defines Defines() const {
-    return gl::Joined(
-        medium.Defines(),
-        {{"CONSISTENT", consistent}, {"TRANSLUCENT", translucent}, {"DIFFUSE", diffuse}});
+    return {{"CONSISTENT", consistent}, {"TRANSLUCENT", translucent}, {"DIFFUSE", diffuse}};
   }
 };
 

@@ -1,6 +1,7 @@
-// Rays through a medium that leap over its empty bricks (volume/brick_map.h). Needs common/medium.glsl.
+// Rays through a medium that leap over its empty bricks (volume/brick_map.h).
 #include "common/bindings.glsl"
 #include "common/box.glsl"
+#include "common/medium_box.glsl"
 
 layout(binding = kBricksUnit) uniform usampler3D bricks;  // volume::BrickMap::content
 

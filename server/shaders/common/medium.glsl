@@ -4,6 +4,7 @@
 // Uniforms that a loop needs are read before it: inside, where some invocations may have ended, Mesa's software renderer
 // reads a uniform once for every invocation (gallivm 22.3).
 #include "common/bindings.glsl"
+#include "common/medium_box.glsl"
 #include "physics/detail.glsl"
 
 #ifndef DETAILS
@@ -15,11 +16,6 @@ layout(binding = kMediumPlaneUnit) uniform sampler3D medium_plane_0;
 #if PLANES > 1
 layout(binding = kMediumPlaneUnit + 1) uniform sampler3D medium_plane_1;
 #endif
-
-uniform vec3 texture_from_local_scale;
-uniform vec3 texture_from_local_offset;
-uniform vec3 medium_low_m;   // the box, in local metres
-uniform vec3 medium_high_m;
 
 uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for channels that no group has
 

@@ -4,24 +4,18 @@
 // that in a cloud's edge, where extinction rises linearly from such a centre, the square root of the light's optical depth
 // rises linearly too.
 // r: the square root of the light's optical depth; g: the mean intensity of light scattered many times, over the sun's
-// irradiance. Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE.
+// irradiance. Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/box.glsl"
-#include "light_volume/bindings.glsl"
+#include "light_volume/cell_blocks.glsl"
 #include "physics/light_transport.glsl"
 
-layout(local_size_x = kArriveGroupSize) in;
 layout(binding = kArrivedImage) uniform writeonly image3D arrived;
 
 layout(binding = kCarriedUnit) uniform sampler3D carried;
 layout(binding = kThicknessUnit) uniform sampler2D thickness;
-layout(std430, binding = kBlocksBinding) readonly buffer Blocks { uint blocks[]; };  // as volume::CellBlocks has them
 
-uniform ivec3 cell_count;
-uniform ivec3 cells_per_block;
-uniform int first_block;  // of those that are lit now
-uniform int end_block;
 uniform mat4x3 light_from_local;
 uniform vec3 towards_sun;
 uniform float near_m;  // sampled next to the cell
@@ -31,7 +25,6 @@ uniform vec4 light_weights[PLANES];
 const int kNearSamples = 2;
 const float kFirstNearSample = 0.21132487;
 const float kNearSamplesApart = 0.57735027;
-const uint kThickBlock = 1u << 31;
 
 // Inputs of give_light that cells share, in the coordinates of the medium's texture and of the light's volume.
 struct Surroundings {
@@ -67,13 +60,10 @@ void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroun
 
 void main() {
   begin_medium();
-  uint listed = uint(first_block) + gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
-  if (listed >= uint(end_block)) return;
-  uint packed_block = blocks[listed];
-  ivec3 block = ivec3(packed_block & 1023u, packed_block >> 10 & 1023u, packed_block >> 20 & 1023u);
+  Block block = block_of_group();
+  if (!block.listed) return;
   // A thin block takes little light near a cell; the paper's transport depends on the steps of carry.comp.
-  bool thick = (packed_block & kThickBlock) != 0u;
-  bool looks_near = thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
+  bool looks_near = block.thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
   vec3 direction = safe_direction(towards_sun);
   vec3 box_low = medium_low_m * texture_from_local_scale + texture_from_local_offset;
   vec3 box_high = medium_high_m * texture_from_local_scale + texture_from_local_offset;
@@ -85,25 +75,21 @@ void main() {
   around.near_depths = scaled(light_weights, near_m / float(kNearSamples));
   around.light_layers = float(textureSize(carried, 0).z);
 
-  ivec3 first_cell = block * cells_per_block;
   vec3 cell_size = 1.0 / vec3(cell_count);
   vec3 cell_m = cell_size / texture_from_local_scale;
-  vec3 first_m = (vec3(first_cell) + 0.5) * cell_m - texture_from_local_offset / texture_from_local_scale;
+  vec3 first_m = (vec3(block.first_cell) + 0.5) * cell_m - texture_from_local_offset / texture_from_local_scale;
   mat3 light_step = mat3(light_from_local[0] * cell_m.x, light_from_local[1] * cell_m.y, light_from_local[2] * cell_m.z);
   vec3 first_place = light_from_local * vec4(first_m, 1.0);
   vec3 to_far = mat3(light_from_local) * (looks_near ? near_m * towards_sun : vec3(0.0));
 
-  ivec3 cells_left = min(cells_per_block, cell_count - first_cell);
-  int cells = cells_per_block.x * cells_per_block.y * cells_per_block.z;
-  // Not by integers: software divides those one by one.
+  ivec3 cells_left = min(cells_per_block, cell_count - block.first_cell);
+  int cells = cells_in_block();
   float per_row = 1.0 / float(cells_per_block.x);
   float per_layer = per_row / float(cells_per_block.y);
-  for (int i = int(gl_LocalInvocationIndex); i < cells; i += kArriveGroupSize) {
-    int row = int((float(i) + 0.5) * per_row);
-    int layer = int((float(i) + 0.5) * per_layer);
-    ivec3 within = ivec3(i - row * cells_per_block.x, row - layer * cells_per_block.y, layer);
+  for (int i = int(gl_LocalInvocationIndex); i < cells; i += kBlockGroupSize) {
+    ivec3 within = cell_within(i, per_row, per_layer);
     if (any(greaterThanEqual(within, cells_left))) continue;
-    ivec3 cell = first_cell + within;
+    ivec3 cell = block.first_cell + within;
     vec3 here_place = first_place + light_step * vec3(within);
     give_light(cell, (vec3(cell) + 0.5) * cell_size, here_place, here_place + to_far, around);
   }

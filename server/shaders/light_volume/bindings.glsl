@@ -3,6 +3,7 @@
 const int kArrivedUnit = 4;
 const int kCarriedUnit = 5;
 const int kThicknessUnit = 6;
+const int kLightMediumUnit = 7;
 const int kExitsUnit = 5;
 const int kNetInwardUnit = 6;
 const int kCorrectionRedUnit = 13;
@@ -14,6 +15,7 @@ const int kShadowImage = 2;
 const int kArrivedImage = 3;
 const int kSampledCellsImage = 4;
 const int kSampledLightImage = 5;
+const int kLightMediumImage = 6;
 
 // Invocations in a work group.
-const int kArriveGroupSize = 32;
+const int kBlockGroupSize = 32;

@@ -2,13 +2,11 @@
 // r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
 // optical depth from the sun, which at the ray's end is its thickness. `shadow` is that of the whole medium
 // (common/storm_shadow.glsl). Layers that arrive.comp does not use are left as they are.
-// Variants: GROUPS, CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
+// Variants: CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
 // exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
 // usual angles.
-#include "common/bindings.glsl"
-#include "common/medium.glsl"
 #include "common/bricks.glsl"
-#include "light_volume/bindings.glsl"
+#include "light_volume/light_medium.glsl"
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kCarriedImage) uniform writeonly image3D carried;
@@ -26,8 +24,6 @@ uniform float light_reach_m;  // half its depth
 uniform float read_m;         // from cells that scatter, within which arrive.comp reads this volume
 uniform int read_bricks;      // the same in bricks
 uniform int half_layer_steps;  // samples in half a layer
-uniform vec4 light_weights[PLANES];
-uniform vec4 transport_weights[PLANES];
 uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
 
 // Optical depth that the light loses where the medium's is `depth`; `turned` is the share of scattered light that leaves
@@ -42,7 +38,6 @@ float lost(float depth, float turned) {
 }
 
 void main() {
-  begin_medium();
   ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);
   vec2 across = (vec2(texel) + 0.5) / vec2(light_size.xy) * 2.0 - 1.0;
   vec3 start_m = across.x * light_right_m + across.y * light_up_m + light_reach_m * towards_sun;
@@ -55,8 +50,7 @@ void main() {
   vec2 near = path_in_medium(start_m, direction, read_m);
   int first = clamp(int(floor(near.x / layer_m)), 0, light_size.z);
   int last = near.y < near.x ? 0 : clamp(int(ceil(near.y / layer_m)), 0, light_size.z);
-  vec4 light_depths[PLANES] = scaled(light_weights, step_m);
-  vec4 transport_depths[PLANES] = scaled(transport_weights, step_m);
+  float depth_of_texel = light_medium_per_m * step_m;
   float turned = 1.0 - cumulative_phase.y;
   float per_layer = 1.0 / layer_m;
   int most_steps = max(half_layer_steps, 1);
@@ -91,12 +85,11 @@ void main() {
     int steps = !is_filled(content) && empty_path(ray, place, content) > further_m ? 0 : most_steps;
     for (int i = 0; i < steps; ++i) {
       float at_m = distance_m + float(i) * step_m;
-      Medium medium = medium_at_place(medium_place(ray, at_m), 0.0);
-      float counts = at_m >= inside.x && at_m <= inside.y ? 1.0 : 0.0;
-      float step_depth = weigh(medium, light_depths) * counts;
-      medium_depth += step_depth;
-      depth += lost(step_depth, turned);
-      transport += weigh(medium, transport_depths) * counts;
+      float counts = at_m >= inside.x && at_m <= inside.y ? depth_of_texel : 0.0;
+      vec2 depths = counts * texture(light_medium, medium_place(ray, at_m)).rg;
+      medium_depth += depths.x;
+      depth += lost(depths.x, turned);
+      transport += depths.y;
     }
     if (steps > 0) {
       float left = exp(-medium_depth);

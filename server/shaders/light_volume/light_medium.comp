@@ -1,0 +1,42 @@
+// The medium as the light that is carried sees it: one value a cell, whatever its groups and detail, so that a sample along the
+// sun's rays is one of one texture. With detail that is the mean over the cell, which keeps what light loses on its way.
+// r: extinction of the light; g: similarity-scaled extinction, of variants with DIFFUSE; both over `light_medium_per_m`.
+// Variants: GROUPS, DETAILS.
+#include "common/bindings.glsl"
+#include "common/medium.glsl"
+#include "light_volume/cell_blocks.glsl"
+
+layout(binding = kLightMediumImage) uniform writeonly image3D light_medium;
+
+uniform vec4 light_weights[PLANES];  // to the value of a texel
+uniform vec4 transport_weights[PLANES];
+
+#if DETAILS > 0
+// Corners of a tetrahedron: its four samples have the mean of the eight of a cube, but for products of all three coordinates.
+const vec3 kWithin[4] = vec3[4](vec3(-0.25, -0.25, -0.25), vec3(0.25, 0.25, -0.25), vec3(0.25, -0.25, 0.25),
+                                vec3(-0.25, 0.25, 0.25));
+#else
+// The medium is linear between cells' centres.
+const vec3 kWithin[1] = vec3[1](vec3(0.0));
+#endif
+
+void main() {
+  begin_medium();
+  Block block = block_of_group();
+  if (!block.listed) return;
+  vec3 cell_size = 1.0 / vec3(cell_count);
+  int cells = cells_in_block();
+  float per_row = 1.0 / float(cells_per_block.x);
+  float per_layer = per_row / float(cells_per_block.y);
+  for (int i = int(gl_LocalInvocationIndex); i < cells; i += kBlockGroupSize) {
+    ivec3 cell = block.first_cell + cell_within(i, per_row, per_layer);
+    if (any(greaterThanEqual(cell, cell_count))) continue;
+    vec3 middle = (vec3(cell) + 0.5) * cell_size;
+    vec2 sum = vec2(0.0);
+    for (int k = 0; k < kWithin.length(); ++k) {
+      Medium medium = medium_at_place(middle + kWithin[k] * cell_size, 0.0);
+      sum += vec2(weigh(medium, light_weights), weigh(medium, transport_weights));
+    }
+    imageStore(light_medium, cell, vec4(sum / float(kWithin.length()), 0.0, 0.0));
+  }
+}

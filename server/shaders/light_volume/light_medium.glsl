@@ -1,0 +1,6 @@
+// The medium as the light that is carried sees it (light_medium.comp), of one value a cell and linear between cells.
+#include "common/medium_box.glsl"
+#include "light_volume/bindings.glsl"
+
+layout(binding = kLightMediumUnit) uniform sampler3D light_medium;
+uniform float light_medium_per_m;  // extinction of a texel value of 1

@@ -1,0 +1,138 @@
+// The medium as the light volume's light sees it, against what the medium's own code without GL
+// says.
+#include "renderers/light_volume/light_medium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "base/half_float.h"
+#include "gl/context.h"
+#include "gtest/gtest.h"
+#include "scene/detailed_medium.h"
+#include "scene/drawn_fields.h"
+#include "tests/support/gl_context.h"
+#include "tests/support/techniques.h"
+#include "volume/storm_store.h"
+
+namespace thunderhead::renderers {
+namespace {
+
+class LightMediumTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto context = test_support::OpenContext();
+    ASSERT_TRUE(context.ok()) << context.status();
+    context_ = *std::move(context);
+    const auto store =
+        *volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+    fields_ = *store->Get(store->Storms().front()->id, 1, {});
+    scene_ = test_support::PlainScene();
+    programs_ = std::make_shared<gl::ProgramCache>();
+  }
+
+  const scene::MediumSettings& Settings() const {
+    return std::get<scene::LightVolume>(scene_.rendering.technique).medium;
+  }
+
+  // Extinction at cells, in 1/m.
+  std::vector<double> Made(LightMedium* light, const ResidentMedium& medium) {
+    const GroupWeights weights(medium.Content(), Settings());
+    const absl::Status status = light->Update(medium, weights, false);
+    EXPECT_TRUE(status.ok()) << status;
+    std::vector<std::uint16_t> halves(medium.Bounds().grid.CellCount());
+    light->Texture().Download(GL_RED, GL_HALF_FLOAT, halves.size() * sizeof(std::uint16_t),
+                              halves.data());
+    std::vector<double> values;
+    for (const std::uint16_t half : halves) {
+      values.push_back(base::FloatFromHalf(half) * light->PerMetre());
+    }
+    return values;
+  }
+
+  // The mean of the medium over each cell from `samples` along each side, in 1/m.
+  std::vector<double> Expected(const ResidentMedium& medium, int samples) {
+    const auto detailed = scene::DetailedMedium::Of(scene_, *fields_, medium.Variant().details > 0);
+    const GroupWeights weights(medium.Content(), Settings());
+    const std::vector<volume::ExtinctionTerm>& terms = medium.Content().terms;
+    const volume::RegularGrid& grid = medium.Bounds().grid;
+    std::vector<double> values;
+    for (int z = 0; z < grid.cells.z; ++z) {
+      for (int y = 0; y < grid.cells.y; ++y) {
+        for (int x = 0; x < grid.cells.x; ++x) {
+          double sum = 0.0;
+          for (int k = 0; k < samples * samples * samples; ++k) {
+            const glm::ivec3 at(k % samples, k / samples % samples, k / (samples * samples));
+            const glm::dvec3 within = (glm::dvec3(at) + 0.5) / static_cast<double>(samples);
+            const auto by_field = detailed->At_per_m(
+                grid.low_corner_m + (glm::dvec3(x, y, z) + within) * grid.spacing_m);
+            for (std::size_t i = 0; i < terms.size(); ++i) {
+              sum += weights.light[static_cast<std::size_t>(terms[i].channel)] * by_field[i];
+            }
+          }
+          values.push_back(sum / (samples * samples * samples));
+        }
+      }
+    }
+    return values;
+  }
+
+  std::unique_ptr<gl::Context> context_;
+  std::shared_ptr<const volume::HydrometeorFields> fields_;
+  scene::Scene scene_;
+  std::shared_ptr<gl::ProgramCache> programs_;
+  DetailNoises noises_;
+  ResidentMedium::Cost cost_;
+};
+
+// The mean of |a - b| over that of b.
+double Off(const std::vector<double>& a, const std::vector<double>& b) {
+  double off = 0.0;
+  double all = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    off += std::abs(a[i] - b[i]);
+    all += b[i];
+  }
+  return off / all;
+}
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+TEST_F(LightMediumTest, WithoutDetailIsTheMediumAtCells) {
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
+  const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
+  LightMedium light(programs_);
+  // Half floats of the medium's and its own.
+  EXPECT_LT(Off(Made(&light, medium), Expected(medium, 1)), 1e-3);
+}
+
+TEST_F(LightMediumTest, WithDetailIsTheMeanOverEachCell) {
+  test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
+  const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
+  ASSERT_GT(medium.Variant().details, 0);
+  LightMedium light(programs_);
+  const std::vector<double> made = Made(&light, medium);
+  const std::vector<double> expected = Expected(medium, 4);
+  EXPECT_NEAR(Mean(made) / Mean(expected), 1.0, 0.02);
+  // 0.038; 0.066 with the medium at the cells' centres.
+  EXPECT_LT(Off(made, expected), 0.05);
+}
+
+TEST_F(LightMediumTest, IsMadeAnewForOtherFieldsAlone) {
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
+  const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
+  LightMedium light(programs_);
+  const std::vector<double> before = Made(&light, medium);
+  for (scene::FieldParameters& field : scene_.fields) field.scale *= 0.25F;
+  const ResidentMedium thinner(scene_, *fields_, &noises_, &cost_);
+  EXPECT_NEAR(std::ranges::max(Made(&light, thinner)) / std::ranges::max(before), 0.25, 0.001);
+  EXPECT_EQ(Made(&light, medium), before);
+}
+
+}  // namespace
+}  // namespace thunderhead::renderers
