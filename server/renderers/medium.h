@@ -83,7 +83,7 @@ class ResidentMedium {
   double OccupiedShare() const;
   double ShortestBrickSide_m() const;
   // The blocks of cells that a ray may meet (volume::CellBlocks): how many, and their list, bound
-  // for light_volume/arrive.comp.
+  // for light_volume/cell_blocks.glsl.
   int BlockCount() const { return block_count_; }
   void BindBlocks(const gl::Program& program) const;
 

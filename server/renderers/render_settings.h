@@ -52,7 +52,7 @@ struct DrawQuality {
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
   // Varied by sweeps only; sessions draw with these.
   double light_detail = 1.0;      // texels of the light volume, over the usual ones, along a side
-  bool single_precision = false;  // in the light volume's buffers and the frame; half is usual
+  bool single_precision = false;  // in buffers of light and the frame; half is usual
   // Correction of the light volume, for the light that the scene has.
   std::shared_ptr<const LightCorrection> correction{};
   // Makes the light volume fill LinearFrame::places in place of a picture.

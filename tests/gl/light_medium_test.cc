@@ -32,29 +32,34 @@ class LightMediumTest : public testing::Test {
     programs_ = std::make_shared<gl::ProgramCache>();
   }
 
-  const scene::MediumSettings& Settings() const {
-    return std::get<scene::LightVolume>(scene_.rendering.technique).medium;
+  GroupWeights WeightsOf(const ResidentMedium& medium) const {
+    return {medium.Content(), std::get<scene::LightVolume>(scene_.rendering.technique).medium};
   }
 
-  // Extinction at cells, in 1/m.
-  std::vector<double> Made(LightMedium* light, const ResidentMedium& medium) {
-    const GroupWeights weights(medium.Content(), Settings());
-    const absl::Status status = light->Update(medium, weights, false);
+  // Extinction of light at cells, or that of transport, in 1/m.
+  std::vector<double> Made(LightMedium* light, const ResidentMedium& medium,
+                           bool transport = false) {
+    const absl::Status status = light->Update(medium, WeightsOf(medium), transport);
     EXPECT_TRUE(status.ok()) << status;
+    return TexelsOf(*light, medium, transport ? GL_GREEN : GL_RED);
+  }
+
+  static std::vector<double> TexelsOf(const LightMedium& light, const ResidentMedium& medium,
+                                      GLenum channel) {
     std::vector<std::uint16_t> halves(medium.Bounds().grid.CellCount());
-    light->Texture().Download(GL_RED, GL_HALF_FLOAT, halves.size() * sizeof(std::uint16_t),
-                              halves.data());
+    light.Texture().Download(channel, GL_HALF_FLOAT, halves.size() * sizeof(std::uint16_t),
+                             halves.data());
     std::vector<double> values;
     for (const std::uint16_t half : halves) {
-      values.push_back(base::FloatFromHalf(half) * light->PerMetre());
+      values.push_back(base::FloatFromHalf(half) * light.PerMetre());
     }
     return values;
   }
 
   // The mean of the medium over each cell from `samples` along each side, in 1/m.
-  std::vector<double> Expected(const ResidentMedium& medium, int samples) {
+  std::vector<double> Expected(const ResidentMedium& medium, const std::vector<double>& weights,
+                               int samples) {
     const auto detailed = scene::DetailedMedium::Of(scene_, *fields_, medium.Variant().details > 0);
-    const GroupWeights weights(medium.Content(), Settings());
     const std::vector<volume::ExtinctionTerm>& terms = medium.Content().terms;
     const volume::RegularGrid& grid = medium.Bounds().grid;
     std::vector<double> values;
@@ -68,7 +73,7 @@ class LightMediumTest : public testing::Test {
             const auto by_field = detailed->At_per_m(
                 grid.low_corner_m + (glm::dvec3(x, y, z) + within) * grid.spacing_m);
             for (std::size_t i = 0; i < terms.size(); ++i) {
-              sum += weights.light[static_cast<std::size_t>(terms[i].channel)] * by_field[i];
+              sum += weights[static_cast<std::size_t>(terms[i].channel)] * by_field[i];
             }
           }
           values.push_back(sum / (samples * samples * samples));
@@ -108,7 +113,7 @@ TEST_F(LightMediumTest, WithoutDetailIsTheMediumAtCells) {
   const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
   LightMedium light(programs_);
   // Half floats of the medium's and its own.
-  EXPECT_LT(Off(Made(&light, medium), Expected(medium, 1)), 1e-3);
+  EXPECT_LT(Off(Made(&light, medium), Expected(medium, WeightsOf(medium).light, 1)), 1e-3);
 }
 
 TEST_F(LightMediumTest, WithDetailIsTheMeanOverEachCell) {
@@ -117,21 +122,44 @@ TEST_F(LightMediumTest, WithDetailIsTheMeanOverEachCell) {
   ASSERT_GT(medium.Variant().details, 0);
   LightMedium light(programs_);
   const std::vector<double> made = Made(&light, medium);
-  const std::vector<double> expected = Expected(medium, 4);
+  const std::vector<double> expected = Expected(medium, WeightsOf(medium).light, 4);
   EXPECT_NEAR(Mean(made) / Mean(expected), 1.0, 0.02);
   // 0.038; 0.066 with the medium at the cells' centres.
   EXPECT_LT(Off(made, expected), 0.05);
 }
 
-TEST_F(LightMediumTest, IsMadeAnewForOtherFieldsAlone) {
+TEST_F(LightMediumTest, HasTransportWhereItIsAskedFor) {
+  test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
+  std::get<scene::LightVolume>(scene_.rendering.technique).medium.transport =
+      scene::Transport::kConsistent;
+  const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
+  LightMedium light(programs_);
+  Made(&light, medium);  // without
+  const GroupWeights weights = WeightsOf(medium);
+  EXPECT_LT(Off(Made(&light, medium, true), Expected(medium, weights.transport, 1)), 1e-3);
+  EXPECT_LT(Off(TexelsOf(light, medium, GL_RED), Expected(medium, weights.light, 1)), 1e-3);
+}
+
+TEST_F(LightMediumTest, IsMadeAnewForOtherFieldsOrWeightsAlone) {
   test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
   LightMedium light(programs_);
   const std::vector<double> before = Made(&light, medium);
+  const double most = std::ranges::max(before);
   for (scene::FieldParameters& field : scene_.fields) field.scale *= 0.25F;
   const ResidentMedium thinner(scene_, *fields_, &noises_, &cost_);
-  EXPECT_NEAR(std::ranges::max(Made(&light, thinner)) / std::ranges::max(before), 0.25, 0.001);
+  EXPECT_NEAR(std::ranges::max(Made(&light, thinner)) / most, 0.25, 0.001);
   EXPECT_EQ(Made(&light, medium), before);
+
+  GroupWeights half = WeightsOf(medium);
+  for (double& weight : half.light) weight *= 0.5;
+  ASSERT_TRUE(light.Update(medium, half, false).ok());
+  EXPECT_NEAR(std::ranges::max(TexelsOf(light, medium, GL_RED)) / most, 0.5, 0.001);
+
+  // Nothing is made for what it is already: what has been cleared stays so.
+  glClearTexImage(light.Texture().Get(), 0, GL_RED, GL_HALF_FLOAT, nullptr);
+  ASSERT_TRUE(light.Update(medium, half, false).ok());
+  EXPECT_EQ(std::ranges::max(TexelsOf(light, medium, GL_RED)), 0.0);
 }
 
 }  // namespace

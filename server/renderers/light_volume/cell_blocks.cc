@@ -11,8 +11,8 @@ constexpr int kMaxGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each
 
 }  // namespace
 
-absl::Status ForBlocks(gl::Pieces& pieces, const gl::PieceCost& block, const ResidentMedium& medium,
-                       const gl::Program& program) {
+absl::Status ForCellBlocks(gl::Pieces& pieces, const gl::PieceCost& block,
+                           const ResidentMedium& medium, const gl::Program& program) {
   medium.BindBlocks(program);
   program.Set(uniform::cell_count, medium.Bounds().grid.cells);
   program.Use();

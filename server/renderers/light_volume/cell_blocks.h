@@ -9,7 +9,7 @@
 namespace thunderhead::renderers {
 
 // Runs `program`, whose other inputs are bound, with a work group for each block of `medium`.
-absl::Status ForBlocks(gl::Pieces& pieces, const gl::PieceCost& block, const ResidentMedium& medium,
-                       const gl::Program& program);
+absl::Status ForCellBlocks(gl::Pieces& pieces, const gl::PieceCost& block,
+                           const ResidentMedium& medium, const gl::Program& program);
 
 }  // namespace thunderhead::renderers

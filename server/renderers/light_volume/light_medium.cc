@@ -15,7 +15,8 @@ namespace {
 constexpr gl::PieceCost kLightMediumBlock{"light medium", 12000.0};
 
 // The texel value of the thickest cell without detail. Detail thickens a cell up to nearly twice,
-// and half floats reach from 2^-24 to 2^16.
+// and four times before, to keep columns' water (volume/water_paths.h); half floats reach from
+// 2^-24 to 2^16.
 constexpr double kThickestTexel = 4096.0;
 
 double PerMetreOf(const ResidentMedium& medium, const GroupWeights& weights) {
@@ -45,13 +46,15 @@ absl::Status LightMedium::Update(const ResidentMedium& medium, const GroupWeight
   if (texture_.Size() != cells || texture_.InternalFormat() != format) {
     texture_ = gl::Texture3D(format, cells);
   }
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   texture_.Clear();
   per_m_ = PerMetreOf(medium, weights);
   medium.Bind(*program);
   program->Set(uniform::light_weights, medium.Weights(Times(weights.light, 1.0 / per_m_)));
   program->Set(uniform::transport_weights, medium.Weights(Times(weights.transport, 1.0 / per_m_)));
   texture_.BindImage(shaders::kLightMediumImage, GL_WRITE_ONLY);
-  THUNDERHEAD_RETURN_IF_ERROR(ForBlocks(programs_->Pieces(), kLightMediumBlock, medium, *program));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ForCellBlocks(programs_->Pieces(), kLightMediumBlock, medium, *program));
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   key_ = std::move(key);
   return absl::OkStatus();

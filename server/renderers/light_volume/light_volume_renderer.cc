@@ -194,7 +194,7 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   carried_.Bind(shaders::kCarriedUnit);
   thickness_.Bind(shaders::kThicknessUnit);
   arrived_.BindImage(shaders::kArrivedImage, GL_WRITE_ONLY);
-  absl::Status arrived = ForBlocks(programs_->Pieces(), kArriveBlock, medium, *program);
+  absl::Status arrived = ForCellBlocks(programs_->Pieces(), kArriveBlock, medium, *program);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return arrived;
 }

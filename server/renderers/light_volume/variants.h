@@ -6,7 +6,7 @@
 
 namespace thunderhead::renderers {
 
-// Variant of carry.comp, and beside the medium's of arrive.comp.
+// Variant of carry.comp; with the medium's, of arrive.comp.
 struct CarryVariant {
   gl::DefineValue consistent;   // transport
   gl::DefineValue translucent;  // light that is scattered goes on

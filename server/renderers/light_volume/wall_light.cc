@@ -8,8 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "glm/common.hpp"
-
 namespace thunderhead::renderers {
 namespace {
 

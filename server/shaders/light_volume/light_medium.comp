@@ -1,6 +1,7 @@
 // The medium as the light that is carried sees it: one value a cell, whatever its groups and detail, so that a sample along the
-// sun's rays is one of one texture. With detail that is the mean over the cell, which keeps what light loses on its way.
-// r: extinction of the light; g: similarity-scaled extinction, of variants with DIFFUSE; both over `light_medium_per_m`.
+// sun's rays is one of one texture. With detail that is the mean over the cell, which keeps what light loses on its way, but for
+// what the mean spreads into cells of empty bricks, where carry.comp does not look.
+// r: extinction of the light; g: similarity-scaled extinction, kept by textures that have it; both over `light_medium_per_m`.
 // Variants: GROUPS, DETAILS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
