@@ -10,7 +10,8 @@ namespace thunderhead::app {
 
 class CloudsFolder {
  public:
-  // Creates the folder if it does not exist; an empty `path` creates a temporary one.
+  // Creates the folder if it does not exist; an empty `path` creates a temporary one, after
+  // deleting those of servers that were killed before they could.
   static absl::StatusOr<CloudsFolder> Open(const std::string& path);
   CloudsFolder(CloudsFolder&& other) noexcept;
   CloudsFolder& operator=(CloudsFolder&&) = delete;
@@ -22,10 +23,10 @@ class CloudsFolder {
   std::vector<std::string> Files() const;
 
  private:
-  CloudsFolder(std::string path, bool temporary);
+  CloudsFolder(std::string path, int held);
 
   std::string path_;
-  bool temporary_;
+  int held_;  // the descriptor of a temporary folder, with its lock; -1: not temporary
 };
 
 }  // namespace thunderhead::app

@@ -1,7 +1,10 @@
 // The program itself, killed and started again: the same session for everybody who comes back.
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -132,6 +135,67 @@ TEST_F(KilledServerTest, EachServerNeedsAStateFolderOfItsOwn) {
   EXPECT_EQ(Start()->stub(), nullptr);
   EXPECT_THAT(::testing::internal::GetCapturedStderr(),
               ::testing::AllOf(::testing::HasSubstr(state_), ::testing::HasSubstr("--state")));
+}
+
+// While it lives, programs that are started have their temporary files in a folder.
+class TemporaryFiles {
+ public:
+  explicit TemporaryFiles(const std::string& folder) {
+    const char* const before = getenv("TMPDIR");
+    if (before != nullptr) before_ = before;
+    setenv("TMPDIR", folder.c_str(), 1);
+  }
+  ~TemporaryFiles() {
+    before_.has_value() ? setenv("TMPDIR", before_->c_str(), 1) : unsetenv("TMPDIR");
+  }
+  TemporaryFiles(const TemporaryFiles&) = delete;
+  TemporaryFiles& operator=(const TemporaryFiles&) = delete;
+
+ private:
+  std::optional<std::string> before_;
+};
+
+// Of a temporary folder, those with clouds.
+std::vector<std::string> CloudFolders(const std::string& parent) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(parent)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("thunderhead-clouds-")) names.push_back(name);
+  }
+  return names;
+}
+
+TEST_F(KilledServerTest, TheNextDeletesItsTemporaryClouds) {
+  const std::string parent = folder_.File("tmp");
+  std::filesystem::create_directory(parent);
+  const TemporaryFiles temporary(parent);
+  const auto start = [&](const std::string& state) {
+    return std::make_unique<ServedProgram>(PROGRAM, kServedSample, folder_.File(state));
+  };
+  const auto make_old = [&](const std::string& name) {
+    const std::filesystem::path path = std::filesystem::path(parent) / name;
+    std::filesystem::last_write_time(
+        path, std::filesystem::file_time_type::clock::now() - std::chrono::minutes(5));
+  };
+  const auto alive = start("one");
+  ASSERT_NE(alive->stub(), nullptr);
+  const std::vector<std::string> of_alive = CloudFolders(parent);
+  ASSERT_EQ(of_alive.size(), 1U);
+  auto killed = start("two");
+  ASSERT_NE(killed->stub(), nullptr);
+  ASSERT_EQ(CloudFolders(parent).size(), 2U);
+  killed->End(SIGKILL);
+  for (const std::string& name : CloudFolders(parent)) make_old(name);
+  std::filesystem::create_directory(parent + "/thunderhead-clouds-starts");
+
+  killed = start("three");
+  ASSERT_NE(killed->stub(), nullptr);
+  // That of the one alive, of the third, and the new one that nobody holds yet.
+  EXPECT_EQ(CloudFolders(parent).size(), 3U);
+  EXPECT_THAT(CloudFolders(parent), ::testing::Contains(of_alive.front()));
+  killed->End(SIGTERM);
+  EXPECT_THAT(CloudFolders(parent),
+              ::testing::UnorderedElementsAre(of_alive.front(), "thunderhead-clouds-starts"));
 }
 
 }  // namespace
