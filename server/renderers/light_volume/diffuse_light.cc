@@ -52,6 +52,10 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   FindExits();
   Link();
   SolveSky();
+  // What is worked out for a sun has it by number (optics_).
+  cells_.light_per_m = std::vector<float>();
+  cells_.transport_per_m = std::vector<float>();
+  cells_.absorption_per_m = std::vector<float>();
   fluence_.assign(numbered_.Count(), 0.0F);
 }
 

@@ -82,7 +82,7 @@ class DiffuseLight {
   // Makes of the last fluence the start for another sun.
   void BeginFluence(const glm::dvec3& towards_sun);
 
-  DiffusionCells cells_;
+  DiffusionCells cells_;  // their extinction until the sky is solved for
   WallLight walls_;
   NumberedCells numbered_;
   LinkedCells linked_;

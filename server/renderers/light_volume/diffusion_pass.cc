@@ -25,7 +25,7 @@ constexpr std::size_t kTexelsInShare = 32768;  // that a thread works on at a ti
 
 // Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
 // that is not empty.
-constexpr std::size_t kBytesPerCell = 76;
+constexpr std::size_t kBytesPerCell = 56;
 constexpr std::size_t kBytesPerFullCell = 172;
 
 std::size_t BytesFor(const DiffusionCells& cells) {

@@ -90,15 +90,14 @@ class Walk {
 
 }  // namespace
 
-WallLight::WallLight(const DiffusionCells& cells)
-    : cells_(cells), hidden_(cells.transport_per_m.size(), 0.0F) {
+WallLight::WallLight(const DiffusionCells& cells) : hidden_(cells.transport_per_m.size(), 0.0F) {
   wall_size_m_ = kWallSize * cells.cell_m.z * cells.size.z;
   wall_per_m_ = static_cast<float>(kWallDepth / wall_size_m_);
   for (std::size_t i = 0; i < hidden_.size(); ++i) {
-    if (IsWall(i)) Look(i);
+    if (IsWall(cells, i)) Look(cells, i);
   }
   NumberWalls();
-  beside_walls_ = Fringe(cells_, walls_);
+  beside_walls_ = Fringe(cells, walls_);
 }
 
 void WallLight::NumberWalls() {
@@ -114,24 +113,25 @@ void WallLight::NumberWalls() {
   first_seen_.push_back(seen_.size());
 }
 
-bool WallLight::IsWall(std::size_t cell) const {
-  return cells_.transport_per_m[cell] > wall_per_m_;
+bool WallLight::IsWall(const DiffusionCells& cells, std::size_t cell) const {
+  return cells.transport_per_m[cell] > wall_per_m_;
 }
 
-void WallLight::Look(std::size_t wall) {
+void WallLight::Look(const DiffusionCells& cells, std::size_t wall) {
   static const std::array<Rays, 6> kRays = {RaysFrom(0), RaysFrom(1), RaysFrom(2),
                                             RaysFrom(3), RaysFrom(4), RaysFrom(5)};
   const std::size_t before = seen_.size();
-  const glm::dvec3 face(cells_.cell_m.y * cells_.cell_m.z, cells_.cell_m.x * cells_.cell_m.z,
-                        cells_.cell_m.x * cells_.cell_m.y);
+  const glm::dvec3 face(cells.cell_m.y * cells.cell_m.z, cells.cell_m.x * cells.cell_m.z,
+                        cells.cell_m.x * cells.cell_m.y);
   double open_m2 = 0.0;
   for (int side = 0; side < 6; ++side) {
-    glm::ivec3 next = cells_.CellAt(wall);
+    glm::ivec3 next = cells.CellAt(wall);
     next[side / 2] += side % 2 == 1 ? 1 : -1;
-    if (cells_.Contains(next) && IsWall(cells_.Offset(next))) continue;
+    if (cells.Contains(next) && IsWall(cells, cells.Offset(next))) continue;
     open_m2 += face[side / 2];
-    if (!cells_.Contains(next)) continue;
-    for (const glm::dvec3& ray : kRays[static_cast<std::size_t>(side)]) Follow(wall, side, ray);
+    if (!cells.Contains(next)) continue;
+    for (const glm::dvec3& ray : kRays[static_cast<std::size_t>(side)])
+      Follow(cells, wall, side, ray);
   }
   for (std::size_t i = before; i < seen_.size(); ++i) {
     seen_[i].share /= static_cast<float>(open_m2);
@@ -140,26 +140,26 @@ void WallLight::Look(std::size_t wall) {
   if (seen_.size() > before) walls_.push_back(static_cast<std::int32_t>(wall));
 }
 
-void WallLight::Follow(std::size_t wall, int side, const glm::dvec3& ray) {
+void WallLight::Follow(const DiffusionCells& cells, std::size_t wall, int side,
+                       const glm::dvec3& ray) {
   const int axis = side / 2;
-  glm::ivec3 first = cells_.CellAt(wall);
+  glm::ivec3 first = cells.CellAt(wall);
   first[axis] += side % 2 == 1 ? 1 : -1;
   glm::dvec3 start = glm::dvec3(first) + 0.5;
   start[axis] += side % 2 == 1 ? -0.5 : 0.5;
-  Walk walk(cells_.cell_m, start, first, ray);
+  Walk walk(cells.cell_m, start, first, ray);
   const double near_m = std::max(kSameSlopeCells * walk.ShortestWay_m(), kSameSlope * wall_size_m_);
   float transmittance = 1.0F;
-  while (cells_.Contains(walk.Cell()) && transmittance > kMinTransmittance) {
-    const std::size_t here = cells_.Offset(walk.Cell());
-    if (IsWall(here)) {
+  while (cells.Contains(walk.Cell()) && transmittance > kMinTransmittance) {
+    const std::size_t here = cells.Offset(walk.Cell());
+    if (IsWall(cells, here)) {
       if (walk.Gone_m() < near_m) return;
-      const double face_m2 =
-          cells_.cell_m.x * cells_.cell_m.y * cells_.cell_m.z / cells_.cell_m[axis];
+      const double face_m2 = cells.cell_m.x * cells.cell_m.y * cells.cell_m.z / cells.cell_m[axis];
       const auto share = static_cast<float>(face_m2 / (kRings * kRaysInRing)) * transmittance;
       seen_.push_back({static_cast<std::int32_t>(wall), static_cast<std::int32_t>(here), share});
       return;
     }
-    transmittance *= std::exp(-static_cast<float>(walk.Leave()) * cells_.transport_per_m[here]);
+    transmittance *= std::exp(-static_cast<float>(walk.Leave()) * cells.transport_per_m[here]);
   }
 }
 

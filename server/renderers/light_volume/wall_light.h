@@ -34,12 +34,11 @@ class WallLight {
     std::int32_t to_wall = -1;  // in walls_; none if that wall sees no others
   };
 
-  bool IsWall(std::size_t cell) const;
-  void Look(std::size_t wall);
+  bool IsWall(const DiffusionCells& cells, std::size_t cell) const;
+  void Look(const DiffusionCells& cells, std::size_t wall);
   void NumberWalls();
-  void Follow(std::size_t wall, int side, const glm::dvec3& ray);
+  void Follow(const DiffusionCells& cells, std::size_t wall, int side, const glm::dvec3& ray);
 
-  DiffusionCells cells_;
   double wall_size_m_ = 0.0;
   float wall_per_m_ = 0.0F;
   std::vector<Seen> seen_;               // ordered by `from`
