@@ -1,10 +1,5 @@
 #include "app/clouds_folder.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -24,20 +19,6 @@ constexpr const char* kTemporary = "thunderhead-clouds-";
 // A server that starts has its folder for a moment before it locks it.
 constexpr std::chrono::minutes kStarting{1};
 
-// A descriptor with the lock of a folder of this user, which the system releases when the process
-// ends, however that happens; -1 if a process holds it.
-int Held(const std::string& folder) {
-  const int file = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-  if (file < 0) return -1;
-  struct stat about {};
-  if (fstat(file, &about) == 0 && about.st_uid == geteuid() &&
-      flock(file, LOCK_EX | LOCK_NB) == 0) {
-    return file;
-  }
-  close(file);
-  return -1;
-}
-
 // Deletes what killed servers left.
 void DeleteAbandoned(const fs::path& parent) {
   std::error_code error;
@@ -49,25 +30,24 @@ void DeleteAbandoned(const fs::path& parent) {
         fs::file_time_type::clock::now() - entry->last_write_time(ignored) < kStarting) {
       continue;
     }
-    const int file = Held(folder.string());
-    if (file < 0) continue;
-    fs::remove_all(folder, ignored);
-    close(file);
+    const auto lock = store::FileLock::TryFolder(folder.string());
+    if (lock.has_value()) fs::remove_all(folder, ignored);
   }
 }
 
 }  // namespace
 
-CloudsFolder::CloudsFolder(std::string path, int held) : path_(std::move(path)), held_(held) {}
+CloudsFolder::CloudsFolder(std::string path, std::optional<store::FileLock> held)
+    : path_(std::move(path)), held_(std::move(held)) {}
 
 CloudsFolder::CloudsFolder(CloudsFolder&& other) noexcept
-    : path_(std::move(other.path_)), held_(std::exchange(other.held_, -1)) {}
+    : path_(std::move(other.path_)), held_(std::move(other.held_)) {
+  other.held_.reset();
+}
 
 CloudsFolder::~CloudsFolder() {
-  if (held_ < 0) return;
   std::error_code error;
-  fs::remove_all(path_, error);
-  close(held_);
+  if (held_.has_value()) fs::remove_all(path_, error);
 }
 
 absl::StatusOr<CloudsFolder> CloudsFolder::Open(const std::string& path) {
@@ -81,13 +61,13 @@ absl::StatusOr<CloudsFolder> CloudsFolder::Open(const std::string& path) {
           absl::StrCat("cannot create a temporary folder for clouds (", std::strerror(errno),
                        "); name a folder with --clouds"));
     }
-    const int held = Held(name);
-    if (held < 0) {
+    auto held = store::FileLock::TryFolder(name);
+    if (!held.has_value()) {
       return absl::FailedPreconditionError(
           absl::StrCat("cannot lock the temporary folder for clouds, ", name, " (",
                        std::strerror(errno), "); name a folder with --clouds"));
     }
-    return CloudsFolder(std::move(name), held);
+    return CloudsFolder(std::move(name), std::move(held));
   }
   fs::create_directories(path, error);
   if (error || !fs::is_directory(path)) {
@@ -95,7 +75,7 @@ absl::StatusOr<CloudsFolder> CloudsFolder::Open(const std::string& path) {
         absl::StrCat("--clouds is '", path,
                      "', which is not a folder and cannot be created: ", error.message()));
   }
-  return CloudsFolder(path, -1);
+  return CloudsFolder(path, std::nullopt);
 }
 
 std::vector<std::string> CloudsFolder::Files() const {

@@ -1,10 +1,12 @@
 // The folder for generated clouds: the user's, or a temporary one.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "store/file_lock.h"
 
 namespace thunderhead::app {
 
@@ -23,10 +25,10 @@ class CloudsFolder {
   std::vector<std::string> Files() const;
 
  private:
-  CloudsFolder(std::string path, int held);
+  CloudsFolder(std::string path, std::optional<store::FileLock> held);
 
   std::string path_;
-  int held_;  // the descriptor of a temporary folder, with its lock; -1: not temporary
+  std::optional<store::FileLock> held_;  // of a temporary folder alone
 };
 
 }  // namespace thunderhead::app

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -33,6 +34,16 @@ absl::StatusOr<FileLock> FileLock::Take(const std::string& path) {
           absl::StrCat(path, " is held by another process (", std::strerror(errno), ")"));
     }
     std::this_thread::sleep_for(kPause);
+  }
+  return lock;
+}
+
+std::optional<FileLock> FileLock::TryFolder(const std::string& folder) {
+  FileLock lock(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  struct stat about {};
+  if (lock.file_ < 0 || fstat(lock.file_, &about) != 0 || about.st_uid != geteuid() ||
+      flock(lock.file_, LOCK_EX | LOCK_NB) != 0) {
+    return std::nullopt;
   }
   return lock;
 }

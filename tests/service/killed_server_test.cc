@@ -190,7 +190,7 @@ TEST_F(KilledServerTest, TheNextDeletesItsTemporaryClouds) {
 
   killed = start("three");
   ASSERT_NE(killed->stub(), nullptr);
-  // That of the one alive, of the third, and the new one that nobody holds yet.
+  // The folder of the server that runs, that of the third server, and the new one without a lock.
   EXPECT_EQ(CloudFolders(parent).size(), 3U);
   EXPECT_THAT(CloudFolders(parent), ::testing::Contains(of_alive.front()));
   killed->End(SIGTERM);

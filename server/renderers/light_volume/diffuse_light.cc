@@ -52,7 +52,7 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   FindExits();
   Link();
   SolveSky();
-  // What is worked out for a sun has it by number (optics_).
+  // For a sun extinction is read by number alone (optics_).
   cells_.light_per_m = std::vector<float>();
   cells_.transport_per_m = std::vector<float>();
   cells_.absorption_per_m = std::vector<float>();

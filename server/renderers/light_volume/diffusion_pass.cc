@@ -1,8 +1,5 @@
 #include "renderers/light_volume/diffusion_pass.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +9,7 @@
 #include "gl/device_memory.h"
 #include "glm/common.hpp"
 #include "renderers/light_volume/bindings.h"
+#include "renderers/light_volume/shares.h"
 #include "shaders/bindings.h"
 #include "shaders/uniforms.h"
 
@@ -20,8 +18,6 @@ namespace {
 
 // Larger media are solved on a coarser grid than their own.
 constexpr double kMaxDiffusionCells = 4e6;
-
-constexpr std::size_t kTexelsInShare = 32768;  // that a thread works on at a time
 
 // Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
 // that is not empty.
@@ -68,14 +64,13 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
         light_->AtCells([&](const glm::dvec3& from_corner_m, const glm::vec3& outward) {
           return ground.ShareAt(medium.Bounds().grid.low_corner_m + from_corner_m, outward);
         });
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, sun.size(), kTexelsInShare), [&](const auto& share) {
-          for (std::size_t i = share.begin(); i != share.end(); ++i) {
-            net_inward_texels_[i] = {
-                base::HalfFromFloat(sun[i]), base::HalfFromFloat(light_->FromWalls()[i]),
-                base::HalfFromFloat(light_->SkyInward()[i].y), base::HalfFromFloat(from_ground[i])};
-          }
-        });
+    ForShares(sun.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        net_inward_texels_[i] = {
+            base::HalfFromFloat(sun[i]), base::HalfFromFloat(light_->FromWalls()[i]),
+            base::HalfFromFloat(light_->SkyInward()[i].y), base::HalfFromFloat(from_ground[i])};
+      }
+    });
     net_inward_.Upload(GL_RGBA, GL_HALF_FLOAT, net_inward_texels_.data());
   });
 }
@@ -139,12 +134,11 @@ absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
     arrived_halves_.resize(arrived_root_.size());
     arrived.Download(GL_RED, GL_HALF_FLOAT, arrived_halves_.size() * sizeof(std::uint16_t),
                      arrived_halves_.data());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, arrived_root_.size(), kTexelsInShare),
-                      [&](const auto& share) {
-                        for (std::size_t i = share.begin(); i != share.end(); ++i) {
-                          arrived_root_[i] = base::FloatFromHalf(arrived_halves_[i]);
-                        }
-                      });
+    ForShares(arrived_root_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        arrived_root_[i] = base::FloatFromHalf(arrived_halves_[i]);
+      }
+    });
     return absl::OkStatus();
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(

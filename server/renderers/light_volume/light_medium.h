@@ -36,7 +36,7 @@ class LightMedium {
   double PerMetre() const { return per_m_; }
 
  private:
-  // What it is made of.
+  // The inputs that the texture depends on.
   struct Key {
     std::uint64_t medium = 0;
     std::vector<double> light;

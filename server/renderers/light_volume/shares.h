@@ -14,9 +14,9 @@ inline constexpr std::size_t kShare = 4096;
 
 // Calls `work` with the first of each share of `count` cells and the one after its last.
 template <typename Work>
-void ForShares(std::size_t count, const Work& work) {
-  tbb::parallel_for(std::size_t{0}, (count + kShare - 1) / kShare, [&](std::size_t share) {
-    work(share * kShare, std::min((share + 1) * kShare, count));
+void ForShares(std::size_t count, const Work& work, std::size_t in_share = kShare) {
+  tbb::parallel_for(std::size_t{0}, (count + in_share - 1) / in_share, [&](std::size_t share) {
+    work(share * in_share, std::min((share + 1) * in_share, count));
   });
 }
 

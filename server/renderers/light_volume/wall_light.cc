@@ -1,12 +1,11 @@
 #include "renderers/light_volume/wall_light.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
+
+#include "renderers/light_volume/shares.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -167,9 +166,10 @@ std::vector<float> WallLight::Arriving(const std::vector<float>& own) const {
   std::vector<float> arriving(walls_.size(), 0.0F);
   std::vector<float> next(walls_.size());
   for (int turn = 0; turn < kTurns && !seen_.empty(); ++turn) {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, walls_.size(), kWallsInShare), [&](const auto& share) {
-          for (std::size_t wall = share.begin(); wall != share.end(); ++wall) {
+    ForShares(
+        walls_.size(),
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t wall = begin; wall < end; ++wall) {
             float sum = 0.0F;
             for (std::size_t i = first_seen_[wall]; i < first_seen_[wall + 1]; ++i) {
               const Seen& seen = seen_[i];
@@ -179,7 +179,8 @@ std::vector<float> WallLight::Arriving(const std::vector<float>& own) const {
             }
             next[wall] = sum;
           }
-        });
+        },
+        kWallsInShare);
     std::swap(arriving, next);
   }
   std::vector<float> values(own.size(), 0.0F);

@@ -83,11 +83,8 @@ void main() {
   vec3 to_far = mat3(light_from_local) * (looks_near ? near_m * towards_sun : vec3(0.0));
 
   ivec3 cells_left = min(cells_per_block, cell_count - block.first_cell);
-  int cells = cells_in_block();
-  float per_row = 1.0 / float(cells_per_block.x);
-  float per_layer = per_row / float(cells_per_block.y);
-  for (int i = int(gl_LocalInvocationIndex); i < cells; i += kBlockGroupSize) {
-    ivec3 within = cell_within(i, per_row, per_layer);
+  for (int i = int(gl_LocalInvocationIndex); i < block.cells; i += kBlockGroupSize) {
+    ivec3 within = cell_within(block, i);
     if (any(greaterThanEqual(within, cells_left))) continue;
     ivec3 cell = block.first_cell + within;
     vec3 here_place = first_place + light_step * vec3(within);

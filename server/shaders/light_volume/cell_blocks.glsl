@@ -16,22 +16,27 @@ struct Block {
   bool listed;  // groups in rows may be more than blocks
   bool thick;
   ivec3 first_cell;
+  int cells;
+  float per_row;  // the reciprocals of the numbers of cells in a row and in a layer
+  float per_layer;
 };
 
 Block block_of_group() {
   uint at = uint(first_block) + gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
-  if (at >= uint(end_block)) return Block(false, false, ivec3(0));
+  ivec3 size = cells_per_block;
+  float per_row = 1.0 / float(size.x);
+  Block block = Block(at < uint(end_block), false, ivec3(0), size.x * size.y * size.z, per_row, per_row / float(size.y));
+  if (!block.listed) return block;
   uint packed_block = blocks[at];
   ivec3 place = ivec3(packed_block & 1023u, packed_block >> 10 & 1023u, packed_block >> 20 & 1023u);
-  return Block(true, (packed_block & kThickBlock) != 0u, place * cells_per_block);
+  block.thick = (packed_block & kThickBlock) != 0u;
+  block.first_cell = place * size;
+  return block;
 }
 
-int cells_in_block() { return cells_per_block.x * cells_per_block.y * cells_per_block.z; }
-
-// Cell `i` of a block, from its first; `per_row` and `per_layer` are the reciprocals of the numbers of cells in each. Not by
-// integers: software divides those one by one.
-ivec3 cell_within(int i, float per_row, float per_layer) {
-  int row = int((float(i) + 0.5) * per_row);
-  int layer = int((float(i) + 0.5) * per_layer);
+// Cell `i` of a block, from its first. Not by integers: software divides those one by one.
+ivec3 cell_within(Block block, int i) {
+  int row = int((float(i) + 0.5) * block.per_row);
+  int layer = int((float(i) + 0.5) * block.per_layer);
   return ivec3(i - row * cells_per_block.x, row - layer * cells_per_block.y, layer);
 }

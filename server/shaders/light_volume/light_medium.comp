@@ -26,11 +26,8 @@ void main() {
   Block block = block_of_group();
   if (!block.listed) return;
   vec3 cell_size = 1.0 / vec3(cell_count);
-  int cells = cells_in_block();
-  float per_row = 1.0 / float(cells_per_block.x);
-  float per_layer = per_row / float(cells_per_block.y);
-  for (int i = int(gl_LocalInvocationIndex); i < cells; i += kBlockGroupSize) {
-    ivec3 cell = block.first_cell + cell_within(i, per_row, per_layer);
+  for (int i = int(gl_LocalInvocationIndex); i < block.cells; i += kBlockGroupSize) {
+    ivec3 cell = block.first_cell + cell_within(block, i);
     if (any(greaterThanEqual(cell, cell_count))) continue;
     vec3 middle = (vec3(cell) + 0.5) * cell_size;
     vec2 sum = vec2(0.0);

@@ -97,7 +97,7 @@ struct System {
               box.Contains(next) ? numbered.NumberOf(box.Offset(next)) : NumberedCells::kNone;
           Links& links = step < 0 ? down[n] : up[n];
           links.to[axis] = to;
-          // That of a link down is the one which the cell below, numbered before, has upwards.
+          // A link down has the conductance that the cell below, numbered before, has upwards.
           links.conductance[axis] = to != NumberedCells::kNone && step < 0
                                         ? up[static_cast<std::size_t>(to)].conductance[axis]
                                         : value(random);
@@ -106,7 +106,7 @@ struct System {
     }
   }
 
-  // What must be put into cell `n` for it to have what `values` say.
+  // The light that must be put into cell `n` for the cells to have `values`.
   double Needed(std::size_t n, const std::vector<float>& values) const {
     double sum = static_cast<double>(loss[n]) * values[n];
     for (const Links* links : {&down[n], &up[n]}) {
