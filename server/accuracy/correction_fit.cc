@@ -9,12 +9,15 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// Prior standard deviations of a texel's factor from that of the texel above (docs/decisions/0012:
-// the result hardly depends on them): of the mean over colours; of the terms that depend on
-// direction; and, as a share of these, of single colours, whose estimates are the noisiest.
-constexpr double kStep = 0.1;
-constexpr double kDirectionStep = 0.05;
+// Prior standard deviation of a texel's factor from that of the texel above, and of each term that
+// depends on direction, over the spread of factors (docs/decisions/0012-traced-light.md); and, as a
+// share of these, of single colours, whose estimates are the noisiest.
+constexpr double kStep = 1.5;
 constexpr double kColorShare = 0.2;
+// The spread is of a level with at most so many texels along a side, each with many rays.
+constexpr int kSpreadTexels = 12;
+constexpr double kMinSpread = 0.03;
+constexpr double kMaxSpread = 1.0;
 
 constexpr double kMinDrawn = 1e-9;
 // Share of the mean over a ray's colours: a colour drawn darker than that uses the factor of the
@@ -163,9 +166,9 @@ CorrectionFit::Level CorrectionFit::Coarser(const Level& fine) {
 
 std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
                                                const std::vector<Factors>& above,
-                                               const glm::ivec3& size_above, double variance) {
-  const glm::dvec3 direction_ridge(variance / (kDirectionStep * kDirectionStep));
-  const glm::dvec4 ridge(variance / (kStep * kStep), direction_ridge);
+                                               const glm::ivec3& size_above, double variance,
+                                               double spread) {
+  const glm::dvec4 ridge(variance / (kStep * kStep * spread * spread));
   const glm::dvec4 color_ridge = ridge / (kColorShare * kColorShare);
   std::vector<Factors> factors(level.normals.size());
   ForEachTexel(level.size, [&](const glm::ivec3& texel) {
@@ -192,6 +195,28 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
   return factors;
 }
 
+// By the method of moments: the squares that noise of that variance adds are taken out.
+double CorrectionFit::SpreadOf(const Level& level, double variance) {
+  const auto gray = [](const Normal& normal) {
+    return (normal.right[0][0] + normal.right[1][0] + normal.right[2][0]) / 3.0;
+  };
+  double weights = 0.0;
+  double sum = 0.0;
+  for (const Normal& normal : level.normals) {
+    weights += normal.matrix[0];
+    sum += gray(normal);
+  }
+  double squares = 0.0;
+  for (const Normal& normal : level.normals) {
+    const double weight = normal.matrix[0];
+    if (!(weight > 0.0)) continue;
+    const double off = gray(normal) / weight - sum / weights;
+    squares += weight * off * off - variance;
+  }
+  if (!(squares > 0.0)) return kMinSpread;
+  return std::clamp(std::sqrt(squares / weights), kMinSpread, kMaxSpread);
+}
+
 std::vector<Factors> CorrectionFit::Solve() const {
   std::vector<Level> coarser;  // levels coarser than the finest
   const auto level = [&](std::size_t i) -> const Level& {
@@ -202,10 +227,18 @@ std::vector<Factors> CorrectionFit::Solve() const {
   }
   // Variance of the factor estimated by one ray of drawn radiance 1.
   const double variance = std::max(spread_ / std::max(static_cast<double>(rays_), 1.0), 1e-9);
+  std::size_t settled = 0;
+  while (std::max({level(settled).size.x, level(settled).size.y, level(settled).size.z}) >
+         kSpreadTexels) {
+    ++settled;
+  }
+  const double spread = SpreadOf(level(settled), variance);
   std::vector<Factors> above(1, kNone);
   glm::ivec3 size_above(1);
   for (std::size_t i = coarser.size() + 1; i-- > 0;) {
-    above = SolveLevel(level(i), above, size_above, variance);
+    // All rays together settle the first texel, however far it is from 1.
+    const double step = i == coarser.size() ? kMaxSpread : spread;
+    above = SolveLevel(level(i), above, size_above, variance, step);
     size_above = level(i).size;
   }
   return above;

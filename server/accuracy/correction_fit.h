@@ -1,6 +1,7 @@
 // Fits factors, by place and direction, that multiply drawn radiance so that it agrees with better
 // estimates along some rays: regularised linear least squares for each texel of a pyramid, from one
-// texel down to the finest. The texel above is the prior, which decides where a texel has few rays.
+// texel down to the finest. The texel above is the prior, which decides where a texel has few rays;
+// how much texels and directions may differ from it is estimated from the rays (empirical Bayes).
 // Knows no GL and no scene.
 #pragma once
 
@@ -54,7 +55,10 @@ class CorrectionFit {
 
   static Level Coarser(const Level& fine);
   static std::vector<Factors> SolveLevel(const Level& level, const std::vector<Factors>& above,
-                                         const glm::ivec3& size_above, double variance);
+                                         const glm::ivec3& size_above, double variance,
+                                         double spread);
+  // By how much the factors of the level's texels differ from their mean, as a root mean square.
+  static double SpreadOf(const Level& level, double variance);
 
   Level finest_;
   std::int64_t rays_ = 0;

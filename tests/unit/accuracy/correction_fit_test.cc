@@ -94,6 +94,47 @@ TEST_F(CorrectionFitTest, ManyNoisyRaysSettleATexelByItself) {
   EXPECT_NEAR(FactorAt({5, 10, 1}, kUp).x, 1.3, 0.1);
 }
 
+// With the same noise and few rays, factors that differ much must not be drawn to their mean, nor
+// those that are alike follow the noise: how much they differ is found from the rays.
+TEST_F(CorrectionFitTest, FactorsThatDifferMuchAreFollowedSooner) {
+  for (const double half : {0.0, 0.6}) {
+    fit_ = CorrectionFit({16, 16, 4});
+    const Law law = [&](const glm::dvec3& place, const auto&) {
+      return glm::dvec3(std::fmod(4.0 * place.y, 2.0) < 1.0 ? 1.0 - half : 1.0 + half);
+    };
+    AddRays(4 * 1024, law, 0.2);
+    double squares = 0.0;
+    for (int x = 0; x < 16; ++x) {
+      squares += std::pow(FactorAt({x, 9, 1}, kUp).x - (1.0 - half), 2);
+      squares += std::pow(FactorAt({x, 6, 1}, kUp).x - (1.0 + half), 2);
+    }
+    // Steps of 0.1 and directions of 0.05, whatever the rays, leave 0.06 and 0.25.
+    EXPECT_LT(std::sqrt(squares / 32.0), half > 0.0 ? 0.2 : 0.04) << half;
+  }
+}
+
+// What is known of one direction is not taken for another's.
+TEST_F(CorrectionFitTest, AFactorOfOneDirectionSaysLittleOfTheOpposite) {
+  const Law law = [](const auto&, const glm::dvec3& direction) {
+    return glm::dvec3(direction.z > 0.0 ? 1.3 : 1.0);
+  };
+  const auto add_from = [&](int count, double side) {
+    for (int i = 0; i < count; ++i) {
+      reference::RandomStream random(5, static_cast<std::uint64_t>(next_++), 0);
+      const auto uniform = [&] { return random.Uniform(); };
+      const glm::dvec3 place(uniform(), uniform(), uniform());
+      const glm::dvec3 direction =
+          glm::normalize(glm::dvec3(0.3 * uniform(), 0.3 * uniform(), side));
+      const double luck = uniform() < 0.2 ? 3.0 : 0.5;
+      fit_.Add({place, direction, glm::dvec3(1.0), luck * law(place, direction)});
+    }
+  };
+  add_from(20'000, 1.0);
+  add_from(500, -1.0);
+  EXPECT_NEAR(FactorAt({8, 8, 2}, kUp).x, 1.3, 0.06);
+  EXPECT_NEAR(FactorAt({8, 8, 2}, -kUp).x, 1.0, 0.12);
+}
+
 TEST_F(CorrectionFitTest, BrightRaysCountForMore) {
   // A texel's factor conserves its total light: the factor 3 of the dim rays hardly counts.
   AddRays(
