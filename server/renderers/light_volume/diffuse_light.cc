@@ -57,6 +57,9 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   cells_.transport_per_m = std::vector<float>();
   cells_.absorption_per_m = std::vector<float>();
   fluence_.assign(numbered_.Count(), 0.0F);
+  for (std::vector<float>* values : {&from_walls_, &net_inward_, &at_cells_}) {
+    values->assign(numbered_.AllCells(), 0.0F);
+  }
 }
 
 // Adds 1 / depth^2 of the nearer exit along an axis.
@@ -191,7 +194,8 @@ void DiffuseLight::SolveSkyPart(int part) {
     sky_seen_[i][part] = (1.0F - walls_.Hidden()[i]) * seen;
     own[i] = sky_seen_[i][part] - 4.0F * sky_inward_[i][part];
   }
-  const std::vector<float> from_walls = walls_.Arriving(own);
+  std::vector<float> from_walls(own.size(), 0.0F);
+  walls_.FindArriving(own, &from_walls);
   for (std::size_t n = 0; n < numbered_.Count(); ++n) {
     const std::size_t i = numbered_.CellOf(n);
     sky_seen_[i][part] += from_walls[i];
@@ -302,13 +306,14 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
       own[n] = 4.0F * ((exit < depth ? exit / depth : 1.0F) - inward[n]);
     }
   });
-  from_walls_ = walls_.Arriving(numbered_.ByCell(own));
-  net_inward_ = numbered_.ByCell(inward);
+  numbered_.SetByCell(own, &at_cells_);
+  walls_.FindArriving(at_cells_, &from_walls_);
+  numbered_.SetByCell(inward, &net_inward_);
   numbered_.Spread(&net_inward_);
   return net_inward_;
 }
 
-std::vector<float> DiffuseLight::AtCells(const CellValue& value) const {
+const std::vector<float>& DiffuseLight::AtCells(const CellValue& value) {
   std::vector<float> values(numbered_.Count());
   ForShares(values.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -316,9 +321,9 @@ std::vector<float> DiffuseLight::AtCells(const CellValue& value) const {
       values[n] = value((glm::dvec3(cell) + 0.5) * cells_.cell_m, outward_[n]);
     }
   });
-  std::vector<float> by_cell = numbered_.ByCell(values);
-  numbered_.Spread(&by_cell);
-  return by_cell;
+  numbered_.SetByCell(values, &at_cells_);
+  numbered_.Spread(&at_cells_);
+  return at_cells_;
 }
 
 }  // namespace thunderhead::renderers

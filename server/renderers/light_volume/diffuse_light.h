@@ -46,12 +46,17 @@ class DiffuseLight {
   // The fluence that other walls send in, of the last SolveSun.
   const std::vector<float>& FromWalls() const { return from_walls_; }
 
+  // The cells that have values of a sun and of AtCells; in all others they are 0.
+  const std::vector<NumberedCells::Valued>& CellsWithValues() const {
+    return numbered_.WithValues();
+  }
+
   // A value of each cell that holds anything, and for empty ones beside them the mean of those; 0
-  // elsewhere. `value` is called on all threads with the place of the cell's centre from the cells'
-  // low corner, and the direction out: along each axis the mean of 1 up and -1 down, weighted by
-  // how near either exit is.
+  // elsewhere; until the next sun or call. `value` is called on all threads with the place of the
+  // cell's centre from the cells' low corner, and the direction out: along each axis the mean of 1
+  // up and -1 down, weighted by how near either exit is.
   using CellValue = std::function<float(const glm::dvec3& place_m, const glm::vec3& outward)>;
-  std::vector<float> AtCells(const CellValue& value) const;
+  const std::vector<float>& AtCells(const CellValue& value);
 
   int LastIterations() const { return last_iterations_; }
 
@@ -102,7 +107,8 @@ class DiffuseLight {
   glm::dvec3 last_sun_{0.0};
   glm::dvec3 last_step_{0.0};  // from the sun before to that
   std::vector<float> net_inward_;
-  float area_[3] = {};  // of a cell's faces, over that across z
+  std::vector<float> at_cells_;  // of AtCells; while a sun is solved for, what cells send out
+  float area_[3] = {};           // of a cell's faces, over that across z
   int last_iterations_ = 0;
 };
 

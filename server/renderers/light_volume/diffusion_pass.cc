@@ -64,8 +64,10 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
         light_->AtCells([&](const glm::dvec3& from_corner_m, const glm::vec3& outward) {
           return ground.ShareAt(medium.Bounds().grid.low_corner_m + from_corner_m, outward);
         });
-    ForShares(sun.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
+    const std::vector<NumberedCells::Valued>& cells = light_->CellsWithValues();
+    ForShares(cells.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        const auto i = static_cast<std::size_t>(cells[v].cell);
         net_inward_texels_[i] = {
             base::HalfFromFloat(sun[i]), base::HalfFromFloat(light_->FromWalls()[i]),
             base::HalfFromFloat(light_->SkyInward()[i].y), base::HalfFromFloat(from_ground[i])};
@@ -117,7 +119,7 @@ void DiffusionPass::SolveCells(DiffusionCells cells) {
   light_.emplace(std::move(cells));
   const std::size_t count = light_->ExitRoot().size();
   arrived_root_.resize(count);
-  net_inward_texels_.resize(count);
+  net_inward_texels_.assign(count, {});
   std::vector<float> exits(4 * count);
   for (std::size_t i = 0; i < count; ++i) {
     exits[4 * i] = light_->ExitRoot()[i];

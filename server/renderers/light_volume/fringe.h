@@ -19,6 +19,10 @@ class Fringe {
   // `holding` are the cells that have a value, in rising order.
   Fringe(const DiffusionCells& cells, const std::vector<std::int32_t>& holding);
 
+  std::size_t Count() const { return cells_.size(); }
+  // In rising order.
+  std::int32_t CellOf(std::size_t f) const { return cells_[f].cell; }
+
   // Sets each cell of the fringe to the mean of those of its 26 neighbours that have a value.
   template <typename Value>
   void Spread(std::vector<Value>* values) const;

@@ -116,7 +116,9 @@ int LinkedCells::Solve(const std::vector<float>& right, double tolerance,
   image_.resize(count);
   better_.resize(count);
   Apply(*solution, &image_);
-  for (std::size_t n = 0; n < count; ++n) residual_[n] = right[n] - image_[n];
+  ForShares(count, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) residual_[n] = right[n] - image_[n];
+  });
   Precondition(right, &better_);
   const double goal = tolerance * tolerance * Dot(right, better_);
   double before = 0.0;

@@ -40,19 +40,29 @@ NumberedCells::NumberedCells(const DiffusionCells& cells) {
   }
   blocks_.push_back(count);
   fringe_ = Fringe(cells, cell_of_);
+  valued_.reserve(count + fringe_.Count());
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < number_.size(); ++i) {
+    const bool in_fringe =
+        next < fringe_.Count() && fringe_.CellOf(next) == static_cast<std::int32_t>(i);
+    if (in_fringe) ++next;
+    if (in_fringe || number_[i] != kNone) {
+      valued_.push_back({static_cast<std::int32_t>(i), number_[i]});
+    }
+  }
 }
 
 // Cell by cell, as those are next to each other in memory, and all that there is by number is not
 // much.
-std::vector<float> NumberedCells::ByCell(const std::vector<float>& by_number) const {
-  std::vector<float> by_cell(number_.size());
-  ForShares(by_cell.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::int32_t n = number_[i];
-      by_cell[i] = n == kNone ? 0.0F : by_number[static_cast<std::size_t>(n)];
+void NumberedCells::SetByCell(const std::vector<float>& by_number,
+                              std::vector<float>* by_cell) const {
+  ForShares(valued_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const auto [cell, n] = valued_[v];
+      if (n == kNone) continue;
+      (*by_cell)[static_cast<std::size_t>(cell)] = by_number[static_cast<std::size_t>(n)];
     }
   });
-  return by_cell;
 }
 
 }  // namespace thunderhead::renderers

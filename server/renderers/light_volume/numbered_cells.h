@@ -27,8 +27,16 @@ class NumberedCells {
   // Blocks of whole columns, to be worked on at the same time: their first numbers, and the count.
   const std::vector<std::size_t>& Blocks() const { return blocks_; }
 
-  // Values by number as values by cell: 0 in empty ones.
-  std::vector<float> ByCell(const std::vector<float>& by_number) const;
+  // A cell that has a value: one that holds anything, or an empty one beside such.
+  struct Valued {
+    std::int32_t cell;
+    std::int32_t number;  // kNone if it is empty
+  };
+  // In rising order.
+  const std::vector<Valued>& WithValues() const { return valued_; }
+
+  // Sets the cells that hold anything to values by number; others stay as they are.
+  void SetByCell(const std::vector<float>& by_number, std::vector<float>* by_cell) const;
   // Sets empty cells beside others to the mean of those.
   template <typename Value>
   void Spread(std::vector<Value>* by_cell) const {
@@ -40,6 +48,7 @@ class NumberedCells {
   std::vector<std::int32_t> cell_of_;  // by number
   std::vector<std::size_t> blocks_;
   Fringe fringe_;
+  std::vector<Valued> valued_;
 };
 
 }  // namespace thunderhead::renderers

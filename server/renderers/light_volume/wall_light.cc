@@ -162,8 +162,8 @@ void WallLight::Follow(const DiffusionCells& cells, std::size_t wall, int side,
   }
 }
 
-std::vector<float> WallLight::Arriving(const std::vector<float>& own) const {
-  std::vector<float> arriving(walls_.size(), 0.0F);
+void WallLight::FindArriving(const std::vector<float>& own, std::vector<float>* arriving) const {
+  std::vector<float> by_wall(walls_.size(), 0.0F);
   std::vector<float> next(walls_.size());
   for (int turn = 0; turn < kTurns && !seen_.empty(); ++turn) {
     ForShares(
@@ -174,21 +174,19 @@ std::vector<float> WallLight::Arriving(const std::vector<float>& own) const {
             for (std::size_t i = first_seen_[wall]; i < first_seen_[wall + 1]; ++i) {
               const Seen& seen = seen_[i];
               const float back =
-                  seen.to_wall < 0 ? 0.0F : arriving[static_cast<std::size_t>(seen.to_wall)];
+                  seen.to_wall < 0 ? 0.0F : by_wall[static_cast<std::size_t>(seen.to_wall)];
               sum += seen.share * std::max(own[static_cast<std::size_t>(seen.to)] + back, 0.0F);
             }
             next[wall] = sum;
           }
         },
         kWallsInShare);
-    std::swap(arriving, next);
+    std::swap(by_wall, next);
   }
-  std::vector<float> values(own.size(), 0.0F);
   for (std::size_t wall = 0; wall < walls_.size(); ++wall) {
-    values[static_cast<std::size_t>(walls_[wall])] = arriving[wall];
+    (*arriving)[static_cast<std::size_t>(walls_[wall])] = by_wall[wall];
   }
-  beside_walls_.Spread(&values);
-  return values;
+  beside_walls_.Spread(arriving);
 }
 
 }  // namespace thunderhead::renderers

@@ -20,10 +20,10 @@ class WallLight {
   // For each cell, the share of what a wall's open faces see that is other walls; 0 elsewhere.
   const std::vector<float>& Hidden() const { return hidden_; }
 
-  // The light that comes in from other walls, for each cell; for those beside walls, that of the
-  // walls there. `own` is what each cell sends out besides. Both are fluences that give the same
-  // flux to a white surface: four times it.
-  std::vector<float> Arriving(const std::vector<float>& own) const;
+  // Sets `arriving` of walls to the light that comes in from other walls, and of the cells beside
+  // them to that of the walls there; other cells stay as they are. `own` is what each cell sends
+  // out besides. Both are fluences that give the same flux to a white surface: four times it.
+  void FindArriving(const std::vector<float>& own, std::vector<float>* arriving) const;
 
  private:
   // The part of a wall's view that another wall takes.

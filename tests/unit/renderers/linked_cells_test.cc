@@ -56,8 +56,17 @@ TEST(NumberedCells, SpreadToEmptyOnesTheMeanOfTheirNeighbours) {
   const NumberedCells numbered(box);
   std::vector<float> by_number(numbered.Count());
   for (std::size_t n = 0; n < by_number.size(); ++n) by_number[n] = static_cast<float>(n + 1);
-  std::vector<float> values = numbered.ByCell(by_number);
+  std::vector<float> values(numbered.AllCells(), 0.0F);
+  numbered.SetByCell(by_number, &values);
   numbered.Spread(&values);
+  std::size_t valued = 0;
+  for (const NumberedCells::Valued& cell : numbered.WithValues()) {
+    const auto i = static_cast<std::size_t>(cell.cell);
+    EXPECT_EQ(cell.number, numbered.NumberOf(i));
+    EXPECT_NE(values[i], 0.0F);
+    ++valued;
+  }
+  EXPECT_EQ(values.size() - valued, static_cast<std::size_t>(std::ranges::count(values, 0.0F)));
   int fringe = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!numbered.IsEmpty(i)) {

@@ -62,9 +62,11 @@ TEST(WallLight, WhatComesAndGoesBetweenWhiteWallsAddsUp) {
   const WallLight walls(cells);
   std::vector<float> own(cells.transport_per_m.size(), 0.0F);
   own[MiddleOfWall(cells)] = 1.0F;
-  const std::vector<float> one = walls.Arriving(own);
+  std::vector<float> one(own.size(), 0.0F);
+  walls.FindArriving(own, &one);
   std::fill(own.begin(), own.end(), 1.0F);
-  const std::vector<float> all = walls.Arriving(own);
+  std::vector<float> all(own.size(), 0.0F);
+  walls.FindArriving(own, &all);
   const float seen = walls.Hidden()[MiddleOfWall(cells)];
   // All walls send 1: what is seen of them and, over and over, what they send on.
   EXPECT_GT(all[MiddleOfWall(cells)], seen);
