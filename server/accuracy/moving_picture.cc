@@ -26,8 +26,8 @@ absl::StatusOr<std::vector<std::uint16_t>> ColorsOf(const renderers::ChosenFrame
                                                     std::size_t count,
                                                     frame::ToneMapper& tone_mapper) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::FineImage picture,
-                               tone_mapper.MapFine(*frame.radiance));
-  const glm::ivec2 size = frame.radiance->Size();
+                               tone_mapper.MapFine(*frame.radiance, frame.part_px));
+  const glm::ivec2 size = frame.part_px;
   const std::vector<std::uint16_t>& pixels = picture.rgb;
   std::vector<std::uint16_t> colors;
   colors.reserve(kChannels * count);

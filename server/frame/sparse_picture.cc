@@ -199,10 +199,11 @@ FineImage Spread(const FineImage& from, const Places& columns, const Places& row
 }
 
 // The pixels in the places of rough ones, so that neighbours in the list are neighbours in the
-// picture.
+// picture: by squares of two by two, and those by squares of four by four.
 std::vector<glm::ivec2> ChildrenOf(const std::vector<std::uint8_t>& rough,
                                    const glm::ivec2& rough_px, const Places& columns,
                                    const Places& rows) {
+  constexpr int kSide = 4;
   std::vector<glm::ivec2> chosen;
   const auto ranges = [](const Places& places, int parents) {
     std::vector<int> first(static_cast<std::size_t>(parents) + 1, 0);
@@ -212,13 +213,19 @@ std::vector<glm::ivec2> ChildrenOf(const std::vector<std::uint8_t>& rough,
   };
   const std::vector<int> x_of = ranges(columns, rough_px.x);
   const std::vector<int> y_of = ranges(rows, rough_px.y);
-  for (int parent_y = 0; parent_y < rough_px.y; ++parent_y) {
-    for (int parent_x = 0; parent_x < rough_px.x; ++parent_x) {
-      if (rough[Offset(rough_px, parent_x, parent_y)] == 0) continue;
-      const auto i = static_cast<std::size_t>(parent_x);
-      const auto j = static_cast<std::size_t>(parent_y);
-      for (int y = y_of[j]; y < y_of[j + 1]; ++y) {
-        for (int x = x_of[i]; x < x_of[i + 1]; ++x) chosen.emplace_back(x, y);
+  const auto add = [&](const glm::ivec2& parent) {
+    if (parent.x >= rough_px.x || parent.y >= rough_px.y) return;
+    if (rough[Offset(rough_px, parent.x, parent.y)] == 0) return;
+    const auto i = static_cast<std::size_t>(parent.x);
+    const auto j = static_cast<std::size_t>(parent.y);
+    for (int y = y_of[j]; y < y_of[j + 1]; ++y) {
+      for (int x = x_of[i]; x < x_of[i + 1]; ++x) chosen.emplace_back(x, y);
+    }
+  };
+  for (int square_y = 0; square_y < rough_px.y; square_y += kSide) {
+    for (int square_x = 0; square_x < rough_px.x; square_x += kSide) {
+      for (int i = 0; i < kSide * kSide; ++i) {
+        add({square_x + 2 * (i / 4 % 2) + i % 2, square_y + 2 * (i / 8) + i / 2 % 2});
       }
     }
   }

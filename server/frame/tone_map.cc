@@ -28,8 +28,8 @@ struct ToneMapVariant {
   gl::Defines Defines() const { return {{"FILMIC", filmic}, {"NOISE", noise}}; }
 };
 
-std::size_t PixelCount(const gl::Texture2D& texture) {
-  return static_cast<std::size_t>(texture.Size().x) * static_cast<std::size_t>(texture.Size().y);
+std::size_t PixelCount(const glm::ivec2& size_px) {
+  return static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
 }
 
 // Others draw meanwhile where that takes longer than a piece.
@@ -47,11 +47,10 @@ struct PixelFormat {
   std::size_t count;  // of channels
 };
 
-// The texture's pixels into `values`, some rows in each piece.
+// The pixels of the texture's lower left part of `size` into `values`, some rows in each piece.
 template <typename Value>
-absl::Status ReadRows(const gl::Texture2D& texture, const PixelFormat& format, gl::Pieces& pieces,
-                      Value* values) {
-  const glm::ivec2 size = texture.Size();
+absl::Status ReadRows(const gl::Texture2D& texture, const glm::ivec2& size,
+                      const PixelFormat& format, gl::Pieces& pieces, Value* values) {
   const std::size_t row = format.count * static_cast<std::size_t>(size.x);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   return pieces.Steps(
@@ -120,7 +119,8 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
   THUNDERHEAD_ASSIGN_OR_RETURN(mapped.exposure_ev, SetTone(linear, scene));
   gl::Pieces& pieces = programs_->Pieces();
   double waited_ms = pieces.WaitedMs();
-  THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA8, /*noise=*/true, &display_));
+  display_.Resize(GL_RGBA8, linear.Size());
+  THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, linear.Size(), /*noise=*/true, display_));
   glFinish();
   mapped.tone_ms = stopwatch.Restart() - (pieces.WaitedMs() - waited_ms);
   waited_ms = pieces.WaitedMs();
@@ -130,20 +130,34 @@ absl::StatusOr<ToneMapped> ToneMapper::Map(const gl::Texture2D& linear, const sc
 }
 
 absl::StatusOr<FineImage> ToneMapper::MapFine(const gl::Texture2D& linear) {
-  THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, GL_RGBA16, /*noise=*/false, &fine_display_));
-  FineImage image{linear.Size().x, linear.Size().y, {}};
-  THUNDERHEAD_RETURN_IF_ERROR(Allocate(PixelCount(linear) * 3, programs_->Pieces(), &image.rgb));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadRows(fine_display_.texture, {GL_RGB, GL_UNSIGNED_SHORT, 3},
+  fine_display_.Resize(GL_RGBA16, linear.Size());
+  return MapFineTo(fine_display_, linear, linear.Size());
+}
+
+absl::StatusOr<FineImage> ToneMapper::MapFine(const gl::Texture2D& linear,
+                                              const glm::ivec2& part_px) {
+  part_display_.Resize(GL_RGBA16, glm::max(part_display_.texture.Size(), part_px));
+  return MapFineTo(part_display_, linear, part_px);
+}
+
+absl::StatusOr<FineImage> ToneMapper::MapFineTo(const Display& display, const gl::Texture2D& linear,
+                                                const glm::ivec2& part_px) {
+  THUNDERHEAD_RETURN_IF_ERROR(Draw(linear, part_px, /*noise=*/false, display));
+  FineImage image{part_px.x, part_px.y, {}};
+  THUNDERHEAD_RETURN_IF_ERROR(Allocate(PixelCount(part_px) * 3, programs_->Pieces(), &image.rgb));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadRows(display.texture, part_px, {GL_RGB, GL_UNSIGNED_SHORT, 3},
                                        programs_->Pieces(), image.rgb.data()));
   return image;
 }
 
-absl::Status ToneMapper::Draw(const gl::Texture2D& linear, GLenum format, bool noise,
-                              Display* display) {
-  if (display->texture.Size() != linear.Size()) {
-    display->texture = gl::Texture2D(format, linear.Size());
-    display->target = gl::Framebuffer(display->texture);
-  }
+void ToneMapper::Display::Resize(GLenum format, const glm::ivec2& size_px) {
+  if (texture.Size() == size_px) return;
+  texture = gl::Texture2D(format, size_px);
+  target = gl::Framebuffer(texture);
+}
+
+absl::Status ToneMapper::Draw(const gl::Texture2D& linear, const glm::ivec2& part_px, bool noise,
+                              const Display& display) {
   const ToneMapVariant variant{.filmic = tone_.filmic, .noise = noise};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
@@ -151,13 +165,16 @@ absl::Status ToneMapper::Draw(const gl::Texture2D& linear, GLenum format, bool n
   program->Set(uniform::gain, tone_.gain);
   program->Set(uniform::just_below_white, kJustBelowWhite);
   linear.Bind(shaders::kLinearFrameUnit);
-  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, display->target);
+  program->Set(uniform::mapped_rows, part_px.y);
+  return whole_target_.Draw(programs_->Pieces(), kPixel, *program, display.target,
+                            {glm::ivec2(0), part_px});
 }
 
 absl::StatusOr<std::vector<float>> ReadLinear(const gl::Texture2D& linear, gl::Pieces& pieces) {
   std::vector<float> values;
-  THUNDERHEAD_RETURN_IF_ERROR(Allocate(PixelCount(linear) * 4, pieces, &values));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadRows(linear, {GL_RGBA, GL_FLOAT, 4}, pieces, values.data()));
+  THUNDERHEAD_RETURN_IF_ERROR(Allocate(PixelCount(linear.Size()) * 4, pieces, &values));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadRows(linear, linear.Size(), {GL_RGBA, GL_FLOAT, 4}, pieces, values.data()));
   return values;
 }
 

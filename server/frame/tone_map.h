@@ -50,6 +50,8 @@ class ToneMapper {
 
   // A picture with the tone set last.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
+  // Its lower left part of that size.
+  absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear, const glm::ivec2& part_px);
 
   // In which it draws.
   gl::Pieces& Pieces() const { return programs_->Pieces(); }
@@ -64,9 +66,15 @@ class ToneMapper {
   struct Display {
     gl::Texture2D texture;
     gl::Framebuffer target;
+
+    void Resize(GLenum format, const glm::ivec2& size_px);
   };
 
-  absl::Status Draw(const gl::Texture2D& linear, GLenum format, bool noise, Display* display);
+  // Draws the lower left part of that size there; `display` is at least as large.
+  absl::Status Draw(const gl::Texture2D& linear, const glm::ivec2& part_px, bool noise,
+                    const Display& display);
+  absl::StatusOr<FineImage> MapFineTo(const Display& display, const gl::Texture2D& linear,
+                                      const glm::ivec2& part_px);
   // The factor for radiance of the given balance.
   absl::StatusOr<float> ExposureOf(const gl::Texture2D& linear, const scene::Display& display,
                                    const glm::vec3& balance, const WhiteCard& card);
@@ -79,6 +87,7 @@ class ToneMapper {
   Tone tone_;
   Display display_;
   Display fine_display_;
+  Display part_display_;  // only grows, as parts are of all sizes
 };
 
 // The texture's values, four floats a pixel, rows from bottom to top as GL keeps them; some rows in

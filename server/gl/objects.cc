@@ -106,9 +106,13 @@ Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge, int lev
 }
 
 void Texture2D::Upload(GLenum format, GLenum type, const void* texels) {
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(name_.Get(), 0, 0, 0, size_.x, size_.y, format, type, texels);
+  UploadRows(size_.y, format, type, texels);
   if (levels_ > 1) glGenerateTextureMipmap(name_.Get());
+}
+
+void Texture2D::UploadRows(int rows, GLenum format, GLenum type, const void* texels) {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(name_.Get(), 0, 0, 0, size_.x, rows, format, type, texels);
 }
 
 Texture3D::Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter, Edge edge)

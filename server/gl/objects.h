@@ -60,6 +60,8 @@ class Texture2D {
 
   // Fills the whole texture, as Texture3D::Upload, and its other levels from it.
   void Upload(GLenum format, GLenum type, const void* texels);
+  // Fills the lowest rows of a texture of one level.
+  void UploadRows(int rows, GLenum format, GLenum type, const void* texels);
 
   GLuint Get() const { return name_.Get(); }
   GLenum InternalFormat() const { return internal_format_; }

@@ -16,6 +16,9 @@ class ChosenRays {
  public:
   // Places as common/ray_place.glsl has them.
   void Choose(const std::vector<glm::vec2>& places);
+  // The rays of all pixels of a picture, in blocks of neighbours (post/unpacked.frag): a small
+  // picture itself lies in few of the tiles of 64 x 64 that software GL deals out to its threads.
+  void ChooseAll(const glm::ivec2& size_px);
 
   // Where the ray of the place of that index is drawn, in a target of Size().
   static glm::ivec2 PixelOf(std::size_t index);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <thread>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -10,6 +12,8 @@
 #include "gl/whole_target.h"
 #include "scene/ground.h"
 #include "scene/view.h"
+#include "shaders/bindings.h"
+#include "shaders/uniforms.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -17,10 +21,23 @@ namespace {
 // The air of coarse frames suits a picture so much larger along each side.
 constexpr float kCoarseAirScale = 1.4F;
 
+constexpr gl::PieceCost kUnpackedPixel{"unpacked", 10.0};
+
 glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   const glm::dvec2 size(scene.output.width_px, scene.output.height_px);
   const double scale = scene.rendering.image_scale * quality.image_scale;
   return glm::max(glm::ivec2(glm::ceil(size * scale)), glm::ivec2(1));
+}
+
+// True where a tile of the picture takes one thread of software GL longer than all pixels would
+// take all of them, were they shared evenly.
+bool LeavesThreadsIdle(const glm::ivec2& size_px) {
+  constexpr int kTileSide = 64;
+  constexpr unsigned kMaxThreads = 16;
+  static const unsigned threads = std::min(std::thread::hardware_concurrency(), kMaxThreads);
+  const glm::ivec2 tile = glm::min(size_px, glm::ivec2(kTileSide));
+  return static_cast<std::int64_t>(tile.x) * tile.y * threads >
+         static_cast<std::int64_t>(size_px.x) * size_px.y;
 }
 
 // The number of slices of techniques that have one; 0 for others.
@@ -130,6 +147,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
       settings.detail_size = picture_px;
       settings.eye_size = *quality.coarse_px;
     }
+    const bool packed = coarse && LeavesThreadsIdle(settings.eye_size);
     if (!technique_->Empty()) {
       settings.slices = drawn_slices_ = SlicesAt(scene, quality);
       settings.illumination = workspace_.surroundings.IlluminationOf(scene);
@@ -139,12 +157,16 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
       THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, &times));
       // Where drawing is cancelled from here on, the next picture need not carry the light again.
       Keep(asked, fields, quality);
-      THUNDERHEAD_ASSIGN_OR_RETURN(settings.cover, DrawContent(scene, settings, &times));
+      if (!packed) {
+        THUNDERHEAD_ASSIGN_OR_RETURN(settings.cover, DrawContent(scene, settings, &times));
+      }
     } else {
       workspace_.ground.ClearShadow();
     }
-    if (!quality.places) {
-      THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, settings, &times));
+    if (!quality.places) THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, settings, &times));
+    if (packed) {
+      THUNDERHEAD_RETURN_IF_ERROR(DrawPacked(scene, settings, &times));
+    } else if (!quality.places) {
       const glm::ivec2 size_px = coarse ? *quality.coarse_px : picture_px;
       THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kComposite, &times,
                                         [&] { return Composite(scene, settings, size_px); }));
@@ -302,22 +324,40 @@ absl::StatusOr<ChosenFrame> SceneRenderer::DrawChosen(const std::vector<glm::vec
   THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
   const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);
   chosen_.Choose(places);
-  RenderSettings settings = *coarse_settings_;
+  ChosenFrame frame;
+  THUNDERHEAD_RETURN_IF_ERROR(DrawRays(scene, *coarse_settings_, &frame.stages));
+  frame.radiance = &chosen_linear_.Texture();
+  frame.part_px = chosen_.Rect().Size();
+  return frame;
+}
+
+absl::Status SceneRenderer::DrawRays(const scene::Scene& scene, RenderSettings settings,
+                                     StageTimes* times) {
   settings.chosen = &chosen_;
   settings.eye_size = chosen_.Size();
   settings.cover = nullptr;
-  ChosenFrame frame;
   if (settings.ground_distance != nullptr) {
     THUNDERHEAD_RETURN_IF_ERROR(
         workspace_.ground.DrawDistance(settings.view, settings.eye_size, &chosen_));
     settings.ground_distance = &workspace_.ground.Distance();
   }
-  THUNDERHEAD_RETURN_IF_ERROR(technique_->DrawView(scene, settings, &frame.stages));
-  THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kComposite,
-                                    &frame.stages,
-                                    [&] { return Composite(scene, settings, settings.eye_size); }));
-  frame.radiance = &chosen_linear_.Texture();
-  return frame;
+  THUNDERHEAD_RETURN_IF_ERROR(technique_->DrawView(scene, settings, times));
+  return Timed(workspace_.Pieces(), scene::FrameStage::kComposite, times,
+               [&] { return Composite(scene, settings, settings.eye_size); });
+}
+
+absl::Status SceneRenderer::DrawPacked(const scene::Scene& scene, const RenderSettings& settings,
+                                       StageTimes* times) {
+  const glm::ivec2 size_px = settings.eye_size;
+  chosen_.ChooseAll(size_px);
+  THUNDERHEAD_RETURN_IF_ERROR(DrawRays(scene, settings, times));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      workspace_.programs->Get(gl::ProgramSource::WholeTarget("post/unpacked.frag")));
+  linear_.Resize(settings.quality.single_precision ? GL_RGBA32F : GL_RGBA16F, size_px, nullptr);
+  program->Set(uniform::picture_size, size_px);
+  chosen_linear_.Texture().Bind(shaders::kPackedUnit);
+  return whole_target_.Draw(workspace_.Pieces(), kUnpackedPixel, *program, linear_.Target());
 }
 
 LinearFrame SceneRenderer::Report(const scene::Scene& scene,

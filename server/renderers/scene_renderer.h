@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
+#include "gl/whole_target.h"
 #include "renderers/chosen_rays.h"
 #include "renderers/sun_glow.h"
 #include "renderers/technique.h"
@@ -38,6 +39,7 @@ struct LinearFrame {
 // Chosen rays of a frame.
 struct ChosenFrame {
   const gl::Texture2D* radiance = nullptr;  // as LinearFrame's, where ChosenRays::PixelOf says
+  glm::ivec2 part_px{0};                    // that rays are in, from the lowest left pixel
   StageTimes stages;
 };
 
@@ -98,6 +100,11 @@ class SceneRenderer {
   // Adds the sun to a composed frame.
   absl::Status AddSun(const scene::Scene& scene, const scene::View& view,
                       const SunGlow::Picture& picture);
+  // Draws the rays of chosen_, of the picture that `settings` describe.
+  absl::Status DrawRays(const scene::Scene& scene, RenderSettings settings, StageTimes* times);
+  // Draws all rays of a coarse picture as chosen ones, and puts them in their places.
+  absl::Status DrawPacked(const scene::Scene& scene, const RenderSettings& settings,
+                          StageTimes* times);
   LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
 
   Workspace workspace_;
@@ -109,6 +116,7 @@ class SceneRenderer {
   CoveredTarget linear_;
   ChosenRays chosen_;
   CoveredTarget chosen_linear_;
+  gl::WholeTarget whole_target_;
   SunGlow sun_glow_;
   gl::Texture2D nothing_;  // an eye buffer without medium
 

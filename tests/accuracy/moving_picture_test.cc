@@ -214,6 +214,33 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   EXPECT_LE(off, static_cast<int>(at_rest.rgb.size() / 200));
 }
 
+// Small ones are drawn as chosen rays. Detail and the ground's pattern would suit pixels of another
+// size; the air is found on other rays.
+TEST_F(MovingPictureTest, CoarsePicturesAreThePicturesOfTheirSize) {
+  for (const glm::ivec2 size_px :
+       {glm::ivec2(300, 300), glm::ivec2(312, 152), glm::ivec2(640, 360)}) {
+    Show(OfSample("supercell.nc", 1), size_px);
+    std::get<scene::LightVolume>(scene_.rendering.technique).medium.look.detail = false;
+    renderers::DrawQuality quality = MovingQuality(scene_, kMoving);
+    const auto coarse = renderer_->Draw(scene_, fields_, quality);
+    ASSERT_TRUE(coarse.ok()) << coarse.status();
+    ASSERT_TRUE(coarse->coarse);
+    const std::vector<float> found = frame::ReadLinear(*coarse->radiance);
+    const glm::ivec2 coarse_px = coarse->radiance->Size();
+    scene_.output.width_px = coarse_px.x;
+    scene_.output.height_px = coarse_px.y;
+    quality.coarse_px.reset();
+    const auto plain = renderer_->Draw(scene_, fields_, quality);
+    ASSERT_TRUE(plain.ok()) << plain.status();
+    ASSERT_EQ(plain->radiance->Size(), coarse_px);
+    const std::vector<float> wanted = frame::ReadLinear(*plain->radiance);
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_NEAR(found[i], wanted[i], 0.003F * wanted[i] + 1e-4F) << size_px.x << " " << i;
+    }
+  }
+}
+
 // Measures for how long nobody has the turn.
 class TimedTurn final : public base::DeviceTurn {
  public:

@@ -38,6 +38,7 @@ const int kEyeUnit = 4;
 const int kLinearFrameUnit = 4;
 const int kChosenPlacesUnit = 18;
 const int kAureoleUnit = 4;
+const int kPackedUnit = 4;
 
 // Of whole targets that are computed.
 const int kTargetLimitUnit = 17;
@@ -46,6 +47,11 @@ const int kTargetImages = 6;  // and the one after
 // Table of sunlight by height: up to 24 km, above which air attenuates little.
 const int kSunlightLevels = 33;
 const float kSunlightStep_m = 750.0f;
+
+// Of packed rays (renderers::ChosenRays): pixels of a block, which software GL draws together, and blocks beside one another.
+const int kPackedBlockWidth = 4;
+const int kPackedBlockHeight = 2;
+const int kPackedBlocksInRow = 128;
 
 // Invocations in a work group: along each of two sides, or in total.
 const int kLightGroupSide = 8;

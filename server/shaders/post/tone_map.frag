@@ -4,6 +4,7 @@
 layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
 
 uniform vec3 gain;  // exposure times white balance
+uniform int mapped_rows;  // from the lowest
 uniform float just_below_white;  // luminance that contrast leaves as it is
 
 in vec2 position;
@@ -37,7 +38,7 @@ vec3 srgb(vec3 linear) {
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  pixel.y = textureSize(linear_frame, 0).y - 1 - pixel.y;
+  pixel.y = mapped_rows - 1 - pixel.y;
   vec3 exposed = clamp(texelFetch(linear_frame, pixel, 0).rgb * gain, vec3(0.0), vec3(1e4));
 #if FILMIC
   exposed = film(contrasty(exposed));
