@@ -119,6 +119,14 @@ void CorrectionFit::Normal::operator+=(const Normal& other) {
   }
 }
 
+std::array<float, 4> CorrectionFit::Normal::GrayRight() const {
+  std::array<float, 4> gray{};
+  for (std::size_t i = 0; i < gray.size(); ++i) {
+    gray[i] = (right[0][i] + right[1][i] + right[2][i]) / 3.0F;
+  }
+  return gray;
+}
+
 CorrectionFit::CorrectionFit(const glm::ivec3& size) {
   finest_.size = size;
   finest_.normals.resize(Count(size));
@@ -179,10 +187,7 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
     const Normal& normal = level.normals[offset];
     factors[offset] = prior;
     if (!(normal.matrix[0] > 0.0F)) return;
-    std::array<float, 4> gray_right{};
-    for (std::size_t i = 0; i < 4; ++i) {
-      gray_right[i] = (normal.right[0][i] + normal.right[1][i] + normal.right[2][i]) / 3.0F;
-    }
+    const std::array<float, 4> gray_right = normal.GrayRight();
     const glm::vec4 gray_prior = (prior[0] + prior[1] + prior[2]) / 3.0F;
     const glm::vec4 gray = SolveRidge(normal.matrix, gray_right, ridge, gray_prior);
     for (std::size_t color = 0; color < prior.size(); ++color) {
@@ -197,20 +202,17 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
 
 // By the method of moments: the squares that noise of that variance adds are taken out.
 double CorrectionFit::SpreadOf(const Level& level, double variance) {
-  const auto gray = [](const Normal& normal) {
-    return (normal.right[0][0] + normal.right[1][0] + normal.right[2][0]) / 3.0;
-  };
   double weights = 0.0;
   double sum = 0.0;
   for (const Normal& normal : level.normals) {
     weights += normal.matrix[0];
-    sum += gray(normal);
+    sum += normal.GrayRight()[0];
   }
   double squares = 0.0;
   for (const Normal& normal : level.normals) {
     const double weight = normal.matrix[0];
     if (!(weight > 0.0)) continue;
-    const double off = gray(normal) / weight - sum / weights;
+    const double off = normal.GrayRight()[0] / weight - sum / weights;
     squares += weight * off * off - variance;
   }
   if (!(squares > 0.0)) return kMinSpread;

@@ -47,6 +47,8 @@ class CorrectionFit {
     std::array<std::array<float, 4>, 3> right{};
 
     void operator+=(const Normal& other);
+    // The mean of the colours' right sides.
+    std::array<float, 4> GrayRight() const;
   };
   struct Level {
     glm::ivec3 size{0};

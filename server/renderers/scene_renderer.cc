@@ -154,7 +154,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
       if (first <= scene::Stage::kLight) {
         THUNDERHEAD_RETURN_IF_ERROR(technique_->CarryLight(scene, fields, settings, &times));
       }
-      THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, &times));
+      THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, packed, &times));
       // Where drawing is cancelled from here on, the next picture need not carry the light again.
       Keep(asked, fields, quality);
       if (!packed) {
@@ -222,10 +222,10 @@ absl::StatusOr<const Cover*> SceneRenderer::DrawContent(const scene::Scene& scen
   return settings.cover;
 }
 
-absl::Status SceneRenderer::DrawGround(RenderSettings* settings, StageTimes* times) {
+absl::Status SceneRenderer::DrawGround(RenderSettings* settings, bool packed, StageTimes* times) {
   Ground& ground = workspace_.ground;
   const bool casts = sunlight_changed_ && !technique_->CastsShadow();
-  const bool may_hide = ground.MayHide(settings->view);
+  const bool may_hide = !packed && ground.MayHide(settings->view);
   if (!casts && !may_hide) return absl::OkStatus();
   return Timed(workspace_.Pieces(), scene::FrameStage::kGround, times, [&]() -> absl::Status {
     if (casts) {
@@ -336,7 +336,7 @@ absl::Status SceneRenderer::DrawRays(const scene::Scene& scene, RenderSettings s
   settings.chosen = &chosen_;
   settings.eye_size = chosen_.Size();
   settings.cover = nullptr;
-  if (settings.ground_distance != nullptr) {
+  if (workspace_.ground.MayHide(settings.view)) {
     THUNDERHEAD_RETURN_IF_ERROR(
         workspace_.ground.DrawDistance(settings.view, settings.eye_size, &chosen_));
     settings.ground_distance = &workspace_.ground.Distance();

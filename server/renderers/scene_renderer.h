@@ -84,8 +84,9 @@ class SceneRenderer {
   // Draws the view, whose light is carried. Returns the eye buffer's cover, if any.
   absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings& settings,
                                            StageTimes* times);
-  // The storm's shadow, and the distance of ground that hides a part of the storm.
-  absl::Status DrawGround(RenderSettings* settings, StageTimes* times);
+  // The storm's shadow and, unless rays are drawn `packed`, the distance of ground that hides a
+  // part of the storm.
+  absl::Status DrawGround(RenderSettings* settings, bool packed, StageTimes* times);
   absl::Status ShadeAir(const scene::Scene& scene, const RenderSettings& settings,
                         StageTimes* times);
   const gl::Texture2D& Eye() const;

@@ -113,7 +113,7 @@ TEST_F(CorrectionFitTest, FactorsThatDifferMuchAreFollowedSooner) {
   }
 }
 
-// What is known of one direction is not taken for another's.
+// A factor that was found from rays of one direction is not taken for rays of another.
 TEST_F(CorrectionFitTest, AFactorOfOneDirectionSaysLittleOfTheOpposite) {
   const Law law = [](const auto&, const glm::dvec3& direction) {
     return glm::dvec3(direction.z > 0.0 ? 1.3 : 1.0);
