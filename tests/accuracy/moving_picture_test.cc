@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "accuracy/presets.h"
 #include "base/device_turn.h"
@@ -217,9 +218,18 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
 // Small ones are drawn as chosen rays. Detail and the ground's pattern would suit pixels of another
 // size; the air is found on other rays.
 TEST_F(MovingPictureTest, CoarsePicturesAreThePicturesOfTheirSize) {
-  for (const glm::ivec2 size_px :
-       {glm::ivec2(300, 300), glm::ivec2(312, 152), glm::ivec2(640, 360)}) {
-    Show(OfSample("supercell.nc", 1), size_px);
+  const Fields level = OfSample("supercell.nc", 1);
+  // High ground that slopes, and hides the lower half of the storm.
+  auto hilly = std::make_shared<volume::HydrometeorFields>(*level);
+  hilly->terrain_height_m.clear();
+  const glm::ivec3& cells = hilly->grid.cells;
+  for (int i = 0; i < cells.x * cells.y; ++i) {
+    hilly->terrain_height_m.push_back(6000.0F + 5.0F * static_cast<float>(i / cells.x));
+  }
+  for (const auto& [fields, size_px] :
+       {std::pair(level, glm::ivec2(300, 300)), std::pair(level, glm::ivec2(312, 152)),
+        std::pair(level, glm::ivec2(640, 360)), std::pair(Fields(hilly), glm::ivec2(300, 300))}) {
+    Show(fields, size_px);
     std::get<scene::LightVolume>(scene_.rendering.technique).medium.look.detail = false;
     renderers::DrawQuality quality = MovingQuality(scene_, kMoving);
     const auto coarse = renderer_->Draw(scene_, fields_, quality);
