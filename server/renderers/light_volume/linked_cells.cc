@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -65,27 +66,45 @@ void LinkedCells::ForBlocks(const Work& work) const {
 
 void LinkedCells::Precondition(const std::vector<float>& from, std::vector<float>* to) const {
   std::vector<float>& x = *to;
-  ForBlocks([&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
-      float sum = from[n];
-      const Links& down = down_[n];
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t other = down.to[axis];
-        if (other < static_cast<std::int32_t>(begin)) continue;  // NumberedCells::kNone, too
-        sum += down.conductance[axis] * x[static_cast<std::size_t>(other)];
-      }
-      x[n] = sum * inverse_pivot_[n];
+  const auto forward = [&](std::size_t n, std::size_t begin) {
+    float sum = from[n];
+    const Links& down = down_[n];
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t other = down.to[axis];
+      if (other < static_cast<std::int32_t>(begin)) continue;  // NumberedCells::kNone, too
+      sum += down.conductance[axis] * x[static_cast<std::size_t>(other)];
     }
-    for (std::size_t n = end; n-- > begin;) {
-      float sum = 0.0F;
-      const Links& up = up_[n];
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::int32_t other = up.to[axis];
-        if (other == NumberedCells::kNone || other >= static_cast<std::int32_t>(end)) continue;
-        sum += up.conductance[axis] * x[static_cast<std::size_t>(other)];
-      }
-      x[n] += sum * inverse_pivot_[n];
+    x[n] = sum * inverse_pivot_[n];
+  };
+  const auto backward = [&](std::size_t n, std::size_t end) {
+    float sum = 0.0F;
+    const Links& up = up_[n];
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t other = up.to[axis];
+      if (other == NumberedCells::kNone || other >= static_cast<std::int32_t>(end)) continue;
+      sum += up.conductance[axis] * x[static_cast<std::size_t>(other)];
     }
+    x[n] += sum * inverse_pivot_[n];
+  };
+  // Each cell waits for the one before it: two blocks in turn keep a processor busy.
+  const std::size_t blocks = blocks_.size() - 1;
+  tbb::parallel_for(std::size_t{0}, (blocks + 1) / 2, [&](std::size_t pair) {
+    const std::size_t a = blocks_[2 * pair];
+    const std::size_t b = blocks_[2 * pair + 1];
+    const std::size_t c = 2 * pair + 1 < blocks ? blocks_[2 * pair + 2] : b;
+    const std::size_t both = std::min(b - a, c - b);
+    for (std::size_t i = 0; i < both; ++i) {
+      forward(a + i, a);
+      forward(b + i, b);
+    }
+    for (std::size_t n = a + both; n < b; ++n) forward(n, a);
+    for (std::size_t n = b + both; n < c; ++n) forward(n, b);
+    for (std::size_t i = 0; i < both; ++i) {
+      backward(b - 1 - i, b);
+      backward(c - 1 - i, c);
+    }
+    for (std::size_t n = b - both; n-- > a;) backward(n, b);
+    for (std::size_t n = c - both; n-- > b;) backward(n, c);
   });
 }
 
