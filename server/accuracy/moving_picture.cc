@@ -91,6 +91,7 @@ renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuali
   drawn.coarse_px = frame::CoarsestOf({scene.output.width_px, scene.output.height_px});
   drawn.light_tolerance = kMovingLightTolerance;
   drawn.light_layer = kMovingLightLayer;
+  drawn.light_in_turns = true;
   return drawn;
 }
 

@@ -67,6 +67,8 @@ struct DrawQuality {
   double light_tolerance = kLightTolerance;
   // Length of the light volume's layers over the usual one, at least 1; finer light is kept.
   double light_layer = 1.0;
+  // Light that changes little with the sun is found for a part of the cells, and kept for others.
+  bool light_in_turns = false;
 
   bool operator==(const DrawQuality&) const = default;
 };

@@ -77,6 +77,7 @@ scene::Stage SceneRenderer::FirstStageAt(const scene::Scene& scene, const Fields
   if (quality.light_detail != drawn_quality_.light_detail ||
       quality.light_tolerance < drawn_light_tolerance_ ||
       quality.light_layer < drawn_light_layer_ ||
+      (drawn_light_in_turns_ && !quality.light_in_turns) ||
       quality.single_precision != drawn_quality_.single_precision) {
     return std::min(first, scene::Stage::kLight);
   }
@@ -121,6 +122,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   if (first <= scene::Stage::kLight) {
     drawn_light_tolerance_ = quality.light_tolerance;
     drawn_light_layer_ = quality.light_layer;
+    drawn_light_in_turns_ = quality.light_in_turns;
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
   StageTimes times;

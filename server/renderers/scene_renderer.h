@@ -129,6 +129,7 @@ class SceneRenderer {
   // Of the light as it is.
   double drawn_light_tolerance_ = kLightTolerance;
   double drawn_light_layer_ = 1.0;
+  bool drawn_light_in_turns_ = false;
   std::optional<RenderSettings> coarse_settings_;  // of the last frame, if that is coarse
   int drawn_slices_ = 0;
   bool sunlight_changed_ = true;  // since the frame before

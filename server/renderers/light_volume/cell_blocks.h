@@ -8,8 +8,10 @@
 
 namespace thunderhead::renderers {
 
-// Runs `program`, whose other inputs are bound, with a work group for each block of `medium`.
+// Runs `program`, whose other inputs are bound, with a work group for each block of `medium` from
+// `first` to before `end`.
 absl::Status ForCellBlocks(gl::Pieces& pieces, const gl::PieceCost& block,
-                           const ResidentMedium& medium, const gl::Program& program);
+                           const ResidentMedium& medium, const gl::Program& program, int first,
+                           int end);
 
 }  // namespace thunderhead::renderers

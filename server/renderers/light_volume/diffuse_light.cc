@@ -57,6 +57,7 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   cells_.transport_per_m = std::vector<float>();
   cells_.absorption_per_m = std::vector<float>();
   fluence_.assign(numbered_.Count(), 0.0F);
+  values_.assign(numbered_.Count(), 0.0F);
   for (std::vector<float>* values : {&from_walls_, &net_inward_, &at_cells_}) {
     values->assign(numbered_.AllCells(), 0.0F);
   }
@@ -313,15 +314,15 @@ const std::vector<float>& DiffuseLight::SolveSun(const glm::dvec3& towards_sun,
   return net_inward_;
 }
 
-const std::vector<float>& DiffuseLight::AtCells(const CellValue& value) {
-  std::vector<float> values(numbered_.Count());
-  ForShares(values.size(), [&](std::size_t begin, std::size_t end) {
+const std::vector<float>& DiffuseLight::AtCells(const CellValue& value, SunParts::Parts parts) {
+  ForShares(values_.size(), [&](std::size_t begin, std::size_t end) {
+    if (!parts[begin / kShare % SunParts::kCount]) return;
     for (std::size_t n = begin; n < end; ++n) {
       const glm::ivec3 cell = cells_.CellAt(numbered_.CellOf(n));
-      values[n] = value((glm::dvec3(cell) + 0.5) * cells_.cell_m, outward_[n]);
+      values_[n] = value((glm::dvec3(cell) + 0.5) * cells_.cell_m, outward_[n]);
     }
   });
-  numbered_.SetByCell(values, &at_cells_);
+  numbered_.SetByCell(values_, &at_cells_);
   numbered_.Spread(&at_cells_);
   return at_cells_;
 }

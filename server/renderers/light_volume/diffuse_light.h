@@ -17,6 +17,7 @@
 #include "renderers/light_volume/diffusion_cells.h"
 #include "renderers/light_volume/linked_cells.h"
 #include "renderers/light_volume/numbered_cells.h"
+#include "renderers/light_volume/sun_parts.h"
 #include "renderers/light_volume/wall_light.h"
 
 namespace thunderhead::renderers {
@@ -52,11 +53,13 @@ class DiffuseLight {
   }
 
   // A value of each cell that holds anything, and for empty ones beside them the mean of those; 0
-  // elsewhere; until the next sun or call. `value` is called on all threads with the place of the
+  // elsewhere; until the next sun or call. Of parts that are not in `parts` they stay those of the
+  // last call; the first must have all. `value` is called on all threads with the place of the
   // cell's centre from the cells' low corner, and the direction out: along each axis the mean of 1
   // up and -1 down, weighted by how near either exit is.
   using CellValue = std::function<float(const glm::dvec3& place_m, const glm::vec3& outward)>;
-  const std::vector<float>& AtCells(const CellValue& value);
+  const std::vector<float>& AtCells(const CellValue& value,
+                                    SunParts::Parts parts = SunParts::Parts().set());
 
   int LastIterations() const { return last_iterations_; }
 
@@ -107,6 +110,7 @@ class DiffuseLight {
   glm::dvec3 last_sun_{0.0};
   glm::dvec3 last_step_{0.0};  // from the sun before to that
   std::vector<float> net_inward_;
+  std::vector<float> values_;    // of AtCells, by number
   std::vector<float> at_cells_;  // of AtCells; while a sun is solved for, what cells send out
   float area_[3] = {};           // of a cell's faces, over that across z
   int last_iterations_ = 0;

@@ -22,7 +22,7 @@ constexpr double kMaxDiffusionCells = 4e6;
 // Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
 // that is not empty.
 constexpr std::size_t kBytesPerCell = 56;
-constexpr std::size_t kBytesPerFullCell = 172;
+constexpr std::size_t kBytesPerFullCell = 176;
 
 std::size_t BytesFor(const DiffusionCells& cells) {
   const auto full = static_cast<std::size_t>(
@@ -47,7 +47,8 @@ void Dispatch(const glm::ivec3& cells) {
 
 absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeights& weights,
                                   const gl::Texture3D& arrived, const glm::dvec3& towards_sun,
-                                  double tolerance, const LitGround& ground) {
+                                  double tolerance, const LitGround& ground,
+                                  bool in_turns) {
   Key key{medium.Id(), weights.light, weights.transport, weights.absorption};
   if (!light_.has_value() || key != key_) {
     light_.reset();
@@ -55,15 +56,19 @@ absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeigh
     THUNDERHEAD_ASSIGN_OR_RETURN(DiffusionCells cells, SampleCells(medium, weights));
     memory_ = gl::DeviceMemory::ReserveBeside(BytesFor(cells));
     THUNDERHEAD_RETURN_IF_ERROR(programs_->Pieces().OffTurn([&] { SolveCells(std::move(cells)); }));
+    ground_parts_.Forget();
     key_ = std::move(key);
   }
   THUNDERHEAD_RETURN_IF_ERROR(SampleLight(arrived));
   return programs_->Pieces().OffTurn([&] {
     const std::vector<float>& sun = light_->SolveSun(towards_sun, arrived_root_, tolerance);
-    const std::vector<float> from_ground =
-        light_->AtCells([&](const glm::dvec3& from_corner_m, const glm::vec3& outward) {
+    const SunParts::Parts parts = ground_parts_.Next(towards_sun, in_turns);
+    const std::vector<float>& from_ground = light_->AtCells(
+        [&](const glm::dvec3& from_corner_m, const glm::vec3& outward) {
           return ground.ShareAt(medium.Bounds().grid.low_corner_m + from_corner_m, outward);
-        });
+        },
+        parts);
+    ground_parts_.Found(parts, towards_sun);
     const std::vector<NumberedCells::Valued>& cells = light_->CellsWithValues();
     ForShares(cells.size(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {

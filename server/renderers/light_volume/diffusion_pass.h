@@ -18,6 +18,7 @@
 #include "gl/program.h"
 #include "renderers/group_weights.h"
 #include "renderers/light_volume/diffuse_light.h"
+#include "renderers/light_volume/sun_parts.h"
 #include "renderers/lit_ground.h"
 #include "renderers/medium.h"
 
@@ -28,10 +29,11 @@ class DiffusionPass {
   explicit DiffusionPass(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // `arrived` is that of arrive.comp; `tolerance` as DiffuseLight::SolveSun has it.
+  // `arrived` is that of arrive.comp; `tolerance` as DiffuseLight::SolveSun has it; `in_turns`:
+  // the light of the ground is found for a part of the cells (SunParts).
   absl::Status Solve(const ResidentMedium& medium, const GroupWeights& weights,
                      const gl::Texture3D& arrived, const glm::dvec3& towards_sun, double tolerance,
-                     const LitGround& ground);
+                     const LitGround& ground, bool in_turns);
 
   // For march.frag.
   void Bind() const;
@@ -74,6 +76,7 @@ class DiffusionPass {
   // Net inward flux of sunlight; the fluence from other walls; the y of the sky's net flux;
   // LitGround::ShareAt.
   gl::Texture3D net_inward_;
+  SunParts ground_parts_;
   std::vector<float> arrived_root_;
   std::vector<std::uint16_t> arrived_halves_;
   std::vector<std::array<std::uint16_t, 4>> net_inward_texels_;  // half floats

@@ -31,6 +31,9 @@ class LightMedium {
   void Bind(const gl::Program& program) const;
   std::size_t Bytes() const { return texture_.Bytes(); }
 
+  // Another number each time that it has been made anew; never 0.
+  std::uint64_t Version() const { return version_; }
+
   // For checks: the texture, and the extinction of a texel value of 1.
   const gl::Texture3D& Texture() const { return texture_; }
   double PerMetre() const { return per_m_; }
@@ -47,6 +50,7 @@ class LightMedium {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   Key key_;
+  std::uint64_t version_ = 0;
   gl::Texture3D texture_;
   double per_m_ = 1.0;
 };

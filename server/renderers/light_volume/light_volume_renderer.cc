@@ -136,14 +136,14 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
                              .diffuse = diffuse};
   THUNDERHEAD_RETURN_IF_ERROR(light_medium_.Update(medium, weights, diffuse));
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
-  THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant));
+  THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant, settings.quality.light_in_turns));
   if (!Diffuses(settings)) return absl::OkStatus();
   LitGround ground;
   if (find_ground != nullptr) {
     THUNDERHEAD_ASSIGN_OR_RETURN(ground, find_ground());
   }
   return diffusion_.Solve(medium, weights, arrived_, settings.illumination.towards_sun,
-                          settings.quality.light_tolerance, ground);
+                          settings.quality.light_tolerance, ground, settings.quality.light_in_turns);
 }
 
 absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,
@@ -181,11 +181,35 @@ absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const Grou
 }
 
 absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const GroupWeights& weights,
-                                         const LightBox& box, const CarryVariant& variant) {
+                                         const LightBox& box, const CarryVariant& variant,
+                                         bool in_turns) {
+  const int blocks = medium.BlockCount();
+  if (!in_turns) return ArriveIn(medium, weights, box, variant, 0, 0, blocks);
+  if (near_version_ != light_medium_.Version() || near_ratio_.Size() != arrived_.Size()) {
+    near_parts_.Forget();
+    near_ratio_ = {};
+    near_ratio_ = gl::Texture3D(GL_R8, arrived_.Size());
+    near_version_ = light_medium_.Version();
+  }
+  const SunParts::Parts parts = near_parts_.Next(box.frame.towards_sun, in_turns);
+  constexpr auto kParts = static_cast<int>(SunParts::kCount);
+  for (int part = 0; part < kParts; ++part) {
+    const int near = parts[static_cast<std::size_t>(part)] ? 1 : 2;
+    THUNDERHEAD_RETURN_IF_ERROR(ArriveIn(medium, weights, box, variant, near,
+                                         blocks * part / kParts, blocks * (part + 1) / kParts));
+  }
+  near_parts_.Found(parts, box.frame.towards_sun);
+  return absl::OkStatus();
+}
+
+absl::Status LightVolumeRenderer::ArriveIn(const ResidentMedium& medium,
+                                           const GroupWeights& weights, const LightBox& box,
+                                           const CarryVariant& variant, int near, int first,
+                                           int end) {
+  const ArriveVariant arrive{.medium = medium.Variant(), .carry = variant, .near = near};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs_->Get(gl::ProgramSource::Compute(
-          "light_volume/arrive.comp", gl::Joined(medium.Variant().Defines(), variant.Defines()))));
+      programs_->Get(gl::ProgramSource::Compute("light_volume/arrive.comp", arrive.Defines())));
   medium.Bind(*program);
   program->Set(uniform::light_weights, medium.Weights(weights.light));
   program->Set(uniform::light_from_local, box.FromLocal());
@@ -194,7 +218,11 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
   carried_.Bind(shaders::kCarriedUnit);
   thickness_.Bind(shaders::kThicknessUnit);
   arrived_.BindImage(shaders::kArrivedImage, GL_WRITE_ONLY);
-  absl::Status arrived = ForCellBlocks(programs_->Pieces(), kArriveBlock, medium, *program);
+  if (near > 0) light_medium_.Bind(*program);
+  if (near == 1) near_ratio_.BindImage(shaders::kNearRatioImage, GL_WRITE_ONLY);
+  if (near == 2) near_ratio_.Bind(shaders::kNearRatioUnit);
+  absl::Status arrived =
+      ForCellBlocks(programs_->Pieces(), kArriveBlock, medium, *program, first, end);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   return arrived;
 }
@@ -283,7 +311,7 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
 
 std::size_t LightVolumeRenderer::Bytes() const {
   std::size_t bytes = carried_.Bytes() + thickness_.Bytes() + shadow_.Bytes() + arrived_.Bytes() +
-                      light_medium_.Bytes() + diffusion_.Bytes();
+                      near_ratio_.Bytes() + light_medium_.Bytes() + diffusion_.Bytes();
   for (const CoveredTarget& eye : eyes_) bytes += eye.Texture().Bytes() + eye.Distances().Bytes();
   return bytes;
 }

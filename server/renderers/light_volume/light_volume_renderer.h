@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -21,6 +22,7 @@
 #include "renderers/light_frame.h"
 #include "renderers/light_volume/diffusion_pass.h"
 #include "renderers/light_volume/light_medium.h"
+#include "renderers/light_volume/sun_parts.h"
 #include "renderers/light_volume/variants.h"
 #include "renderers/lit_ground.h"
 #include "renderers/medium.h"
@@ -69,7 +71,11 @@ class LightVolumeRenderer {
   absl::Status Carry(const ResidentMedium& medium, const GroupWeights& weights, const LightBox& box,
                      const CarryVariant& variant);
   absl::Status Arrive(const ResidentMedium& medium, const GroupWeights& weights,
-                      const LightBox& box, const CarryVariant& variant);
+                      const LightBox& box, const CarryVariant& variant, bool in_turns);
+  // In the blocks of cells from `first` to before `end`; `near` as ArriveVariant has it.
+  absl::Status ArriveIn(const ResidentMedium& medium, const GroupWeights& weights,
+                        const LightBox& box, const CarryVariant& variant, int near, int first,
+                        int end);
 
   void BindDiffusion(const gl::Program& program, const ResidentMedium& medium,
                      const GroupWeights& weights, const RenderSettings& settings);
@@ -86,6 +92,10 @@ class LightVolumeRenderer {
   gl::Texture2D thickness_;
   gl::Texture2D shadow_;
   gl::Texture3D arrived_;  // at the medium's cells
+  // Of the depth next to cells, for light_medium_'s version `near_version_` (arrive.comp).
+  gl::Texture3D near_ratio_;
+  std::uint64_t near_version_ = 0;
+  SunParts near_parts_;
   GLenum light_format_ = 0;
   DiffusionPass diffusion_;
   std::shared_ptr<const LightCorrection> correction_;  // that the textures hold

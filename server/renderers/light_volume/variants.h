@@ -6,7 +6,7 @@
 
 namespace thunderhead::renderers {
 
-// Variant of carry.comp; with the medium's, of arrive.comp.
+// Variant of carry.comp.
 struct CarryVariant {
   gl::DefineValue consistent;   // transport
   gl::DefineValue translucent;  // light that is scattered goes on
@@ -14,6 +14,17 @@ struct CarryVariant {
 
   gl::Defines Defines() const {
     return {{"CONSISTENT", consistent}, {"TRANSLUCENT", translucent}, {"DIFFUSE", diffuse}};
+  }
+};
+
+// Variant of arrive.comp.
+struct ArriveVariant {
+  MediumVariant medium;
+  CarryVariant carry;
+  gl::DefineValue near;  // 1: keeps what 2 takes in place of the medium next to a cell
+
+  gl::Defines Defines() const {
+    return gl::Joined(gl::Joined(medium.Defines(), carry.Defines()), {{"NEAR", near}});
   }
 };
 

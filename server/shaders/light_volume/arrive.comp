@@ -4,17 +4,27 @@
 // that in a cloud's edge, where extinction rises linearly from such a centre, the square root of the light's optical depth
 // rises linearly too.
 // r: the square root of the light's optical depth; g: the mean intensity of light scattered many times, over the sun's
-// irradiance. Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE.
+// irradiance. Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE; NEAR: of the optical depth next to a cell by the
+// medium over that by the light's medium (light_medium.comp), which changes little while the sun moves, 1 keeps the ratio, 2
+// takes it in place of the medium.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/box.glsl"
 #include "light_volume/cell_blocks.glsl"
+#if NEAR > 0
+#include "light_volume/light_medium.glsl"
+#endif
 #include "physics/light_transport.glsl"
 
 layout(binding = kArrivedImage) uniform writeonly image3D arrived;
 
 layout(binding = kCarriedUnit) uniform sampler3D carried;
 layout(binding = kThicknessUnit) uniform sampler2D thickness;
+#if NEAR == 1
+layout(binding = kNearRatioImage) uniform writeonly image3D near_ratio;
+#elif NEAR == 2
+layout(binding = kNearRatioUnit) uniform sampler3D near_ratio;
+#endif
 
 uniform mat4x3 light_from_local;
 uniform vec3 towards_sun;
@@ -26,6 +36,10 @@ const int kNearSamples = 2;
 const float kFirstNearSample = 0.21132487;
 const float kNearSamplesApart = 0.57735027;
 
+// The texel of a ratio of 1; ratios up to nearly 2 are kept, between optical depths with this added: next to nothing they mean nothing.
+const float kRatioOne = 128.0 / 255.0;
+const float kLeastNearDepth = 0.01;
+
 // Inputs of give_light that cells share, in the coordinates of the medium's texture and of the light's volume.
 struct Surroundings {
   int near_samples;
@@ -33,6 +47,7 @@ struct Surroundings {
   vec3 per_near_path;
   vec3 out_place;            // where the medium's box ends towards the sun
   vec4 near_depths[PLANES];  // texel to a sample's share of the optical depth of that path
+  float near_smoother;       // the same of the light's medium
   float light_layers;
 };
 
@@ -41,11 +56,23 @@ void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroun
   // The part of that path inside the medium's box; a block reaches beyond it.
   vec3 inside = (around.out_place - place) * around.per_near_path;
   float share = clamp(min(min(inside.x, inside.y), inside.z), 0.0, 1.0);
-  float depth = 0.0;
+  float depth = 0.0;    // by the medium
+  float smoother = 0.0;  // by the light's medium
   for (int i = 0; i < around.near_samples; ++i) {
-    float at = share * (kFirstNearSample + kNearSamplesApart * float(i));
-    depth += share * weigh(medium_at_place(place + at * around.near_path, 0.0), around.near_depths);
+    vec3 at = place + share * (kFirstNearSample + kNearSamplesApart * float(i)) * around.near_path;
+#if NEAR < 2
+    depth += share * weigh(medium_at_place(at, 0.0), around.near_depths);
+#endif
+#if NEAR > 0
+    smoother += share * around.near_smoother * texture(light_medium, at).r;
+#endif
   }
+#if NEAR == 1
+  imageStore(near_ratio, cell, vec4(kRatioOne * (depth + kLeastNearDepth) / (smoother + kLeastNearDepth)));
+#elif NEAR == 2
+  float ratio = texelFetch(near_ratio, cell, 0).r / kRatioOne;
+  depth = max(ratio * (smoother + kLeastNearDepth) - kLeastNearDepth, 0.0);
+#endif
   // Between the sun's side of the volume and the middle of its first layer light begins to fade.
   float begun = clamp(2.0 * around.light_layers * far_place.z, 0.0, 1.0);
   float far = begun * texture(carried, far_place).r;
@@ -73,6 +100,9 @@ void main() {
   around.per_near_path = 1.0 / around.near_path;
   around.out_place = mix(box_low, box_high, greaterThan(direction, vec3(0.0)));
   around.near_depths = scaled(light_weights, near_m / float(kNearSamples));
+#if NEAR > 0
+  around.near_smoother = light_medium_per_m * near_m / float(kNearSamples);
+#endif
   around.light_layers = float(textureSize(carried, 0).z);
 
   vec3 cell_size = 1.0 / vec3(cell_count);

@@ -4,6 +4,7 @@ const int kArrivedUnit = 4;
 const int kCarriedUnit = 5;
 const int kThicknessUnit = 6;
 const int kLightMediumUnit = 7;
+const int kNearRatioUnit = 13;
 const int kExitsUnit = 5;
 const int kNetInwardUnit = 6;
 const int kCorrectionRedUnit = 13;
@@ -16,6 +17,7 @@ const int kArrivedImage = 3;
 const int kSampledCellsImage = 4;
 const int kSampledLightImage = 5;
 const int kLightMediumImage = 6;
+const int kNearRatioImage = 7;
 
 // Invocations in a work group.
 const int kBlockGroupSize = 32;

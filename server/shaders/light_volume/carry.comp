@@ -63,42 +63,46 @@ void main() {
   float per_reach = 1.0 / light_reach_m;
   float transport = 0.0;
   float distance_m = float(first) * layer_m + 0.5 * step_m;
-  int half_layer = 2 * first;
+  float most_m = half_layer_m + further_m;  // from a layer's first sample to its last
+  int layer = first;
   if (any(greaterThanEqual(texel, light_size.xy))) return;
-  while (half_layer < 2 * last) {
-    if ((half_layer & 1) == 1) {
-      imageStore(carried, ivec3(texel, half_layer >> 1), vec4(sqrt(depth), transport, 0.0, 0.0));
-    }
+  while (layer < last) {
     vec3 place = brick_place(ray, distance_m);
     bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
     uint content = brick_content(ray, place);
     if (!outside && !is_filled(content) && content > uint(read_bricks)) {
       // The light is not read so far from anything that scatters.
-      float leap_m = empty_path(ray, place, content - uint(read_bricks));
-      int leap = 2 * int(leap_m * per_layer);  // whole layers: stores keep their turn
+      int leap = int(empty_path(ray, place, content - uint(read_bricks)) * per_layer);
       if (leap > 0) {
-        half_layer += leap;
-        distance_m += float(leap) * half_layer_m;
+        layer += leap;
+        distance_m += float(leap) * layer_m;
         continue;
       }
     }
-    int steps = !is_filled(content) && empty_path(ray, place, content) > further_m ? 0 : most_steps;
-    for (int i = 0; i < steps; ++i) {
-      float at_m = distance_m + float(i) * step_m;
-      float counts = at_m >= inside.x && at_m <= inside.y ? depth_of_texel : 0.0;
-      vec2 depths = counts * texture(light_medium, medium_place(ray, at_m)).rg;
-      medium_depth += depths.x;
-      depth += lost(depths.x, turned);
-      transport += depths.y;
+    bool empty = !is_filled(content) && empty_path(ray, place, content) > most_m;
+    float depth_of_sample = empty ? 0.0 : depth_of_texel;
+    for (int half_layer = 0; half_layer < 2; ++half_layer) {
+#if CONSISTENT
+      const int i = 0;
+#else
+      for (int i = 0; i < most_steps; ++i)
+#endif
+      {
+        float at_m = distance_m + float(i) * step_m;
+        float counts = at_m >= inside.x && at_m <= inside.y ? depth_of_sample : 0.0;
+        vec2 depths = counts * texture(light_medium, medium_place(ray, at_m)).rg;
+        medium_depth += depths.x;
+        depth += lost(depths.x, turned);
+        transport += depths.y;
+      }
+      if (half_layer == 0) imageStore(carried, ivec3(texel, layer), vec4(sqrt(depth), transport, 0.0, 0.0));
+      distance_m += half_layer_m;
     }
-    if (steps > 0) {
-      float left = exp(-medium_depth);
-      float place = (distance_m + 0.5 * further_m) * per_reach - 1.0;
-      moments += (lit - left) * vec2(place, place * place);
-      lit = left;
-    }
-    ++half_layer;
-    distance_m += half_layer_m;
+    float left = exp(-medium_depth);
+    float middle = float(layer) * layer_m * per_reach + (0.5 * layer_m * per_reach - 1.0);
+    moments += (lit - left) * vec2(middle, middle * middle);
+    lit = left;
+    ++layer;
   }
 
   imageStore(shadow, texel, vec4(1.0 - lit, moments, 0.0));
