@@ -192,6 +192,42 @@ TEST_F(MovingPictureTest, LightOfADraggedSunIsAsGood) {
   }
 }
 
+// Light that is found for a part of the cells, against the same found for all.
+TEST_F(MovingPictureTest, LightOfASunThatMovesIsFoundInTurns) {
+  Show(OfSample("supercell-500m.nc", 2), {240, 135});
+  Orbit().elevation_deg = 45.0;
+  renderers::SceneRenderer anew;
+  const auto off = [&] {
+    renderers::DrawQuality quality;
+    quality.light_in_turns = true;
+    const auto turns = renderer_->Draw(scene_, fields_, quality);
+    EXPECT_TRUE(turns.ok()) << turns.status();
+    const std::vector<float> found = frame::ReadLinear(*turns->radiance);
+    const auto all = anew.Draw(scene_, fields_, {});
+    EXPECT_TRUE(all.ok()) << all.status();
+    const std::vector<float> wanted = frame::ReadLinear(*all->radiance);
+    EXPECT_EQ(found.size(), wanted.size());
+    double squares = 0.0;
+    double all_squares = 0.0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      squares += std::pow(found[i] - wanted[i], 2.0);
+      all_squares += std::pow(wanted[i], 2.0);
+    }
+    return std::sqrt(squares / all_squares);
+  };
+  const auto move_sun = [&](double degrees) { scene_.sun.azimuth_deg += degrees; };
+  EXPECT_LT(off(), 1e-4);  // all of the first
+  for (int i = 0; i < 6; ++i) {
+    move_sun(1.5);
+    EXPECT_LT(off(), 3e-3) << i;
+  }
+  move_sun(60.0);
+  EXPECT_LT(off(), 1e-4);
+  // Other fields, too, have none of the light of those before.
+  fields_ = OfSample("supercell-500m.nc", 0);
+  EXPECT_LT(off(), 1e-4);
+}
+
 // Rays of chosen places are those of the picture's pixels, to a step of rounding.
 TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   Show(OfSample("supercell.nc", 1));

@@ -13,9 +13,9 @@ namespace thunderhead::renderers {
 
 class SunParts {
  public:
-  static constexpr std::size_t kCount = 4;
+  static constexpr std::size_t kCount = 8;
   // The sun has not gone farther than this since any part was found.
-  static constexpr double kFarthest_deg = 6.0;
+  static constexpr double kFarthest_deg = 10.0;
   using Parts = std::bitset<kCount>;
 
   // Those to find for a sun in direction `towards_sun`, of length 1: all, or, `in_turns`, the next
