@@ -13,13 +13,8 @@ namespace {
 
 constexpr int kMaxIterations = 200;
 
-double Dot(const std::vector<float>& a, const std::vector<float>& b) {
-  std::vector<double> sums((a.size() + kShare - 1) / kShare);
-  ForShares(a.size(), [&](std::size_t begin, std::size_t end) {
-    double sum = 0.0;
-    for (std::size_t n = begin; n < end; ++n) sum += static_cast<double>(a[n] * b[n]);
-    sums[begin / kShare] = sum;
-  });
+// Adds up sums of parts in order, so that the total does not depend on threads.
+double Total(const std::vector<double>& sums) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
@@ -64,7 +59,7 @@ void LinkedCells::ForBlocks(const Work& work) const {
                     [&](std::size_t block) { work(blocks_[block - 1], blocks_[block]); });
 }
 
-void LinkedCells::Precondition(const std::vector<float>& from, std::vector<float>* to) const {
+double LinkedCells::Precondition(const std::vector<float>& from, std::vector<float>* to) const {
   std::vector<float>& x = *to;
   const auto forward = [&](std::size_t n, std::size_t begin) {
     float sum = from[n];
@@ -85,10 +80,12 @@ void LinkedCells::Precondition(const std::vector<float>& from, std::vector<float
       sum += up.conductance[axis] * x[static_cast<std::size_t>(other)];
     }
     x[n] += sum * inverse_pivot_[n];
+    return static_cast<double>(from[n] * x[n]);
   };
   // Each cell waits for the one before it: two blocks in turn keep a processor busy.
   const std::size_t blocks = blocks_.size() - 1;
-  tbb::parallel_for(std::size_t{0}, (blocks + 1) / 2, [&](std::size_t pair) {
+  std::vector<double> products((blocks + 1) / 2);
+  tbb::parallel_for(std::size_t{0}, products.size(), [&](std::size_t pair) {
     const std::size_t a = blocks_[2 * pair];
     const std::size_t b = blocks_[2 * pair + 1];
     const std::size_t c = 2 * pair + 1 < blocks ? blocks_[2 * pair + 2] : b;
@@ -99,17 +96,22 @@ void LinkedCells::Precondition(const std::vector<float>& from, std::vector<float
     }
     for (std::size_t n = a + both; n < b; ++n) forward(n, a);
     for (std::size_t n = b + both; n < c; ++n) forward(n, b);
+    double product = 0.0;
     for (std::size_t i = 0; i < both; ++i) {
-      backward(b - 1 - i, b);
-      backward(c - 1 - i, c);
+      product += backward(b - 1 - i, b);
+      product += backward(c - 1 - i, c);
     }
-    for (std::size_t n = b - both; n-- > a;) backward(n, b);
-    for (std::size_t n = c - both; n-- > b;) backward(n, c);
+    for (std::size_t n = b - both; n-- > a;) product += backward(n, b);
+    for (std::size_t n = c - both; n-- > b;) product += backward(n, c);
+    products[pair] = product;
   });
+  return Total(products);
 }
 
-void LinkedCells::Apply(const std::vector<float>& from, std::vector<float>* to) const {
+double LinkedCells::Apply(const std::vector<float>& from, std::vector<float>* to) const {
+  std::vector<double> products((from.size() + kShare - 1) / kShare);
   ForShares(from.size(), [&](std::size_t begin, std::size_t end) {
+    double product = 0.0;
     for (std::size_t n = begin; n < end; ++n) {
       float sum = diagonal_[n] * from[n];
       const Links& down = down_[n];
@@ -122,8 +124,11 @@ void LinkedCells::Apply(const std::vector<float>& from, std::vector<float>* to) 
         }
       }
       (*to)[n] = sum;
+      product += static_cast<double>(from[n] * sum);
     }
+    products[begin / kShare] = product;
   });
+  return Total(products);
 }
 
 // Preconditioned conjugate gradients.
@@ -138,21 +143,18 @@ int LinkedCells::Solve(const std::vector<float>& right, double tolerance,
   ForShares(count, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) residual_[n] = right[n] - image_[n];
   });
-  Precondition(right, &better_);
-  const double goal = tolerance * tolerance * Dot(right, better_);
+  const double goal = tolerance * tolerance * Precondition(right, &better_);
   double before = 0.0;
   int iterations = 0;
   for (; iterations < kMaxIterations; ++iterations) {
-    Precondition(residual_, &better_);
-    const double now = Dot(residual_, better_);
+    const double now = Precondition(residual_, &better_);
     if (!(now > goal)) break;
     const auto beta = static_cast<float>(before > 0.0 ? now / before : 0.0);
     before = now;
     ForShares(count, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) direction_[n] = better_[n] + beta * direction_[n];
     });
-    Apply(direction_, &image_);
-    const double curvature = Dot(direction_, image_);
+    const double curvature = Apply(direction_, &image_);
     if (!(curvature > 0.0)) break;
     const auto step = static_cast<float>(now / curvature);
     ForShares(count, [&](std::size_t begin, std::size_t end) {

@@ -40,8 +40,9 @@ class LinkedCells {
   template <typename Work>
   void ForBlocks(const Work& work) const;
   void Factor();
-  void Precondition(const std::vector<float>& from, std::vector<float>* to) const;
-  void Apply(const std::vector<float>& from, std::vector<float>* to) const;
+  // Both return the product of `from` and `to`.
+  double Precondition(const std::vector<float>& from, std::vector<float>* to) const;
+  double Apply(const std::vector<float>& from, std::vector<float>* to) const;
 
   std::vector<Links> down_, up_;
   std::vector<std::size_t> blocks_;  // preconditioned each by itself, at the same time
