@@ -118,6 +118,12 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
     arrived_ = gl::Texture3D(format, cells);
     // The march leaves out what is never written, but might multiply it by zero.
     arrived_.Clear();
+    // Now, so that a storm that has room has it while something moves, too.
+    if (!gl::ComputesWholeTargets() && near_ratio_.Size() != cells) {
+      near_ratio_ = {};
+      near_ratio_ = gl::Texture3D(GL_R8, cells);
+      near_version_ = 0;
+    }
   }
   light_format_ = format;
 }
@@ -184,11 +190,11 @@ absl::Status LightVolumeRenderer::Arrive(const ResidentMedium& medium, const Gro
                                          const LightBox& box, const CarryVariant& variant,
                                          bool in_turns) {
   const int blocks = medium.BlockCount();
-  if (!in_turns) return ArriveIn(medium, weights, box, variant, 0, 0, blocks);
-  if (near_version_ != light_medium_.Version() || near_ratio_.Size() != arrived_.Size()) {
+  if (!in_turns || near_ratio_.Size() != arrived_.Size()) {
+    return ArriveIn(medium, weights, box, variant, 0, 0, blocks);
+  }
+  if (near_version_ != light_medium_.Version()) {
     near_parts_.Forget();
-    near_ratio_ = {};
-    near_ratio_ = gl::Texture3D(GL_R8, arrived_.Size());
     near_version_ = light_medium_.Version();
   }
   const SunParts::Parts parts = near_parts_.Next(box.frame.towards_sun, in_turns);

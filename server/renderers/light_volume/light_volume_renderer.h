@@ -92,7 +92,8 @@ class LightVolumeRenderer {
   gl::Texture2D thickness_;
   gl::Texture2D shadow_;
   gl::Texture3D arrived_;  // at the medium's cells
-  // Of the depth next to cells, for light_medium_'s version `near_version_` (arrive.comp).
+  // Of the depth next to cells (arrive.comp), for light_medium_'s version `near_version_`; empty on
+  // devices that do not draw sparsely.
   gl::Texture3D near_ratio_;
   std::uint64_t near_version_ = 0;
   SunParts near_parts_;
