@@ -47,8 +47,7 @@ void Dispatch(const glm::ivec3& cells) {
 
 absl::Status DiffusionPass::Solve(const ResidentMedium& medium, const GroupWeights& weights,
                                   const gl::Texture3D& arrived, const glm::dvec3& towards_sun,
-                                  double tolerance, const LitGround& ground,
-                                  bool in_turns) {
+                                  double tolerance, const LitGround& ground, bool in_turns) {
   Key key{medium.Id(), weights.light, weights.transport, weights.absorption};
   if (!light_.has_value() || key != key_) {
     light_.reset();

@@ -53,8 +53,8 @@ absl::Status LightMedium::Update(const ResidentMedium& medium, const GroupWeight
   program->Set(uniform::light_weights, medium.Weights(Times(weights.light, 1.0 / per_m_)));
   program->Set(uniform::transport_weights, medium.Weights(Times(weights.transport, 1.0 / per_m_)));
   texture_.BindImage(shaders::kLightMediumImage, GL_WRITE_ONLY);
-  THUNDERHEAD_RETURN_IF_ERROR(
-      ForCellBlocks(programs_->Pieces(), kLightMediumBlock, medium, *program, 0, medium.BlockCount()));
+  THUNDERHEAD_RETURN_IF_ERROR(ForCellBlocks(programs_->Pieces(), kLightMediumBlock, medium,
+                                            *program, 0, medium.BlockCount()));
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
   key_ = std::move(key);
   ++version_;

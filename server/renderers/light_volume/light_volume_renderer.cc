@@ -142,14 +142,16 @@ absl::Status LightVolumeRenderer::CarryLight(const ResidentMedium& medium,
                              .diffuse = diffuse};
   THUNDERHEAD_RETURN_IF_ERROR(light_medium_.Update(medium, weights, diffuse));
   THUNDERHEAD_RETURN_IF_ERROR(Carry(medium, weights, box, variant));
-  THUNDERHEAD_RETURN_IF_ERROR(Arrive(medium, weights, box, variant, settings.quality.light_in_turns));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Arrive(medium, weights, box, variant, settings.quality.light_in_turns));
   if (!Diffuses(settings)) return absl::OkStatus();
   LitGround ground;
   if (find_ground != nullptr) {
     THUNDERHEAD_ASSIGN_OR_RETURN(ground, find_ground());
   }
   return diffusion_.Solve(medium, weights, arrived_, settings.illumination.towards_sun,
-                          settings.quality.light_tolerance, ground, settings.quality.light_in_turns);
+                          settings.quality.light_tolerance, ground,
+                          settings.quality.light_in_turns);
 }
 
 absl::Status LightVolumeRenderer::Carry(const ResidentMedium& medium, const GroupWeights& weights,
