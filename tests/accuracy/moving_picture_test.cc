@@ -259,8 +259,9 @@ TEST_F(MovingPictureTest, CoarsePicturesAreThePicturesOfTheirSize) {
   auto hilly = std::make_shared<volume::HydrometeorFields>(*level);
   hilly->terrain_height_m.clear();
   const glm::ivec3& cells = hilly->grid.cells;
-  for (int i = 0; i < cells.x * cells.y; ++i) {
-    hilly->terrain_height_m.push_back(6000.0F + 5.0F * static_cast<float>(i / cells.x));
+  for (int y = 0; y < cells.y; ++y) {
+    hilly->terrain_height_m.insert(hilly->terrain_height_m.end(), static_cast<std::size_t>(cells.x),
+                                   6000.0F + 5.0F * static_cast<float>(y));
   }
   for (const auto& [fields, size_px] :
        {std::pair(level, glm::ivec2(300, 300)), std::pair(level, glm::ivec2(312, 152)),
