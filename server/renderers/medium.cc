@@ -54,7 +54,7 @@ std::uint64_t NextId() {
 
 struct Computed {
   volume::ExtinctionVolume extinction;
-  std::vector<std::uint8_t> detail_control;  // empty without detail
+  volume::DetailControl detail_control;  // empty without detail
 };
 
 Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& medium,
@@ -69,9 +69,8 @@ Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& mediu
     return &noises->Get(detail.octaves, detail.seed)->tile;
   };
   volume::KeepWaterPaths(
-      computed.detail_control,
       scene::PlacedDetailOf(layers, tile_of, computed.extinction.grid.spacing_m, fields.motion),
-      &computed.extinction);
+      &computed.detail_control, &computed.extinction);
   return computed;
 }
 
@@ -109,8 +108,8 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   base::Stopwatch stopwatch;
   details_ = LayersOf(content_, fields.motion, noises);
   // Half floats of each group, and the detail's control, on their way to the device.
-  const base::MemoryReservation on_the_way =
-      gl::DeviceMemory::ReserveBeside(fields.grid.CellCount() * (2 * content_.groups.size() + 2));
+  const base::MemoryReservation on_the_way = gl::DeviceMemory::ReserveBeside(
+      fields.grid.CellCount() * (2 * content_.groups.size() + sizeof(volume::DetailTexel)));
   Computed computed = ComputedThatFits(fields, content_, noises);
   bounds_ = std::move(computed.extinction);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
@@ -141,8 +140,8 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     blocks_ = gl::Buffer(blocks.occupied.size() * sizeof(std::uint32_t), blocks.occupied.data(), 0);
   }
   if (!computed.detail_control.empty()) {
-    detail_control_ = gl::Texture3D(GL_RG8, bounds_.grid.cells);
-    detail_control_.Upload(GL_RG, GL_UNSIGNED_BYTE, computed.detail_control.data());
+    detail_control_ = gl::Texture3D(GL_RGBA8, bounds_.grid.cells);
+    detail_control_.Upload(GL_RGBA, GL_UNSIGNED_BYTE, computed.detail_control.data());
     detail_fibres_ = glm::mat3(physics::FibresAlong(fields.motion.shear_m_per_s));
   }
   cost->upload_ms = stopwatch.ElapsedMs();

@@ -58,7 +58,7 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
   if (!layers.empty()) {
     detailed->control_ = volume::DetailControlOf(fields, parted.terms, volume);
     // Fields of a group lose and gain together.
-    const volume::ExtinctionVolume by_group =
+    volume::ExtinctionVolume by_group =
         volume::ComputeExtinction(fields, grouped.terms, static_cast<int>(grouped.groups.size()));
     volume::PlacedDetail of_groups = placed;
     const std::vector<DetailLayer> group_layers = DetailLayersOf(grouped.groups);
@@ -67,7 +67,7 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
       of_groups.layers[i].shares.assign(shares.begin(), shares.end());
     }
     const std::vector<float> factors =
-        volume::WaterPathFactors(detailed->control_, of_groups, by_group);
+        volume::KeepWaterPaths(of_groups, &detailed->control_, &by_group);
     const std::size_t from_channels = ChannelsOf(by_group);
     const std::size_t channels = ChannelsOf(volume);
     std::vector<float> by_field(factors.size() / from_channels * channels, 1.0F);

@@ -33,13 +33,13 @@ class DetailedMedium {
   volume::DrawnMedium::Channels Largest_per_m() const;
 
   // Detail multiplies a field by at most this.
-  static constexpr float kMaxFactor = 2.0F;
+  static constexpr float kMaxFactor = 4.0F;
 
  private:
   DetailedMedium() = default;
 
   volume::ExtinctionVolume volume_;  // a channel for each field
-  std::vector<std::uint8_t> control_;
+  volume::DetailControl control_;
   std::vector<std::unique_ptr<const physics::DetailTile>> tiles_;
   std::optional<volume::DrawnMedium> medium_;
 };

@@ -169,9 +169,9 @@ std::uint8_t ByteOf(float value) {
 
 }  // namespace
 
-std::vector<std::uint8_t> DetailControlOf(const HydrometeorFields& fields,
-                                          const std::vector<ExtinctionTerm>& terms,
-                                          const ExtinctionVolume& volume) {
+DetailControl DetailControlOf(const HydrometeorFields& fields,
+                              const std::vector<ExtinctionTerm>& terms,
+                              const ExtinctionVolume& volume) {
   const RegularGrid& grid = volume.grid;
   const Opacities opacities = OpacitiesOf(fields, terms, volume);
   const Values& opacity = opacities.all;
@@ -213,11 +213,12 @@ std::vector<std::uint8_t> DetailControlOf(const HydrometeorFields& fields,
   }
   Smooth(grid.cells, &amplitude);
   Smooth(grid.cells, &weight);
-  std::vector<std::uint8_t> texels(2 * amplitude.size());
+  DetailControl texels(amplitude.size());
   for (std::size_t i = 0; i < amplitude.size(); ++i) {
-    texels[2 * i] = opacity[i] > 0.0F ? ByteOf(255.0F * profile[i]) : std::uint8_t{0};
-    texels[2 * i + 1] =
-        ByteOf(128.0F + (weight[i] > 0.0F ? 127.0F * amplitude[i] / weight[i] : 0.0F));
+    if (opacity[i] > 0.0F) texels[i].profile = ByteOf(255.0F * profile[i]);
+    if (weight[i] > 0.0F) {
+      texels[i].amplitude = ByteOf(DetailTexel::kNoAmplitude + 127.0F * amplitude[i] / weight[i]);
+    }
   }
   return texels;
 }

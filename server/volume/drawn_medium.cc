@@ -29,7 +29,7 @@ std::array<float, 8> Weights(const glm::vec3& share) {
 
 }  // namespace
 
-DrawnMedium::DrawnMedium(const std::vector<std::uint8_t>& control, const PlacedDetail& detail,
+DrawnMedium::DrawnMedium(const DetailControl& control, const PlacedDetail& detail,
                          const ExtinctionVolume& volume)
     : control_(control),
       volume_(volume),
@@ -64,14 +64,15 @@ DrawnMedium::Channels DrawnMedium::At(const glm::vec3& in_cells) const {
   Channels factors;
   factors.fill(1.0F);
   if (!layers_.empty()) {
-    glm::vec2 control(0.0F);
+    glm::vec3 bytes(0.0F);
     for (std::size_t i = 0; i < kCorners; ++i) {
-      const std::uint8_t* texel = control_.data() + 2 * (here.cell + corners_[i]);
-      control += here.weights[i] * glm::vec2(texel[0], texel[1]);
+      const DetailTexel& texel = control_[here.cell + corners_[i]];
+      bytes += here.weights[i] * glm::vec3(texel.profile, texel.amplitude, texel.column);
     }
     // Empty, and nothing is displaced to where it is.
-    if (control.x <= 0.0F) return values;
-    control = {control.x / 255.0F, (control.y - 128.0F) / 127.0F};
+    if (bytes.x <= 0.0F) return values;
+    factors.fill(physics::glsl::detail_column_factor(bytes.z / 255.0F));
+    const glm::vec2 control(bytes.x / 255.0F, (bytes.y - 128.0F) / 127.0F);
     for (const Layer& layer : layers_) {
       const glm::vec4 noise = NoiseAt(layer, in_cells, control.y < 0.0F);
       if (&layer == layers_.data()) {

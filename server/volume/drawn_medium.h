@@ -11,6 +11,7 @@
 #include "glm/vec3.hpp"
 #include "glm/vec4.hpp"
 #include "physics/detail_tile.h"
+#include "volume/detail_control.h"
 #include "volume/extinction.h"
 
 namespace thunderhead::volume {
@@ -35,7 +36,7 @@ class DrawnMedium {
   using Channels = std::array<float, kMaxChannels>;
 
   // `control` is DetailControlOf the volume. All but `detail` must outlive it.
-  DrawnMedium(const std::vector<std::uint8_t>& control, const PlacedDetail& detail,
+  DrawnMedium(const DetailControl& control, const PlacedDetail& detail,
               const ExtinctionVolume& volume);
 
   // `in_cells` is a place in cells from the volume's low corner. Beyond the grid it is that of the
@@ -64,7 +65,7 @@ class DrawnMedium {
   void AddPlane(const ExtinctionPlane& plane, const Place& from, const float* factors,
                 float* values) const;
 
-  const std::vector<std::uint8_t>& control_;
+  const DetailControl& control_;
   const ExtinctionVolume& volume_;
   std::array<std::size_t, kCorners> corners_;  // from the lowest
   glm::vec3 warp_;                             // in cells

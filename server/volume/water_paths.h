@@ -2,31 +2,32 @@
 // and no GL.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "volume/detail_control.h"
 #include "volume/drawn_medium.h"
 #include "volume/extinction.h"
 
 namespace thunderhead::volume {
 
-// For each channel of each column, channels beside each other and then x and y, the factor that
-// makes up for what detail takes from it, so that its water path over the cell's area is about the
-// one without detail: at most kMaxColumnFactor, and at least its inverse. `control` is
-// DetailControlOf the volume.
+// Keeps the water paths of columns, each of the area of a cell, in two steps. First each channel of
+// each column of `volume` is multiplied by what makes up for what detail takes from it on the mean.
+// Then DetailTexel::column is set to what that leaves of all channels together, by which shaders
+// multiply the medium at a place, wherever the displacement takes it from. That is linear between
+// columns, and found for all of them together; so that channels keep their totals, each is
+// multiplied by one more factor. `control` is DetailControlOf the volume. Returns the factors of
+// `volume`, channels beside each other and then x and y: at most kMaxColumnFactor, and at least its
+// inverse.
 //
-// The storm's paths are kept within 1 %. Those of single columns are not: the displacement moves
-// water to the columns beside it, and where billows leave nothing, no factor brings it back.
-std::vector<float> WaterPathFactors(const std::vector<std::uint8_t>& control,
-                                    const PlacedDetail& detail, const ExtinctionVolume& volume);
+// So each channel's path of the whole storm is kept within 1 %, and that of all channels together
+// in most columns. Those of which billows leave next to nothing, and what is finer than the points
+// at which the medium is evaluated, are not (docs/decisions/0020-detail-of-the-model.md).
+std::vector<float> KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
+                                  ExtinctionVolume* volume);
 
-// Multiplies the columns by such factors, of the volume's own channels.
+// Multiplies columns by such factors, of the volume's own channels.
 void ScaleColumns(const std::vector<float>& factors, ExtinctionVolume* volume);
 
-// Both.
-void KeepWaterPaths(const std::vector<std::uint8_t>& control, const PlacedDetail& detail,
-                    ExtinctionVolume* volume);
-
-inline constexpr float kMaxColumnFactor = 4.0F;
+inline constexpr float kMaxColumnFactor = 5.0F;
 
 }  // namespace thunderhead::volume

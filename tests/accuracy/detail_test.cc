@@ -24,18 +24,20 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     scene::SetSlices(&scene_.rendering.technique, 512);
   }
 
-  // The medium as it is uploaded: extinction by cell, in units of the slab's.
+  // The medium as it is uploaded: extinction by cell, in units of the slab's, and factors of
+  // columns.
   struct Kept {
     volume::RegularGrid grid;
     std::vector<float> factors;
+    std::vector<float> columns;
 
-    // Columns are the same at all levels.
-    double At(const glm::dvec3& world_m) const {
+    // Both are the same at all levels.
+    double Of(const std::vector<float>& values, const glm::dvec3& world_m) const {
       const glm::dvec3 from_middle = (world_m - grid.low_corner_m) / grid.spacing_m - 0.5;
       const glm::dvec3 low = glm::floor(from_middle);
       const glm::dvec3 share = from_middle - low;
       const auto cell = [&](int x, int y) {
-        return double{factors[grid.Offset(int(low.x) + x, int(low.y) + y, 0)]};
+        return double{values[grid.Offset(int(low.x) + x, int(low.y) + y, 0)]};
       };
       return glm::mix(glm::mix(cell(0, 0), cell(1, 0), share.x),
                       glm::mix(cell(0, 1), cell(1, 1), share.x), share.y);
@@ -46,7 +48,7 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     const volume::HydrometeorFields fields = Fields(kDepth);
     const Medium medium = scene::GroupedFieldsOf(scene_, fields);
     volume::ExtinctionVolume volume = volume::ComputeExtinction(fields, medium.terms, 1);
-    const std::vector<std::uint8_t> control = volume::DetailControlOf(fields, medium.terms, volume);
+    volume::DetailControl control = volume::DetailControlOf(fields, medium.terms, volume);
     const std::uint16_t before = volume.planes[0].texels[0];
     const physics::DetailTile tile = physics::MakeDetailTile(detail.octaves, detail.seed);
     volume::PlacedDetail placed;
@@ -54,8 +56,12 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
         {&tile, detail.wavelength_m * double{physics::DetailTile::kWaves}, {detail.share}}};
     placed.warp_m = physics::DetailWarp_m(volume.grid.spacing_m, detail.wavelength_m);
     placed.fibres = physics::FibresAlong({0.0, 0.0});
-    volume::KeepWaterPaths(control, placed, &volume);
-    Kept kept{volume.grid, {}};
+    volume::KeepWaterPaths(placed, &control, &volume);
+    Kept kept{volume.grid, {}, {}};
+    for (const volume::DetailTexel& texel : control) {
+      kept.columns.push_back(
+          physics::glsl::detail_column_factor(static_cast<float>(texel.column) / 255.0F));
+    }
     for (const std::uint16_t after : volume.planes[0].texels) {
       kept.factors.push_back(FloatOf(after) / FloatOf(before));
     }
@@ -86,7 +92,8 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
       const double change =
           double{physics::glsl::detail_factor(control, static_cast<float>(noise.x), 0.0F)} - 1.0;
       const glm::dvec3 displaced_m = world_m + warp_m * glm::dvec3(noise.y, noise.z, noise.w);
-      sum += (1.0 + double{detail.share} * change) * kept.At(displaced_m);
+      sum += (1.0 + double{detail.share} * change) * kept.Of(kept.factors, displaced_m) *
+             kept.Of(kept.columns, world_m);
     }
     return sum / kPoints;
   }

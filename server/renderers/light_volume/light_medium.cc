@@ -15,9 +15,9 @@ namespace {
 constexpr gl::PieceCost kLightMediumBlock{"light medium", 12000.0};
 
 // The texel value of the thickest cell without detail. Detail thickens a cell up to nearly twice,
-// and four times before, to keep columns' water (volume/water_paths.h); half floats reach from
+// and ten times before, to keep columns' water (volume/water_paths.h); half floats reach from
 // 2^-24 to 2^16.
-constexpr double kThickestTexel = 4096.0;
+constexpr double kThickestTexel = 2048.0;
 
 double PerMetreOf(const ResidentMedium& medium, const GroupWeights& weights) {
   const double most = *std::max_element(weights.light.begin(), weights.light.end());

@@ -53,7 +53,9 @@ struct Medium {
 Medium medium_at_place(vec3 place, float distance_m) {
 #if DETAILS > 0
   // An amplitude of 0 is a texel of 128 of 255.
-  vec2 control = texture(detail_control, place).rg * vec2(1.0, 255.0 / 127.0) - vec2(0.0, 128.0 / 127.0);
+  vec3 here = texture(detail_control, place).rgb;
+  vec2 control = here.rg * vec2(1.0, 255.0 / 127.0) - vec2(0.0, 128.0 / 127.0);
+  float column_factor = detail_column_factor(here.b);
   vec4 noise[DETAILS];
   float faded[DETAILS];
   for (int i = 0; i < DETAILS; ++i) {
@@ -71,6 +73,7 @@ Medium medium_at_place(vec3 place, float distance_m) {
   medium.plane[1] = texture(medium_plane_1, place);
 #endif
 #if DETAILS > 0
+  for (int plane = 0; plane < PLANES; ++plane) medium.plane[plane] *= column_factor;
   for (int i = 0; i < DETAILS; ++i) {
     float change = detail_factor(control, noise[i].r, faded[i]) - 1.0;
     for (int plane = 0; plane < PLANES; ++plane) {

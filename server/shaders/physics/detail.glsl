@@ -1,7 +1,7 @@
 // Detail finer than a model's grid, at a place where `control` says what the model allows: x, the profile, rises from 0 where
 // the cells around are empty to 1 inside a cloud; y, the amplitude, is that of billows above zero, of fibres below it, and
 // 0 where the medium stays as it is. Noise is that of physics/detail_tile.h. `faded` is the share of the noise that is finer
-// than what is drawn, 0 to 1. Compiles as GLSL and as C++ (physics/detail_tile.h).
+// than what is drawn, 0 to 1. A third value of the texel keeps what columns of cells hold. Compiles as GLSL and as C++ (physics/detail_tile.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else
@@ -13,6 +13,9 @@ const float kSurfaceRelief = 0.8f;    // profiles between the surface's valleys 
 const float kSurfaceWidth = 0.14f;    // on which the medium thins out
 const float kFibreContrast = 0.8f;
 const float kMinWarp = 0.4f;        // of the full warp, without any turbulence: hides the grid
+
+// Factor of the medium in its column of cells, where 1 is a texel of 128 of 255.
+PHYSICS_FUNCTION float detail_column_factor(float texel) { return texel * (255.0f / 128.0f); }
 
 // Factor of the medium. Billows erode the profile up to a surface that noise moves: empty outside, unchanged inside.
 PHYSICS_FUNCTION float detail_factor(vec2 control, float noise, float faded) {

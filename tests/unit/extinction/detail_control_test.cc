@@ -32,16 +32,16 @@ HydrometeorFields BlockOf(Hydrometeor hydrometeor) {
 
 struct Control {
   ExtinctionVolume volume;
-  std::vector<std::uint8_t> texels;
+  DetailControl texels;
 
   explicit Control(const HydrometeorFields& fields) {
     const std::vector<ExtinctionTerm> terms = {{0, 1.0F, 0, false}};
     volume = ComputeExtinction(fields, terms, 1);
     texels = DetailControlOf(fields, terms, volume);
   }
-  std::size_t At(int x, int y, int z) const { return 2 * volume.grid.Offset(x, y, z); }
-  int Profile(int x, int y, int z) const { return texels[At(x, y, z)]; }
-  int Amplitude(int x, int y, int z) const { return texels[At(x, y, z) + 1] - 128; }
+  const DetailTexel& At(int x, int y, int z) const { return texels[volume.grid.Offset(x, y, z)]; }
+  int Profile(int x, int y, int z) const { return At(x, y, z).profile; }
+  int Amplitude(int x, int y, int z) const { return At(x, y, z).amplitude - 128; }
 };
 
 void SetTurbulence(std::uint8_t turbulence, HydrometeorFields* fields) {

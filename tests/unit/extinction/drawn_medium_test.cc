@@ -1,8 +1,6 @@
 #include "volume/drawn_medium.h"
 
 #include <cmath>
-#include <cstdint>
-#include <vector>
 
 #include "gtest/gtest.h"
 #include "volume/hydrometeor_fields.h"
@@ -20,10 +18,7 @@ TEST(DrawnMedium, DetailMovesWithTheWind) {
   fields.fields[0].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-3F);
   const ExtinctionVolume volume = ComputeExtinction(fields, {{0, 100.0F, 0, false}}, 1);
   // At the surface of billows, everywhere.
-  std::vector<std::uint8_t> control;
-  for (std::size_t i = 0; i < volume.grid.CellCount(); ++i) {
-    control.insert(control.end(), {128, 255});
-  }
+  const DetailControl control(volume.grid.CellCount(), {.profile = 128, .amplitude = 255});
   const physics::DetailTile tile = physics::MakeDetailTile(4, 1);
   PlacedDetail detail;
   detail.layers = {{&tile, 12e3, {1.0F}}};
