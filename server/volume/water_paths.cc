@@ -108,9 +108,9 @@ std::array<glm::vec3, 2> TwoPoints(int z) {
 std::array<glm::vec3, 9> NinePoints(int z) {
   std::array<glm::vec3, 9> points;
   for (int i = 0; i < 9; ++i) {
-    points[static_cast<std::size_t>(i)] = {static_cast<float>(i % 3 - 1) / 3.0F,
-                                           static_cast<float>(i / 3 - 1) / 3.0F,
-                                           ((i + z) & 1) != 0 ? 0.25F : -0.25F};
+    const glm::ivec2 across(i % 3 - 1, i / 3 - 1);
+    const float up = ((i + z) & 1) != 0 ? 0.25F : -0.25F;
+    points[static_cast<std::size_t>(i)] = {glm::vec2(across) / 3.0F, up};
   }
   return points;
 }

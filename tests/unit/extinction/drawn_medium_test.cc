@@ -27,9 +27,9 @@ TEST(DrawnMedium, DetailMovesWithTheWind) {
   detail.layers[0].drift_m = {1000.0, -500.0};
   const DrawnMedium drifted(control, detail, volume);
   int differ = 0;
-  for (float x = 3.25F; x < 18.0F; x += 1.0F) {
-    for (float z = 1.25F; z < 7.0F; z += 1.0F) {
-      const glm::vec3 place(x, 0.5F * x + 5.0F, z);
+  for (int x = 3; x < 18; ++x) {
+    for (int z = 1; z < 7; ++z) {
+      const glm::vec3 place = glm::vec3(x, 0.5F * static_cast<float>(x) + 5.0F, z) + 0.25F;
       const float before = still.At(place)[0];
       EXPECT_NEAR(drifted.At(place + glm::vec3(2.0F, -1.0F, 0.0F))[0], before,
                   1e-3F * (before + 1.0F));
