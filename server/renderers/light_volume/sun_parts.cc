@@ -9,7 +9,7 @@ namespace thunderhead::renderers {
 
 SunParts::Parts SunParts::Next(const glm::dvec3& towards_sun, bool in_turns) const {
   Parts parts;
-  if (!in_turns) return parts.set();
+  if (!in_turns || last_sun_ == towards_sun) return parts.set();
   const double nearest = std::cos(glm::radians(kFarthest_deg));
   for (std::size_t part = 0; part < kCount; ++part) {
     const std::optional<glm::dvec3>& sun = suns_[part];
@@ -22,6 +22,7 @@ void SunParts::Found(const Parts& parts, const glm::dvec3& towards_sun) {
   for (std::size_t part = 0; part < kCount; ++part) {
     if (parts[part]) suns_[part] = towards_sun;
   }
+  last_sun_ = towards_sun;
   turn_ = (turn_ + 1) % kCount;
 }
 

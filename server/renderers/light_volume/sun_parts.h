@@ -19,7 +19,8 @@ class SunParts {
   using Parts = std::bitset<kCount>;
 
   // Those to find for a sun in direction `towards_sun`, of length 1: all, or, `in_turns`, the next
-  // one and those that were found for a sun farther away.
+  // one and those that were found for a sun farther away. All of a sun that has not moved, too, as
+  // something else has changed.
   Parts Next(const glm::dvec3& towards_sun, bool in_turns) const;
 
   // `parts` have been found.
@@ -30,6 +31,7 @@ class SunParts {
 
  private:
   std::array<std::optional<glm::dvec3>, kCount> suns_;  // for which each part was found
+  std::optional<glm::dvec3> last_sun_;
   std::size_t turn_ = 0;
 };
 

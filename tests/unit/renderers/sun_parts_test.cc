@@ -25,10 +25,11 @@ TEST(SunParts, AllAreFoundFirstAndThenOneAfterTheOther) {
   EXPECT_TRUE(parts.Next(SunAt(0.0), true).all());
   parts.Found(parts.Next(SunAt(0.0), true), SunAt(0.0));
   SunParts::Parts since;
-  for (std::size_t i = 0; i < SunParts::kCount; ++i) {
-    const SunParts::Parts found = parts.Next(SunAt(0.1), true);
+  for (std::size_t i = 1; i <= SunParts::kCount; ++i) {
+    const glm::dvec3 sun = SunAt(0.1 * static_cast<double>(i));
+    const SunParts::Parts found = parts.Next(sun, true);
     EXPECT_EQ(found.count(), 1U);
-    parts.Found(found, SunAt(0.1));
+    parts.Found(found, sun);
     since |= found;
   }
   EXPECT_TRUE(since.all());
@@ -45,10 +46,17 @@ TEST(SunParts, NoneStaysThatOfASunFarAway) {
 TEST(SunParts, AllAreFoundWhereTurnsAreNotWantedAndOnceForgotten) {
   SunParts parts;
   FoundAt(&parts, 0.0);
-  EXPECT_EQ(FoundAt(&parts, 0.0, false), SunParts::kCount);
-  EXPECT_EQ(FoundAt(&parts, 0.0), 1U);
+  EXPECT_EQ(FoundAt(&parts, 0.1, false), SunParts::kCount);
+  EXPECT_EQ(FoundAt(&parts, 0.2), 1U);
   parts.Forget();
-  EXPECT_EQ(FoundAt(&parts, 0.0), SunParts::kCount);
+  EXPECT_EQ(FoundAt(&parts, 0.3), SunParts::kCount);
+}
+
+TEST(SunParts, AllAreFoundForASunThatHasNotMoved) {
+  SunParts parts;
+  FoundAt(&parts, 0.0);
+  EXPECT_EQ(FoundAt(&parts, 0.1), 1U);
+  EXPECT_EQ(FoundAt(&parts, 0.1), SunParts::kCount);
 }
 
 }  // namespace
