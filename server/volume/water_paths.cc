@@ -31,7 +31,7 @@ constexpr double kMostOfChannel = kMaxColumnFactor / kMostOfColumn;
 // A profile above which billows leave all that there is.
 constexpr std::uint8_t kInside = 250;
 
-// In which the rests are found; more change nothing that can be seen.
+// Rounds in which the second step's factors are found; with more, columns keep no more.
 constexpr int kTurns = 6;
 
 // The levels of a column at which there is anything, `high` not included.
@@ -281,7 +281,8 @@ class Rests {
   const std::vector<float>& OfChannels() const { return of_channels_; }
 
  private:
-  // What the factors of a column and those around it make of it: at most and at least those.
+  // The mean of the factors of a column and of those around it, weighted by what interpolation
+  // takes from each.
   float Between(int x, int y) const {
     float with = 0.0F;
     float before = 0.0F;
@@ -349,13 +350,12 @@ std::vector<float> KeepWaterPaths(const PlacedDetail& detail, DetailControl* con
   ScaleColumns(factors, volume);
   const Rests rests(*control, detail, *volume, without);
   const std::vector<float>& of_channels = rests.OfChannels();
-  ForEachTexel(volume->planes, volume->grid.cells.z,
-               [&](std::uint16_t& texel, std::size_t channel) {
-                 const float factor = of_channels[channel % of_channels.size()];
-                 texel = base::HalfFromFloat(base::FloatFromHalf(texel) * factor);
-               });
-  for (std::size_t i = 0; i < factors.size(); ++i)
-    factors[i] *= of_channels[i % of_channels.size()];
+  std::vector<float> of_totals(factors.size());
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    of_totals[i] = of_channels[i % of_channels.size()];
+    factors[i] *= of_totals[i];
+  }
+  ScaleColumns(of_totals, volume);
   for (std::size_t i = 0; i < control->size(); ++i) {
     const float of_column = rests.OfColumns()[i % rests.OfColumns().size()];
     (*control)[i].column =

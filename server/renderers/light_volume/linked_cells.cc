@@ -39,8 +39,9 @@ LinkedCells::LinkedCells(std::vector<Links> down, std::vector<Links> up,
 // than along them.
 void LinkedCells::Factor() {
   inverse_pivot_.resize(diagonal_.size());
-  ForBlocks([&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) {
+  tbb::parallel_for(std::size_t{1}, blocks_.size(), [&](std::size_t block) {
+    const std::size_t begin = blocks_[block - 1];
+    for (std::size_t n = begin; n < blocks_[block]; ++n) {
       float pivot = diagonal_[n];
       for (int axis = 0; axis < 3; ++axis) {
         const std::int32_t to = down_[n].to[axis];
@@ -51,12 +52,6 @@ void LinkedCells::Factor() {
       inverse_pivot_[n] = 1.0F / pivot;
     }
   });
-}
-
-template <typename Work>
-void LinkedCells::ForBlocks(const Work& work) const {
-  tbb::parallel_for(std::size_t{1}, blocks_.size(),
-                    [&](std::size_t block) { work(blocks_[block - 1], blocks_[block]); });
 }
 
 double LinkedCells::Precondition(const std::vector<float>& from, std::vector<float>* to) const {

@@ -36,9 +36,6 @@ class LinkedCells {
   int Solve(const std::vector<float>& right, double tolerance, std::vector<float>* solution);
 
  private:
-  // Calls `work` with the first number of each block and that after its last, on all threads.
-  template <typename Work>
-  void ForBlocks(const Work& work) const;
   void Factor();
   // Both return the product of `from` and `to`.
   double Precondition(const std::vector<float>& from, std::vector<float>* to) const;
