@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace thunderhead::reference {
 namespace {
-
-constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 
 // A horizontal ray through gaps of a periodic medium would never end, so it is assumed to leave
 // after this many periods. The probability that a scattered ray is as horizontal as that is about

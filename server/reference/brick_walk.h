@@ -2,10 +2,15 @@
 // constant majorant, in order. Knows no light.
 #pragma once
 
+#include <limits>
+
 #include "glm/vec3.hpp"
 #include "reference/medium.h"
 
 namespace thunderhead::reference {
+
+// Length of a ray that nothing ends.
+inline constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 
 struct Ray {
   glm::dvec3 origin_m{0.0};
