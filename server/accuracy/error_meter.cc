@@ -37,10 +37,9 @@ double MeanColor(const glm::vec3& color) {
 
 }  // namespace
 
-ErrorMeter::ErrorMeter(std::shared_ptr<const reference::Medium> medium,
-                       reference::Surroundings surroundings, const reference::Camera& camera,
-                       int threads, std::uint64_t seed)
-    : medium_(std::move(medium)),
+ErrorMeter::ErrorMeter(reference::RayTracer tracer, reference::Surroundings surroundings,
+                       const reference::Camera& camera, int threads, std::uint64_t seed)
+    : tracer_(std::move(tracer)),
       surroundings_(std::move(surroundings)),
       camera_(camera),
       threads_(threads),
@@ -49,7 +48,7 @@ ErrorMeter::ErrorMeter(std::shared_ptr<const reference::Medium> medium,
 
 absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-    int threads, std::uint64_t seed) {
+    int threads, std::uint64_t seed, const reference::MakesTracer& makes_tracer) {
   // As the reference shows it: each field with its own phase function.
   scene::Scene truth = scene;
   truth.rendering.technique =
@@ -59,8 +58,9 @@ absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
   options.similar = true;
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
                                reference::MediumOf(truth, *fields, options));
+  THUNDERHEAD_ASSIGN_OR_RETURN(reference::RayTracer tracer, makes_tracer(medium));
   return std::unique_ptr<ErrorMeter>(new ErrorMeter(
-      std::move(medium), reference::SurroundingsOf(truth, *fields, reference::GroundLight::kShaded),
+      std::move(tracer), reference::SurroundingsOf(truth, *fields, reference::GroundLight::kShaded),
       reference::CameraOf(truth, *fields), threads, seed));
 }
 
@@ -163,8 +163,7 @@ absl::Status ErrorMeter::Step(const reference::IsWanted& wanted) {
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::vector<glm::dvec3> radiance,
-      reference::TraceRays(*medium_, surroundings_, rays,
-                           {seed_ + batch, 1, threads_, reference::kSimilarAfter, wanted}));
+      tracer_(surroundings_, rays, {seed_ + batch, 1, threads_, reference::kSimilarAfter, wanted}));
   for (std::size_t i = 0; i < pixels; ++i) {
     const double weight = 1.0 / (ChanceOf(indices[i]) * static_cast<double>(pixels_));
     const double usual = std::max(MeanColor(drawn_.radiance[indices[i]]), kDark * mean_drawn_);

@@ -1,6 +1,6 @@
 // Measures the error of a drawn picture by tracing some of its pixels: what the picture shows
-// against the reference (reference/trace_scene.h), on the scene and storm that it shows. Traces on
-// the processors and needs no GL.
+// against the reference (reference/trace_scene.h), on the scene and storm that it shows. Knows no
+// GL, though paths may be traced by it.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,6 @@
 #include "accuracy/error_estimate.h"
 #include "picture/linear_picture.h"
 #include "reference/camera.h"
-#include "reference/medium.h"
 #include "reference/surroundings.h"
 #include "reference/trace_rays.h"
 #include "scene/scene.h"
@@ -25,10 +24,12 @@ namespace thunderhead::accuracy {
 class ErrorMeter {
  public:
   // Of pictures of `scene` with any number of pixels, of the aspect that its output has. Fails as
-  // reference::MediumOf. Traces on `threads` threads, 0: all cores; other random paths by `seed`.
+  // reference::MediumOf and `makes_tracer`. Traces on `threads` threads, 0: all cores, where it is
+  // the processors that trace; other random paths by `seed`.
   static absl::StatusOr<std::unique_ptr<ErrorMeter>> Create(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-      int threads, std::uint64_t seed = 0);
+      int threads, std::uint64_t seed = 0,
+      const reference::MakesTracer& makes_tracer = reference::TracerOnProcessors);
 
   // The picture whose error is measured from now on. Paths traced before count for it too, if it
   // has as many pixels as the one before; else they are given up.
@@ -55,14 +56,14 @@ class ErrorMeter {
     PixelTruth truth;
   };
 
-  ErrorMeter(std::shared_ptr<const reference::Medium> medium, reference::Surroundings surroundings,
+  ErrorMeter(reference::RayTracer tracer, reference::Surroundings surroundings,
              const reference::Camera& camera, int threads, std::uint64_t seed);
 
   void Weigh();
   std::size_t ChoosePixel(std::uint64_t count) const;
   double ChanceOf(std::size_t index) const;
 
-  const std::shared_ptr<const reference::Medium> medium_;
+  const reference::RayTracer tracer_;
   const reference::Surroundings surroundings_;
   const reference::Camera camera_;
   const int threads_;

@@ -81,7 +81,7 @@ absl::StatusOr<ErrorMeters::Kept*> ErrorMeters::For(const scene::Scene& measured
       memory_->Reserve(base::MemoryUse::kTracing, reference::MediumBytes(*fields, true),
                        "measuring a picture's error", base::MemoryBudget::Urgency::kAhead));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<ErrorMeter> meter,
-                               ErrorMeter::Create(measured, fields, 0));
+                               ErrorMeter::Create(measured, fields, 0, 0, makes_tracer_));
   Kept& kept = kept_.emplace_back();
   kept.scene = key;
   kept.fields = fields;

@@ -49,8 +49,13 @@ class ErrorMeters {
   // that was used within `busy_s` is not replaced; one that was not for `unused_s` goes with the
   // next call.
   explicit ErrorMeters(std::shared_ptr<base::MemoryBudget> memory = base::MemoryBudget::Unlimited(),
-                       std::size_t max_meters = 8, double busy_s = 3.0, double unused_s = 60.0)
-      : memory_(std::move(memory)), max_meters_(max_meters), busy_s_(busy_s), unused_s_(unused_s) {}
+                       std::size_t max_meters = 8, double busy_s = 3.0, double unused_s = 60.0,
+                       reference::MakesTracer makes_tracer = reference::TracerOnProcessors)
+      : memory_(std::move(memory)),
+        max_meters_(max_meters),
+        busy_s_(busy_s),
+        unused_s_(unused_s),
+        makes_tracer_(std::move(makes_tracer)) {}
 
   // A step for the scene: draws with `draw` if it is new or its light is corrected by many more
   // paths than it was (`light_paths`), and else traces, unless it has ended or is not `wanted`.
@@ -80,6 +85,7 @@ class ErrorMeters {
   std::size_t max_meters_;
   double busy_s_;
   double unused_s_;
+  reference::MakesTracer makes_tracer_;
   std::list<Kept> kept_;
 };
 

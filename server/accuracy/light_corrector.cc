@@ -8,6 +8,7 @@
 #include "accuracy/probe_cameras.h"
 #include "accuracy/traced_lights.h"
 #include "base/status.h"
+#include "device_paths/device_tracer.h"
 #include "frame/tone_map.h"
 #include "glm/common.hpp"
 #include "reference/philox.h"
@@ -95,12 +96,12 @@ bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fie
 
 LightCorrector::LightCorrector(const scene::Scene& scene,
                                std::shared_ptr<const volume::HydrometeorFields> fields,
-                               std::shared_ptr<const reference::Medium> medium,
+                               reference::RayTracer tracer,
                                std::shared_ptr<gl::ProgramCache> programs, int threads)
     : scene_(ProbedScene(scene, *fields)),
       asked_(scene),
       fields_(std::move(fields)),
-      medium_(std::move(medium)),
+      tracer_(std::move(tracer)),
       box_(volume::VisibleBox(*fields_, SizesOf(scene_))),
       over_ground_(reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded)),
       threads_(threads),
@@ -123,8 +124,10 @@ absl::StatusOr<std::unique_ptr<LightCorrector>> LightCorrector::Create(
   options.similar = true;
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
                                reference::MediumOf(ProbedScene(scene, *fields), *fields, options));
+  THUNDERHEAD_ASSIGN_OR_RETURN(reference::RayTracer tracer,
+                               device_paths::TracersFor(programs)(medium));
   return std::unique_ptr<LightCorrector>(new LightCorrector(
-      scene, std::move(fields), std::move(medium), std::move(programs), threads));
+      scene, std::move(fields), std::move(tracer), std::move(programs), threads));
 }
 
 bool LightCorrector::Serves(const scene::Scene& scene,
@@ -191,9 +194,9 @@ absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
 absl::StatusOr<std::vector<glm::dvec3>> LightCorrector::Traced(
     const reference::Surroundings& surroundings, const std::vector<reference::Ray>& rays,
     std::uint64_t seed, int paths_of_ray) const {
-  return reference::TraceRays(*medium_, surroundings, rays,
-                              {seed, paths_of_ray, threads_, reference::kSimilarAfter,
-                               [this] { return programs_->Pieces().Wanted(); }});
+  return tracer_(surroundings, rays,
+                 {seed, paths_of_ray, threads_, reference::kSimilarAfter,
+                  [this] { return programs_->Pieces().Wanted(); }});
 }
 
 absl::Status LightCorrector::TraceProbe(const Probe& probe) {

@@ -2,7 +2,7 @@
 // storm, half of them from near the scene's camera and half from all around, traces one or two
 // paths along each of their rays, and fits factors for the drawn radiance. Paths from the ground
 // correct its skylight. The result is the same for any number of threads. Owns GL objects: use it
-// on the context's thread, which draws in pieces (gl/pieces.h) and traces without the device.
+// on the context's thread, which draws in pieces (gl/pieces.h).
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "reference/brick_walk.h"
-#include "reference/medium.h"
 #include "reference/surroundings.h"
+#include "reference/trace_rays.h"
 #include "renderers/light_correction.h"
 #include "renderers/scene_renderer.h"
 #include "scene/scene.h"
@@ -33,8 +33,8 @@ bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fie
 
 class LightCorrector {
  public:
-  // TracesLight must be true. Programs are linked in `programs`; traces on `threads` threads, 0:
-  // all cores.
+  // TracesLight must be true. Programs are linked in `programs`; traces on the device where that is
+  // faster (device_paths::TracesOnDevice), else on `threads` threads, 0: all cores.
   static absl::StatusOr<std::unique_ptr<LightCorrector>> Create(
       const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
       std::shared_ptr<gl::ProgramCache> programs, int threads);
@@ -72,8 +72,8 @@ class LightCorrector {
   };
 
   LightCorrector(const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-                 std::shared_ptr<const reference::Medium> medium,
-                 std::shared_ptr<gl::ProgramCache> programs, int threads);
+                 reference::RayTracer tracer, std::shared_ptr<gl::ProgramCache> programs,
+                 int threads);
 
   scene::Camera NextCamera() const;
   absl::StatusOr<Probe> DrawProbe();
@@ -88,7 +88,7 @@ class LightCorrector {
   scene::Scene scene_;  // as the probes draw it
   scene::Scene asked_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
-  std::shared_ptr<const reference::Medium> medium_;
+  reference::RayTracer tracer_;
   volume::WorldBox box_;
   reference::Surroundings over_ground_;  // as seen by rays from the ground: without air in front
   int threads_;

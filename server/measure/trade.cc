@@ -8,6 +8,7 @@
 #include "accuracy/named_settings.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "device_paths/device_tracer.h"
 #include "measure/image_error.h"
 
 namespace thunderhead::measure {
@@ -172,8 +173,10 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
 absl::Status Trade::Estimate(const scene::Scene& scene, const picture::LinearPicture& image,
                              const std::stop_token& stop, accuracy::Estimated* estimate) {
   if (error_seconds_ <= 0.0) return absl::OkStatus();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<accuracy::ErrorMeter> meter,
-                               accuracy::ErrorMeter::Create(scene, fields_, 0));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::unique_ptr<accuracy::ErrorMeter> meter,
+      accuracy::ErrorMeter::Create(scene, fields_, 0, 0,
+                                   device_paths::TracersFor(std::make_shared<gl::ProgramCache>())));
   meter->Show(image);
   meter->Measure(error_seconds_, stop);
   if (const auto error = meter->Result(); error.has_value()) *estimate = error->relative_rmse;

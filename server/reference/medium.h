@@ -66,6 +66,14 @@ struct Scattering {
   glm::dvec3 weight{0.0};
 };
 
+// Of a group in one of the two optics.
+struct GroupOptics {
+  double share = 1.0;  // of the group's extinction
+  glm::dvec3 albedo;
+  double choice_albedo;  // mean over colours, by which a collision's group is chosen
+  std::shared_ptr<const SampledPhase> phase;
+};
+
 class Medium {
  public:
   // Fails if an extinction is negative or not finite, an albedo outside 0 to 1, or sizes disagree.
@@ -98,6 +106,22 @@ class Medium {
     return Of(optics).majorants_per_m[BrickOffset(brick)];
   }
   bool HasSimilar() const { return !similar_.extinction_per_m.empty(); }
+  // What the above is computed from, for those who compute it elsewhere (device_paths/).
+  const volume::RegularGrid& Grid() const { return grid_; }
+  bool Linear() const { return linear_; }
+  const glm::ivec3& FirstCell() const { return first_cell_; }  // of the first brick
+  const std::vector<float>& Extinctions_per_m(Optics optics) const {
+    return Of(optics).extinction_per_m;
+  }
+  const std::vector<float>& Majorants_per_m(Optics optics) const {
+    return Of(optics).majorants_per_m;
+  }
+  // May be none.
+  const std::vector<GroupOptics>& Groups(Optics optics) const { return Of(optics).groups; }
+  // Of each group, in exact optics; empty with a single one.
+  const std::vector<std::vector<float>>& GroupExtinctions_per_m() const {
+    return group_extinctions_per_m_;
+  }
   // True if all bricks of this height are empty.
   bool EmptyLayer(int z) const { return empty_layers_[static_cast<std::size_t>(z)] != 0; }
 
@@ -114,13 +138,6 @@ class Medium {
   struct Between {
     OffsetPair offsets;
     std::array<double, 2> shares;
-  };
-  // Of a group.
-  struct GroupOptics {
-    double share = 1.0;  // of the group's extinction
-    glm::dvec3 albedo;
-    double choice_albedo;  // mean over colours
-    std::shared_ptr<const SampledPhase> phase;
   };
   struct Lattice {
     std::vector<GroupOptics> groups;

@@ -7,23 +7,11 @@
 
 #include "glm/geometric.hpp"
 #include "reference/eye_segment.h"
+#include "reference/roulette.h"
 #include "reference/tracking.h"
 
 namespace thunderhead::reference {
 namespace {
-
-// Below this throughput paths continue by Russian roulette.
-constexpr double kRouletteThroughput = 0.1;
-
-// In thick clouds of high albedo the number of paths with more than n collisions falls only as 1 /
-// sqrt(n): a few very long ones would take most of the time. At this many collisions, and each time
-// that number quadruples, paths survive with probability 1/2, which balances work and variance over
-// path lengths.
-constexpr int kLongPath = 64;
-
-// Sunlight whose contribution, relative to isotropic scattering, is below this is sampled by
-// Russian roulette.
-constexpr double kRouletteSunlight = 0.5;
 
 glm::dvec3 Arriving(const Medium& medium, const ThroughMedium& light, RandomStream* random,
                     Optics optics = Optics::kExact) {

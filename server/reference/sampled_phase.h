@@ -42,6 +42,21 @@ class SampledPhase {
   // The mean cosine of the scattering angle, over colours if they differ.
   double Asymmetry() const;
 
+  // Its table for one colour, if it has one: values and cumulative distribution at the ends of
+  // intervals of x = 1 - mu, and for as many steps of the latter the interval at which the search
+  // for them starts.
+  struct Table {
+    const std::vector<double>& x;
+    const std::vector<double>& values;
+    const std::vector<double>& cumulative;
+    const std::vector<std::uint32_t>& guide;
+  };
+  int Tables() const { return x_.empty() ? 0 : (colored_ ? 3 : 1); }
+  // `color` is below Tables().
+  Table TableOf(std::size_t color) const {
+    return {x_, values_[color], cumulative_[color], guide_[color]};
+  }
+
   // Inverse of the cumulative distribution of the scattering angle of `color` (0 to 2) at `u`,
   // uniform over (0, 1).
   PhaseSample Sample(double u, std::size_t color) const;

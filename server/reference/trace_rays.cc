@@ -53,4 +53,12 @@ absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
   return radiance;
 }
 
+RayTracer TracerOnProcessors(std::shared_ptr<const Medium> medium) {
+  return
+      [medium = std::move(medium)](const Surroundings& surroundings, const std::vector<Ray>& rays,
+                                   const TraceRaysOptions& options) {
+        return TraceRays(*medium, surroundings, rays, options);
+      };
+}
+
 }  // namespace thunderhead::reference

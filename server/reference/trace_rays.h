@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -36,5 +37,14 @@ absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
                                                   const Surroundings& surroundings,
                                                   const std::vector<Ray>& rays,
                                                   const TraceRaysOptions& options);
+
+// TraceRays in a medium, by the processors or whoever computes the same (device_paths/).
+using RayTracer = std::function<absl::StatusOr<std::vector<glm::dvec3>>(
+    const Surroundings&, const std::vector<Ray>&, const TraceRaysOptions&)>;
+
+RayTracer TracerOnProcessors(std::shared_ptr<const Medium> medium);
+
+using MakesTracer =
+    std::function<absl::StatusOr<RayTracer>(const std::shared_ptr<const Medium>& medium)>;
 
 }  // namespace thunderhead::reference

@@ -11,6 +11,7 @@
 #include "accuracy/traced_lights.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
+#include "device_paths/device_tracer.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
 #include "gl/device.h"
@@ -282,7 +283,8 @@ class GlFrameSource final : public FrameSource {
   accuracy::CorrectorPool correctors_{programs_, shared_.lights,
                                       OrUnlimited(shared_.options.memory)};
   // Two at a time, as each holds its storm's fields and a copy of their extinction.
-  accuracy::ErrorMeters meters_{OrUnlimited(shared_.options.memory), 2, 3.0, 5.0};
+  accuracy::ErrorMeters meters_{OrUnlimited(shared_.options.memory), 2, 3.0, 5.0,
+                                device_paths::TracersFor(programs_)};
   frame::ToneMapper tone_mapper_{programs_};
   frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
   gl::Texture2D picture_;                             // that Tone was given

@@ -60,6 +60,7 @@ int Run(int argc, char** argv) {
   RegisterSavings();
   RegisterGrowth();
   RegisterWideDomain();
+  RegisterPaths();
   benchmark::RegisterBenchmark("encode_jpeg/1280x720", EncodeJpeg)
       ->Unit(benchmark::kMillisecond)
       ->UseRealTime();

@@ -63,6 +63,9 @@ void RegisterCumulus();
 // frames while the camera or the sun moves; with the memory of fields and textures.
 void RegisterWideDomain();
 
+// A step's paths of traced light (docs/decisions/0057), on the processors and on the device.
+void RegisterPaths();
+
 // Savings by drawing only what a scene requires, and the growth of time.
 void RegisterSavings();
 void RegisterGrowth();

@@ -1,0 +1,8 @@
+// shaders/paths/bindings.glsl for C++.
+#pragma once
+
+namespace thunderhead::shaders {
+
+#include "shaders/paths/bindings.glsl"
+
+}  // namespace thunderhead::shaders

@@ -1,0 +1,49 @@
+// A reference medium on the device, as shaders/paths/ reads it.
+#pragma once
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "gl/objects.h"
+#include "gl/program.h"
+#include "glm/vec3.hpp"
+#include "reference/medium.h"
+
+namespace thunderhead::device_paths {
+
+class DeviceMedium {
+ public:
+  // Copies `medium`. UNIMPLEMENTED for one with periodic sides, constant cells or more groups than
+  // fields have; throws base::FailedAllocation where there is no room.
+  static absl::StatusOr<DeviceMedium> Of(const reference::Medium& medium);
+
+  // Of paths/trace.comp.
+  gl::Defines Defines() const { return {{"GROUPS", groups_}}; }
+  void Bind(const gl::Program& program) const;
+  // World coordinates to bricks from the first one's lower corner.
+  glm::dvec3 InBricks(const glm::dvec3& point_m) const {
+    return (point_m - brick_low_m_) / brick_m_;
+  }
+  glm::dvec3 InWorld_m(const glm::dvec3& bricks) const { return brick_low_m_ + bricks * brick_m_; }
+  const glm::dvec3& BrickLow_m() const { return brick_low_m_; }
+
+ private:
+  explicit DeviceMedium(const reference::Medium& medium);
+  void UploadGroups(const reference::Medium& medium);
+  void UploadOptics(const reference::Medium& medium);
+
+  int groups_;
+  glm::dvec3 brick_low_m_;
+  glm::dvec3 brick_m_;
+  glm::dvec3 box_low_;  // in bricks
+  glm::dvec3 box_high_;
+  glm::ivec3 cells_;
+  glm::ivec3 bricks_;
+  glm::ivec3 first_cell_;
+  gl::Texture3D extinctions_;
+  gl::Texture3D majorants_;
+  std::vector<gl::Texture3D> group_extinctions_;
+  gl::Buffer optics_;
+  gl::Buffer phases_;
+};
+
+}  // namespace thunderhead::device_paths

@@ -1,0 +1,289 @@
+#include "device_paths/device_tracer.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/out_of_memory.h"
+#include "base/status.h"
+#include "device_paths/bindings.h"
+#include "gl/device.h"
+#include "reference/eye_segment.h"
+#include "reference/parallel.h"
+#include "reference/philox.h"
+#include "reference/roulette.h"
+#include "shaders/uniforms.h"
+
+namespace thunderhead::device_paths {
+namespace {
+
+// What the states of so many paths take is some megabytes.
+constexpr std::size_t kPathsOfChunk = 65536;
+// Of a work group in a pass; a guess until one is measured.
+constexpr gl::PieceCost kGroupOfPaths{"paths", 1e6};
+// Paths that the host begins or ends at a time.
+constexpr std::size_t kPathsOfTask = 256;
+
+constexpr float kEndless = 3e38F;
+
+// Runs work(i) for all i before `count` on `threads` threads.
+template <typename Work>
+void ForPaths(int threads, std::size_t count, const Work& work) {
+  const std::size_t tasks = (count + kPathsOfTask - 1) / kPathsOfTask;
+  reference::ParallelFor(threads, static_cast<int>(tasks), [&](int task) {
+    const std::size_t first = static_cast<std::size_t>(task) * kPathsOfTask;
+    for (std::size_t i = first; i < std::min(first + kPathsOfTask, count); ++i) work(i);
+  });
+}
+
+glm::uvec3 StreamOf(std::size_t ray, std::uint32_t sample, std::uint32_t kind,
+                    std::uint32_t hero = 0) {
+  return {kind | (hero << 30U), static_cast<std::uint32_t>(ray), sample};
+}
+
+}  // namespace
+
+bool TracesOnDevice() {
+  static const char* const chosen = std::getenv("THUNDERHEAD_PATHS");
+  if (chosen != nullptr) return std::string_view(chosen) == "device";
+  return !gl::DrawsInSoftware();
+}
+
+struct DeviceTracer::Begun {
+  reference::EyeSegment segment;
+  std::uint32_t hero = 0;
+  std::uint32_t air_hero = 0;
+  std::size_t first_state = 0;  // of what the device was asked: the shaded, the air, the path
+};
+
+absl::StatusOr<std::unique_ptr<DeviceTracer>> DeviceTracer::Create(
+    const reference::Medium& medium, std::shared_ptr<gl::ProgramCache> programs) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(DeviceMedium on_device, DeviceMedium::Of(medium));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const gl::Program* program,
+      programs->Get(gl::ProgramSource::Compute("paths/trace.comp", on_device.Defines())));
+  return std::unique_ptr<DeviceTracer>(
+      new DeviceTracer(std::move(on_device), program, std::move(programs)));
+}
+
+DeviceTracer::DeviceTracer(DeviceMedium medium, const gl::Program* program,
+                           std::shared_ptr<gl::ProgramCache> programs)
+    : medium_(std::move(medium)), program_(program), programs_(std::move(programs)) {}
+
+DeviceTracer::PathState DeviceTracer::StateOf(const reference::Ray& ray, int what,
+                                              const glm::uvec3& stream) const {
+  PathState state;
+  state.place = glm::vec4(glm::vec3(medium_.InBricks(ray.origin_m)), kEndless);
+  state.direction = glm::vec4(glm::vec3(ray.direction), static_cast<float>(what));
+  state.throughput = glm::vec4(1.0F, 1.0F, 1.0F, 0.0F);
+  state.spectral = glm::vec4(1.0F, 1.0F, 1.0F, static_cast<float>(reference::kLongPath));
+  state.counter = glm::uvec4(0U, stream);
+  return state;
+}
+
+void DeviceTracer::BindSurroundings(const reference::Surroundings& surroundings,
+                                    const reference::TraceRaysOptions& options) {
+  std::vector<glm::vec4> lights;
+  for (const glm::dvec3& sun : surroundings.sun_by_height) lights.emplace_back(sun, 0.0);
+  if (lights.empty()) lights.emplace_back(surroundings.sun_irradiance, 0.0);
+  program_->Set(uniform::sun_heights, static_cast<int>(lights.size()));
+  program_->Set(uniform::sun_step_m, static_cast<float>(reference::Surroundings::kSunStep_m));
+  program_->Set(uniform::other_lights, static_cast<int>(surroundings.lights.size()));
+  for (const reference::DirectionalLight& light : surroundings.lights) {
+    lights.emplace_back(light.towards, 0.0);
+    lights.emplace_back(light.irradiance, 0.0);
+  }
+  lights_ = gl::Buffer(lights.size() * sizeof(glm::vec4), lights.data(), 0);
+  lights_.BindStorage(shaders::kPathLightsBinding);
+  program_->Set(uniform::towards_sun, glm::vec3(surroundings.towards_sun));
+  program_->Set(uniform::similar_after, options.similar_after);
+  program_->Set(uniform::key, glm::ivec2(static_cast<std::int32_t>(options.seed),
+                                         static_cast<std::int32_t>(options.seed >> 32U)));
+  program_->Set(uniform::has_ground, surroundings.ground.has_value());
+  if (!surroundings.ground.has_value()) return;
+  const reference::Ground& ground = *surroundings.ground;
+  program_->Set(uniform::low_from_touch_m,
+                glm::vec3(medium_.BrickLow_m() - glm::dvec3(ground.touch_m, ground.height_m)));
+  program_->Set(uniform::ground_albedo, glm::vec3(ground.albedo));
+  program_->Set(uniform::ground_radiance, glm::vec3(ground.radiance));
+  program_->Set(uniform::ground_curvature_per_m, static_cast<float>(ground.curvature_per_m));
+}
+
+absl::StatusOr<std::vector<glm::dvec3>> DeviceTracer::Trace(
+    const reference::Surroundings& surroundings, const std::vector<reference::Ray>& rays,
+    const reference::TraceRaysOptions& options) {
+  const auto of_ray = static_cast<std::size_t>(options.paths_per_ray);
+  std::vector<glm::dvec3> radiance(rays.size(), glm::dvec3(0.0));
+  const std::size_t rays_of_chunk = std::max<std::size_t>(kPathsOfChunk / of_ray, 1);
+  for (std::size_t first = 0; first < rays.size(); first += rays_of_chunk) {
+    const std::size_t count = (std::min(rays.size(), first + rays_of_chunk) - first) * of_ray;
+    const auto ray_of = [&](std::size_t path) { return first + path / of_ray; };
+    const auto sample_of = [&](std::size_t path) {
+      return static_cast<std::uint32_t>(path % of_ray);
+    };
+
+    // Where the rays meet the medium's particles.
+    std::vector<PathState> met(count);
+    std::vector<double> grounds_m(count);
+    ForPaths(options.threads, count, [&](std::size_t i) {
+      const reference::Ray& ray = rays[ray_of(i)];
+      grounds_m[i] = reference::GroundDistance_m(surroundings, ray);
+      met[i] =
+          StateOf(ray, shaders::kPathMeets, StreamOf(ray_of(i), sample_of(i), shaders::kPathMeets));
+      met[i].place.w = static_cast<float>(std::min(grounds_m[i], static_cast<double>(kEndless)));
+    });
+    THUNDERHEAD_RETURN_IF_ERROR(Run(surroundings, options, &met));
+
+    // What eyes see up to there, and what that leads to.
+    std::vector<Begun> begun(count);
+    ForPaths(options.threads, count, [&](std::size_t i) {
+      reference::RandomStream random(options.seed, ray_of(i), sample_of(i));
+      const float at_m = met[i].radiance.w;
+      const auto collision_m = at_m < 0.0F ? std::nullopt : std::optional<double>(at_m);
+      begun[i].segment = reference::FollowFromEye(surroundings, rays[ray_of(i)], grounds_m[i],
+                                                  collision_m, &random);
+      begun[i].hero = static_cast<std::uint32_t>(3.0 * random.Uniform());
+      begun[i].air_hero = static_cast<std::uint32_t>(3.0 * random.Uniform());
+    });
+    std::vector<PathState> states;
+    for (std::size_t i = 0; i < count; ++i) {
+      Begin(ray_of(i), sample_of(i), &begun[i], &states);
+    }
+    THUNDERHEAD_RETURN_IF_ERROR(Run(surroundings, options, &states));
+
+    std::vector<glm::dvec3> estimates(count);
+    ForPaths(options.threads, count,
+             [&](std::size_t i) { estimates[i] = End(surroundings, begun[i], states); });
+    for (std::size_t i = 0; i < count; ++i) {
+      radiance[ray_of(i)] += estimates[i] / static_cast<double>(of_ray);
+    }
+  }
+  return radiance;
+}
+
+void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
+                         std::vector<PathState>* states) const {
+  begun->first_state = states->size();
+  const reference::EyeSegment& segment = begun->segment;
+  // Kinds of streams beyond those of states, one for each that a path may need.
+  std::uint32_t kind = shaders::kPathMissed;
+  for (const reference::ThroughMedium& light : segment.shaded) {
+    states->push_back(StateOf(light.ray, shaders::kPathShines, StreamOf(ray, sample, ++kind)));
+  }
+  if (segment.air.has_value()) {
+    states->push_back(StateOf(segment.air->ray, shaders::kPathTries,
+                              StreamOf(ray, sample, shaders::kPathTries, begun->air_hero)));
+  }
+  using Then = reference::EyeSegment::Then;
+  if (segment.then == Then::kEnds) return;
+  const int what = segment.then == Then::kScatters ? shaders::kPathScatters : shaders::kPathFlies;
+  PathState state =
+      StateOf(segment.onward, what, StreamOf(ray, sample, shaders::kPathFlies, begun->hero));
+  state.throughput = glm::vec4(glm::vec3(segment.throughput), 0.0F);
+  states->push_back(state);
+}
+
+// What paths have gathered, and the sky where they left.
+glm::dvec3 DeviceTracer::End(const reference::Surroundings& surroundings, const Begun& begun,
+                             const std::vector<PathState>& states) {
+  const auto light_of = [&](const PathState& state) {
+    glm::dvec3 light(state.radiance);
+    if (static_cast<int>(state.direction.w) == shaders::kPathEscaped && surroundings.sky) {
+      light += glm::dvec3(state.throughput) * glm::dvec3(state.spectral) *
+               surroundings.sky(glm::normalize(glm::dvec3(state.direction)));
+    }
+    return light;
+  };
+  const reference::EyeSegment& segment = begun.segment;
+  glm::dvec3 radiance = segment.radiance;
+  std::size_t next = begun.first_state;
+  for (const reference::ThroughMedium& light : segment.shaded) {
+    radiance += light.radiance * static_cast<double>(states[next++].radiance.w);
+  }
+  if (segment.air.has_value()) {
+    const PathState& state = states[next++];
+    if (static_cast<int>(state.direction.w) != shaders::kPathMissed) {
+      radiance -= segment.air->of_sky - segment.air->per_radiance * light_of(state);
+    }
+  }
+  if (segment.then != reference::EyeSegment::Then::kEnds) radiance += light_of(states[next]);
+  return radiance;
+}
+
+absl::Status DeviceTracer::Run(const reference::Surroundings& surroundings,
+                               const reference::TraceRaysOptions& options,
+                               std::vector<PathState>* states) {
+  if (states->empty()) return absl::OkStatus();
+  return programs_->Pieces().During([&]() -> absl::Status {
+    const std::size_t bytes = states->size() * sizeof(PathState);
+    if (states_.Bytes() < bytes) {
+      // A list is its length and the paths in it.
+      const std::size_t of_list = (states->size() + 1) * sizeof(std::uint32_t);
+      states_ = {};
+      states_ = gl::Buffer(bytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
+      list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);
+      next_list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);
+    }
+    glNamedBufferSubData(states_.Get(), 0, static_cast<GLsizeiptr>(bytes), states->data());
+    medium_.Bind(*program_);
+    BindSurroundings(surroundings, options);
+    states_.BindStorage(shaders::kPathStatesBinding);
+    program_->Use();
+    THUNDERHEAD_RETURN_IF_ERROR(RunPasses(options, static_cast<int>(states->size())));
+    glGetNamedBufferSubData(states_.Get(), 0, static_cast<GLsizeiptr>(bytes), states->data());
+    return absl::OkStatus();
+  });
+}
+
+absl::Status DeviceTracer::RunPasses(const reference::TraceRaysOptions& options, int count) {
+  for (bool by_list = false; count > 0; by_list = true) {
+    if (options.wanted) THUNDERHEAD_RETURN_IF_ERROR(options.wanted());
+    const std::uint32_t none = 0;
+    glClearNamedBufferSubData(next_list_.Get(), GL_R32UI, 0, sizeof(none), GL_RED_INTEGER,
+                              GL_UNSIGNED_INT, &none);
+    list_.BindStorage(shaders::kPathListBinding);
+    next_list_.BindStorage(shaders::kPathNextListBinding);
+    program_->Set(uniform::by_list, by_list);
+    const int groups = (count + shaders::kPathGroupSize - 1) / shaders::kPathGroupSize;
+    THUNDERHEAD_RETURN_IF_ERROR(
+        programs_->Pieces().Steps(kGroupOfPaths, groups, [&](int begin, int end) {
+          program_->Set(uniform::first_path, begin * shaders::kPathGroupSize);
+          program_->Set(uniform::end_path, std::min(end * shaders::kPathGroupSize, count));
+          glDispatchCompute(static_cast<GLuint>(end - begin), 1, 1);
+        }));
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    std::uint32_t going = 0;
+    glGetNamedBufferSubData(next_list_.Get(), 0, sizeof(going), &going);
+    count = static_cast<int>(going);
+    std::swap(list_, next_list_);
+  }
+  return absl::OkStatus();
+}
+
+reference::MakesTracer TracersFor(std::shared_ptr<gl::ProgramCache> programs) {
+  return [programs = std::move(programs)](const std::shared_ptr<const reference::Medium>& medium)
+             -> absl::StatusOr<reference::RayTracer> {
+    if (!TracesOnDevice()) return reference::TracerOnProcessors(medium);
+    auto made = base::OrOutOfMemory([&] {
+      return programs->Pieces().During([&] { return DeviceTracer::Create(*medium, programs); });
+    });
+    if (absl::IsUnimplemented(made.status()) || absl::IsResourceExhausted(made.status())) {
+      spdlog::info("paths are traced on the processors: {}", made.status().ToString());
+      return reference::TracerOnProcessors(medium);
+    }
+    if (!made.ok()) return made.status();
+    return [tracer = std::shared_ptr<DeviceTracer>(*std::move(made))](
+               const reference::Surroundings& surroundings, const std::vector<reference::Ray>& rays,
+               const reference::TraceRaysOptions& options) {
+      return tracer->Trace(surroundings, rays, options);
+    };
+  };
+}
+
+}  // namespace thunderhead::device_paths

@@ -1,0 +1,141 @@
+// The reference's medium (reference/medium.h) with open sides and linear interpolation, and rays through it from brick to brick
+// (reference/brick_walk.h, reference/tracking.h). Places are in bricks from the first one's lower corner, directions unit vectors,
+// distances in metres. Each function that takes `similar` has the medium that is similar to the exact one, too (decision 56).
+#include "paths/bindings.glsl"
+#include "paths/random.glsl"
+#include "paths/roulette.glsl"
+
+layout(binding = kPathExtinctionUnit) uniform sampler3D extinctions;  // of cells, 1/m: x exact, y similar
+layout(binding = kPathMajorantUnit) uniform sampler3D majorants;      // bounds in bricks, likewise
+uniform ivec3 cell_count;
+uniform ivec3 brick_count;
+uniform ivec3 first_cell;  // of the first brick
+uniform vec3 box_low;      // in bricks
+uniform vec3 box_high;
+uniform vec3 bricks_per_m;
+
+const float kEndless_m = 3e38;
+
+float of_optics(vec2 value, bool similar) { return similar ? value.y : value.x; }
+
+float cell_extinction(ivec3 cell, bool similar) {
+  return of_optics(texelFetch(extinctions, clamp(cell, ivec3(0), cell_count - 1), 0).xy, similar);
+}
+
+// In a brick extinction is one trilinear function: its values at the four edges along x, and their slopes.
+struct Edges {
+  vec4 low;
+  vec4 slope;
+};
+
+Edges edges_of(ivec3 brick, bool similar) {
+  ivec3 at = first_cell + brick;
+  vec4 low = vec4(cell_extinction(at, similar), cell_extinction(at + ivec3(0, 1, 0), similar),
+                  cell_extinction(at + ivec3(0, 0, 1), similar), cell_extinction(at + ivec3(0, 1, 1), similar));
+  vec4 high = vec4(cell_extinction(at + ivec3(1, 0, 0), similar), cell_extinction(at + ivec3(1, 1, 0), similar),
+                   cell_extinction(at + ivec3(1, 0, 1), similar), cell_extinction(at + ivec3(1, 1, 1), similar));
+  return Edges(low, high - low);
+}
+
+// At a place in the brick, from its lower corner.
+float extinction_in(Edges edges, vec3 share) {
+  vec4 along_x = edges.low + share.x * edges.slope;
+  vec2 along_y = along_x.xz + share.y * (along_x.yw - along_x.xz);
+  return along_y.x + share.z * (along_y.y - along_y.x);
+}
+
+struct Walk {
+  vec3 from;     // where the ray enters the box
+  vec3 per_m;    // bricks along each axis
+  vec3 m_per;
+  ivec3 stride;
+  ivec3 brick;
+  float before_m;  // the box
+  float at_m;      // in it
+  float leaves_m;  // the brick
+  float end_m;
+};
+
+void find_face(inout Walk walk) {
+  vec3 faces_m = (vec3(walk.brick + max(walk.stride, ivec3(0))) - walk.from) * walk.m_per;
+  walk.leaves_m = clamp(min(faces_m.x, min(faces_m.y, faces_m.z)), walk.at_m, walk.end_m);
+}
+
+Walk begin_walk(vec3 place, vec3 direction, float limit_m) {
+  Walk walk;
+  walk.per_m = direction * bricks_per_m;
+  // A ray along an axis never comes to the faces across it.
+  walk.per_m = mix(walk.per_m, vec3(1e-15), lessThan(abs(walk.per_m), vec3(1e-15)));
+  walk.m_per = 1.0 / walk.per_m;
+  vec3 to_low = (box_low - place) * walk.m_per;
+  vec3 to_high = (box_high - place) * walk.m_per;
+  vec3 nearer = min(to_low, to_high);
+  vec3 farther = max(to_low, to_high);
+  walk.before_m = max(max(nearer.x, nearer.y), max(nearer.z, 0.0));
+  walk.at_m = 0.0;
+  walk.end_m = min(min(farther.x, farther.y), min(farther.z, limit_m)) - walk.before_m;
+  walk.from = place + walk.before_m * walk.per_m;
+  walk.stride = ivec3(sign(walk.per_m));
+  walk.brick = clamp(ivec3(floor(walk.from)), ivec3(0), brick_count - 1);
+  find_face(walk);
+  return walk;
+}
+
+bool goes_on(Walk walk) {
+  return walk.at_m < walk.end_m && all(greaterThanEqual(walk.brick, ivec3(0))) && all(lessThan(walk.brick, brick_count));
+}
+
+void next_brick(inout Walk walk) {
+  vec3 faces_m = (vec3(walk.brick + max(walk.stride, ivec3(0))) - walk.from) * walk.m_per;
+  walk.at_m = walk.leaves_m;
+  if (faces_m.x <= faces_m.y && faces_m.x <= faces_m.z) {
+    walk.brick.x += walk.stride.x;
+  } else if (faces_m.y <= faces_m.z) {
+    walk.brick.y += walk.stride.y;
+  } else {
+    walk.brick.z += walk.stride.z;
+  }
+  find_face(walk);
+}
+
+float majorant_of(ivec3 brick, bool similar) { return of_optics(texelFetch(majorants, brick, 0).xy, similar); }
+
+// The distance to the first collision with a particle, or -1 if there is none within `limit_m`: null collisions (Woodcock et al. 1965).
+float distance_to_collision(vec3 place, vec3 direction, float limit_m, bool similar) {
+  Walk walk = begin_walk(place, direction, limit_m);
+  float depth = random_exponential();  // left, of the majorant
+  while (goes_on(walk)) {
+    float majorant = majorant_of(walk.brick, similar);
+    float at_m = walk.at_m;
+    while (depth < (walk.leaves_m - at_m) * majorant) {
+      at_m += depth / majorant;
+      vec3 share = walk.from + at_m * walk.per_m - vec3(walk.brick);
+      if (random_uniform() * majorant < extinction_in(edges_of(walk.brick, similar), clamp(share, 0.0, 1.0))) {
+        return walk.before_m + at_m;
+      }
+      depth = random_exponential();
+    }
+    depth -= (walk.leaves_m - at_m) * majorant;
+    next_brick(walk);
+  }
+  return -1.0;
+}
+
+// An unbiased estimate of the transmittance to infinity, exact unless it is small. Simpson's rule is exact in a brick.
+float transmittance_to_infinity(vec3 place, vec3 direction, bool similar) {
+  Walk walk = begin_walk(place, direction, kEndless_m);
+  float end_depth = kRouletteDepth + random_exponential();
+  float depth = 0.0;
+  while (goes_on(walk)) {
+    if (majorant_of(walk.brick, similar) > 0.0) {
+      Edges edges = edges_of(walk.brick, similar);
+      vec3 first = clamp(walk.from + walk.at_m * walk.per_m - vec3(walk.brick), 0.0, 1.0);
+      vec3 last = clamp(walk.from + walk.leaves_m * walk.per_m - vec3(walk.brick), 0.0, 1.0);
+      float sum = extinction_in(edges, first) + 4.0 * extinction_in(edges, 0.5 * (first + last)) + extinction_in(edges, last);
+      depth += (walk.leaves_m - walk.at_m) * sum / 6.0;
+      if (depth > end_depth) return 0.0;
+    }
+    next_brick(walk);
+  }
+  return exp(-min(depth, kRouletteDepth));
+}

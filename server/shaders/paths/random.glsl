@@ -1,0 +1,43 @@
+// Random numbers by counter: Philox 4x32-10 (Salmon et al. 2011), as reference/philox.h has them. A path's numbers depend on its key and
+// counter alone, so results are the same however paths are dispatched.
+
+uvec2 random_key;
+uvec4 random_counter;  // of the next block; x counts them
+uvec4 random_words;
+int random_left = 0;  // of the words
+
+void philox_round(inout uvec4 counter, uvec2 key) {
+  uint high_0;
+  uint low_0;
+  uint high_1;
+  uint low_1;
+  umulExtended(0xD2511F53u, counter.x, high_0, low_0);
+  umulExtended(0xCD9E8D57u, counter.z, high_1, low_1);
+  counter = uvec4(high_1 ^ counter.y ^ key.x, low_1, high_0 ^ counter.w ^ key.y, low_0);
+}
+
+uint random_word() {
+  if (random_left == 0) {
+    random_words = random_counter;
+    uvec2 key = random_key;
+    for (int i = 0; i < 10; ++i) {
+      philox_round(random_words, key);
+      key += uvec2(0x9E3779B9u, 0xBB67AE85u);
+    }
+    ++random_counter.x;
+    random_left = 4;
+  }
+  uint word = random_words.x;
+  random_words = random_words.yzwx;
+  --random_left;
+  return word;
+}
+
+// Uniform over (0, 1), in steps of 2^-23; never 0 or 1.
+float random_uniform() { return (float(random_word() >> 9) + 0.5) / 8388608.0; }
+
+// Exponential with mean 1. Optically thin media need very small values.
+float random_exponential() {
+  float u = min((float(random_word()) + 0.5) / 4294967296.0, 0.99999994);
+  return u < 0.01 ? u * (1.0 + u * (1.0 / 2.0 + u * (1.0 / 3.0 + u / 4.0))) : -log(1.0 - u);
+}
