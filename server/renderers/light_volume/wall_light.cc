@@ -16,10 +16,16 @@ constexpr double kWallSize = 0.05;
 // or twice this changes the errors of the sample storm by 0.01 to 0.03
 // (docs/decisions/0009-diffusion-transport.md).
 constexpr double kWallDepth = 1.345;
-// Shortest paths through a cell, and share of a wall's size, within which a wall belongs to the
+// Shortest paths through a cell, and share of a wall's size, within which a wall may belong to the
 // same slope of steps.
 constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
+// There, walls see those that rise above their slope by more than this, in cells.
+constexpr double kAboveSlope = 0.5;
+// And less of these the deeper cells are: half where the transport optical depth of a cell's
+// shortest side is this. In deeper cells the medium between centres is a smooth surface, of which
+// steps are the grid's; in thinner ones they are the cloud's own.
+constexpr float kSteppedDepth = 1.0F;
 constexpr float kMinTransmittance = 0.02F;
 constexpr int kTurns = 6;  // from wall to wall that are followed
 constexpr std::size_t kWallsInShare = 1024;
@@ -120,6 +126,7 @@ void WallLight::Look(const DiffusionCells& cells, std::size_t wall) {
   static const std::array<Rays, 6> kRays = {RaysFrom(0), RaysFrom(1), RaysFrom(2),
                                             RaysFrom(3), RaysFrom(4), RaysFrom(5)};
   const std::size_t before = seen_.size();
+  const glm::dvec3 outward = Outward(cells, wall);
   const glm::dvec3 face(cells.cell_m.y * cells.cell_m.z, cells.cell_m.x * cells.cell_m.z,
                         cells.cell_m.x * cells.cell_m.y);
   double open_m2 = 0.0;
@@ -130,7 +137,7 @@ void WallLight::Look(const DiffusionCells& cells, std::size_t wall) {
     open_m2 += face[side / 2];
     if (!cells.Contains(next)) continue;
     for (const glm::dvec3& ray : kRays[static_cast<std::size_t>(side)])
-      Follow(cells, wall, side, ray);
+      Follow(cells, wall, side, ray, outward);
   }
   for (std::size_t i = before; i < seen_.size(); ++i) {
     seen_[i].share /= static_cast<float>(open_m2);
@@ -139,8 +146,32 @@ void WallLight::Look(const DiffusionCells& cells, std::size_t wall) {
   if (seen_.size() > before) walls_.push_back(static_cast<std::int32_t>(wall));
 }
 
+// The direction out of the slope that a wall belongs to, of any length, by the walls around it.
+glm::dvec3 WallLight::Outward(const DiffusionCells& cells, std::size_t wall) const {
+  glm::dvec3 outward(0.0);
+  const glm::ivec3 middle = cells.CellAt(wall);
+  for (int i = 0; i < 27; ++i) {
+    const glm::ivec3 step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    if (step == glm::ivec3(0) || !cells.Contains(middle + step)) continue;
+    if (!IsWall(cells, cells.Offset(middle + step))) continue;
+    outward -= glm::normalize(glm::dvec3(step) * cells.cell_m);
+  }
+  return outward;
+}
+
+// The share of its light that a wall sends to another nearby at `other`.
+float WallLight::NearShare(const DiffusionCells& cells, std::size_t wall, const glm::ivec3& other,
+                           const glm::dvec3& outward) {
+  const glm::dvec3 way_m = glm::dvec3(other - cells.CellAt(wall)) * cells.cell_m;
+  const double cell_m = glm::dot(glm::abs(outward), cells.cell_m);
+  if (glm::dot(way_m, outward) <= kAboveSlope * cell_m) return 0.0F;
+  const double side_m = std::min({cells.cell_m.x, cells.cell_m.y, cells.cell_m.z});
+  const float depth = cells.transport_per_m[wall] * static_cast<float>(side_m) / kSteppedDepth;
+  return 1.0F / (1.0F + depth * depth * depth * depth);
+}
+
 void WallLight::Follow(const DiffusionCells& cells, std::size_t wall, int side,
-                       const glm::dvec3& ray) {
+                       const glm::dvec3& ray, const glm::dvec3& outward) {
   const int axis = side / 2;
   glm::ivec3 first = cells.CellAt(wall);
   first[axis] += side % 2 == 1 ? 1 : -1;
@@ -152,7 +183,8 @@ void WallLight::Follow(const DiffusionCells& cells, std::size_t wall, int side,
   while (cells.Contains(walk.Cell()) && transmittance > kMinTransmittance) {
     const std::size_t here = cells.Offset(walk.Cell());
     if (IsWall(cells, here)) {
-      if (walk.Gone_m() < near_m) return;
+      if (walk.Gone_m() < near_m) transmittance *= NearShare(cells, wall, walk.Cell(), outward);
+      if (transmittance <= kMinTransmittance) return;
       const double face_m2 = cells.cell_m.x * cells.cell_m.y * cells.cell_m.z / cells.cell_m[axis];
       const auto share = static_cast<float>(face_m2 / (kRings * kRaysInRing)) * transmittance;
       seen_.push_back({static_cast<std::int32_t>(wall), static_cast<std::int32_t>(here), share});

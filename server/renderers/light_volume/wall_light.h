@@ -37,7 +37,12 @@ class WallLight {
   bool IsWall(const DiffusionCells& cells, std::size_t cell) const;
   void Look(const DiffusionCells& cells, std::size_t wall);
   void NumberWalls();
-  void Follow(const DiffusionCells& cells, std::size_t wall, int side, const glm::dvec3& ray);
+  glm::dvec3 Outward(const DiffusionCells& cells, std::size_t wall) const;
+  static float NearShare(const DiffusionCells& cells, std::size_t wall, const glm::ivec3& other,
+                         const glm::dvec3& outward);
+  // `outward` is that of the slope that the wall belongs to.
+  void Follow(const DiffusionCells& cells, std::size_t wall, int side, const glm::dvec3& ray,
+              const glm::dvec3& outward);
 
   double wall_size_m_ = 0.0;
   float wall_per_m_ = 0.0F;

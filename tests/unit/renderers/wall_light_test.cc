@@ -98,5 +98,30 @@ TEST(WallLight, LevelTopsAndSlopesOfStepsSeeNoWalls) {
   EXPECT_LT(*std::max_element(walls.Hidden().begin(), walls.Hidden().end()), 0.15F);
 }
 
+// Ridges one cell wide and high, on a slope of one step in `run` cells, in a high domain.
+DiffusionCells Ridges(float transport_per_m, int height, int run) {
+  DiffusionCells cells = Empty({20, 20, 120});
+  for (std::size_t i = 0; i < cells.transport_per_m.size(); ++i) {
+    const glm::ivec3 cell = cells.CellAt(i);
+    const int top = 5 + cell.x / run + height * (cell.x % 2);
+    cells.transport_per_m[i] = cell.z <= top ? transport_per_m : 0.0F;
+  }
+  return cells;
+}
+
+float MostHidden(const DiffusionCells& cells) {
+  const WallLight walls(cells);
+  return *std::max_element(walls.Hidden().begin(), walls.Hidden().end());
+}
+
+// Light goes through cells of half a transport mean free path: their steps are the cloud's own.
+TEST(WallLight, RidgesOfOneCellSeeEachOtherWhereCellsAreThin) {
+  const float thin = MostHidden(Ridges(0.005F, 1, 20));
+  const float thick = MostHidden(Ridges(0.05F, 1, 20));
+  EXPECT_GT(thin, thick + 0.2F);
+  EXPECT_LT(thick, 0.2F);
+  EXPECT_EQ(MostHidden(Ridges(0.005F, 0, 2)), MostHidden(Ridges(0.05F, 0, 2))) << "steps of slopes";
+}
+
 }  // namespace
 }  // namespace thunderhead::renderers
