@@ -103,7 +103,9 @@ LightCorrector::LightCorrector(const scene::Scene& scene,
       fields_(std::move(fields)),
       tracer_(std::move(tracer)),
       box_(volume::VisibleBox(*fields_, SizesOf(scene_))),
-      over_ground_(reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded)),
+      light_(reference::LightOf(scene_, *fields_)),
+      over_ground_(
+          reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded, light_)),
       threads_(threads),
       programs_(std::move(programs)),
       renderer_(programs_),
@@ -176,18 +178,16 @@ absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   renderers::DrawQuality quality;
   quality.single_precision = true;
   quality.sun_seen = false;  // a peak cut as wide as this leaves no aureole
-  const auto draw = [&]() -> absl::StatusOr<std::vector<float>> {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame frame,
-                                 renderer_.Draw(scene_, fields_, quality));
-    return frame::ReadLinear(quality.places ? *frame.places : *frame.radiance);
-  };
-  Probe probe;
   quality.correction = plain_;
-  THUNDERHEAD_ASSIGN_OR_RETURN(probe.whole, draw());
-  quality.correction = black_;
-  THUNDERHEAD_ASSIGN_OR_RETURN(probe.behind, draw());
-  quality.places = true;
-  THUNDERHEAD_ASSIGN_OR_RETURN(probe.places, draw());
+  Probe probe;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame whole,
+                               renderer_.Draw(scene_, fields_, quality));
+  probe.whole = frame::ReadLinear(*whole.radiance);
+  probe.box = whole.storm.box;
+  probe.storm = frame::ReadLinear(*whole.storm.radiance);
+  probe.opacity_distance_m = frame::ReadLinear(*whole.storm.opacity_distance_m);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame behind, renderer_.DrawBehind());
+  probe.behind = frame::ReadLinear(*behind.radiance);
   return probe;
 }
 
@@ -206,14 +206,14 @@ absl::Status LightCorrector::TraceProbe(const Probe& probe) {
   for (int y = 0; y < kHeight_px; ++y) {
     for (int x = 0; x < kWidth_px; ++x) {
       const std::size_t first = 4 * static_cast<std::size_t>(y * kWidth_px + x);
-      if (probe.places[first + 3] > kMaxTransmittance) continue;
+      if (probe.storm[first + 3] > kMaxTransmittance) continue;
       firsts.push_back(first);
       rays.push_back(
           camera.RayThrough(2.0 * (x + 0.5) / kWidth_px - 1.0, 2.0 * (y + 0.5) / kHeight_px - 1.0));
     }
   }
   reference::Surroundings surroundings =
-      reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded);
+      reference::SurroundingsOf(scene_, *fields_, reference::GroundLight::kShaded, light_);
   surroundings.disc.reset();
   const int paths_of_ray = pictures_ > kPicturesOfOnePath ? kPathsOfRay : 1;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec3> traced,
@@ -221,10 +221,14 @@ absl::Status LightCorrector::TraceProbe(const Probe& probe) {
   const auto value = [](const std::vector<float>& values, std::size_t first) {
     return glm::dvec3(values[first], values[first + 1], values[first + 2]);
   };
+  const volume::WorldBox& box = probe.box;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const glm::dvec3 behind = value(probe.behind, firsts[i]);
-    storm_fit_.Add({value(probe.places, firsts[i]), rays[i].direction,
-                    value(probe.whole, firsts[i]) - behind, traced[i] - behind});
+    const std::size_t first = firsts[i];
+    const double opacity = 1.0 - static_cast<double>(probe.storm[first + 3]);
+    const glm::dvec3 place_m = rays[i].At(probe.opacity_distance_m[first] / opacity);
+    const glm::dvec3 behind = value(probe.behind, first);
+    storm_fit_.Add({(place_m - box.low_m) / (box.high_m - box.low_m), rays[i].direction,
+                    value(probe.whole, first) - behind, traced[i] - behind});
   }
   progress_.paths += paths_of_ray * static_cast<std::int64_t>(rays.size());
   return absl::OkStatus();
@@ -276,14 +280,10 @@ std::shared_ptr<renderers::LightCorrection> LightCorrector::WithGround() const {
 }
 
 void LightCorrector::UpdateGround() {
-  const auto even = [&](float factor) {
-    std::shared_ptr<renderers::LightCorrection> correction = WithGround();
-    correction->size = glm::ivec3(1);
-    for (auto& texels : correction->texels) texels.assign(1, {factor, 0.0F, 0.0F, 0.0F});
-    return correction;
-  };
-  plain_ = even(1.0F);
-  black_ = even(0.0F);
+  std::shared_ptr<renderers::LightCorrection> correction = WithGround();
+  correction->size = glm::ivec3(1);
+  for (auto& texels : correction->texels) texels.assign(1, {1.0F, 0.0F, 0.0F, 0.0F});
+  plain_ = std::move(correction);
 }
 
 std::shared_ptr<const renderers::LightCorrection> LightCorrector::Correction() {

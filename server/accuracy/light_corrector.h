@@ -18,6 +18,7 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "reference/brick_walk.h"
+#include "reference/scene_problem.h"
 #include "reference/surroundings.h"
 #include "reference/trace_rays.h"
 #include "renderers/light_correction.h"
@@ -68,7 +69,10 @@ class LightCorrector {
   struct Probe {
     std::vector<float> whole;
     std::vector<float> behind;  // with the storm's transmittance, but black
-    std::vector<float> places;  // LinearFrame::places
+    // As renderers::SeenStorm has it.
+    std::vector<float> storm;
+    std::vector<float> opacity_distance_m;  // the first of four
+    volume::WorldBox box;
   };
 
   LightCorrector(const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
@@ -90,6 +94,7 @@ class LightCorrector {
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   reference::RayTracer tracer_;
   volume::WorldBox box_;
+  std::shared_ptr<const reference::SceneLight> light_;
   reference::Surroundings over_ground_;  // as seen by rays from the ground: without air in front
   int threads_;
   std::shared_ptr<gl::ProgramCache> programs_;
@@ -97,9 +102,8 @@ class LightCorrector {
   CorrectionFit storm_fit_;
   CorrectionFit ground_fit_;
   glm::dvec3 sky_sum_{0.0};  // sum of the clear sky's radiance over the ground's rays
-  // Corrections of the ground so far, with the storm unchanged and with a black storm.
+  // That of the ground so far, with the storm unchanged.
   std::shared_ptr<const renderers::LightCorrection> plain_;
-  std::shared_ptr<const renderers::LightCorrection> black_;
   std::shared_ptr<const renderers::LightCorrection> correction_;  // null: must be computed again
   std::uint64_t ground_passes_ = 0;
   std::uint64_t pictures_ = 0;

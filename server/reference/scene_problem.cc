@@ -26,10 +26,28 @@
 #include "volume/terrain.h"
 
 namespace thunderhead::reference {
-namespace {
+// Of a sun of the scene's irradiance.
+struct SceneLight {
+  SceneLight(const scene::Scene& scene, const glm::vec3& towards_sun, float ground_m)
+      : atmosphere(static_cast<float>(scene.sky.turbidity),
+                   static_cast<float>(scene.sky.ground_albedo)),
+        sky(atmosphere, towards_sun, {ground_m, ground_m}) {
+    // Above it sunlight no longer changes.
+    constexpr double kHighestSun_m = 4e4;
+    for (int i = 0; i * Surroundings::kSunStep_m <= kHighestSun_m; ++i) {
+      const physics::AirPlace place{static_cast<float>(i * Surroundings::kSunStep_m),
+                                    towards_sun.z};
+      sun_by_height.push_back(scene.sun.irradiance *
+                              glm::dvec3(atmosphere.SunTransmittance(place)));
+    }
+  }
 
-// Above it sunlight no longer changes.
-constexpr double kHighestSun_m = 4e4;
+  physics::Atmosphere atmosphere;
+  physics::ClearSky sky;                  // from the ground, as it lights the storm
+  std::vector<glm::dvec3> sun_by_height;  // Surroundings::sun_by_height
+};
+
+namespace {
 
 struct GridBox {
   volume::RegularGrid grid;
@@ -148,11 +166,9 @@ CutOptics CutPeak(const GroupLook& look, double peak_cut_deg) {
 // Shared by the functions of Surroundings.
 struct Around {
   Around(const scene::Scene& scene, const glm::vec3& towards_sun, const scene::View& seen_from,
-         float ground_m)
-      : atmosphere(static_cast<float>(scene.sky.turbidity),
-                   static_cast<float>(scene.sky.ground_albedo)),
-        sky(atmosphere, towards_sun, {ground_m, ground_m}),
-        seen_sky(atmosphere, glm::vec3(seen_from.local_from_world * glm::dvec3(towards_sun)),
+         float ground_m, std::shared_ptr<const SceneLight> of_scene)
+      : light(std::move(of_scene)),
+        seen_sky(light->atmosphere, glm::vec3(seen_from.local_from_world * glm::dvec3(towards_sun)),
                  {static_cast<float>(seen_from.altitude_m), ground_m}),
         view(seen_from),
         brightness(scene.sky.brightness),
@@ -166,8 +182,7 @@ struct Around {
     return seen;
   }
 
-  physics::Atmosphere atmosphere;
-  physics::ClearSky sky;       // from the ground, as it lights the storm
+  std::shared_ptr<const SceneLight> light;
   physics::ClearSky seen_sky;  // from the eye
   scene::View view;
   double brightness;
@@ -221,8 +236,8 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   const auto scale = static_cast<float>(around.scale);
   const glm::vec3 scattered = air::skylight_scattered_per_m(around.turbidity, densities);
   const glm::vec3 of_sun = scale * air::sunlight_scattered_per_m(around.turbidity, densities, mu) *
-                           around.atmosphere.SunTransmittance(place);
-  const glm::vec3 of_sky = scale * scattered * around.atmosphere.DiffuseMeanRadiance(place);
+                           around.light->atmosphere.SunTransmittance(place);
+  const glm::vec3 of_sky = scale * scattered * around.light->atmosphere.DiffuseMeanRadiance(place);
   const glm::vec3 seen = glm::min(gathered / glm::max(of_sun + of_sky, glm::vec3(1e-20F)),
                                   kMostGathered * transmittance);
   // The medium's light has the sun's irradiance in it.
@@ -345,34 +360,39 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
   return Medium::Create(std::move(description));
 }
 
+std::shared_ptr<const SceneLight> LightOf(const scene::Scene& asked,
+                                          const volume::HydrometeorFields& fields) {
+  const scene::Scene scene = scene::WithGroundOf(asked, fields);
+  return std::make_shared<const SceneLight>(
+      scene, glm::vec3(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg)),
+      static_cast<float>(volume::LowestTerrain_m(fields)));
+}
+
 Surroundings SurroundingsOf(const scene::Scene& asked, const volume::HydrometeorFields& fields,
-                            GroundLight ground_light) {
+                            GroundLight ground_light, std::shared_ptr<const SceneLight> light) {
+  if (light == nullptr) light = LightOf(asked, fields);
   const scene::Scene scene = scene::WithGroundOf(asked, fields);
   Surroundings around;
   around.towards_sun = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
   const glm::vec3 towards_sun(around.towards_sun);
   const scene::View view = scene::ViewOf(scene, fields);
   const double lowest_m = volume::LowestTerrain_m(fields);
-  const auto shared =
-      std::make_shared<const Around>(scene, towards_sun, view, static_cast<float>(lowest_m));
-  around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->sky.SunTransmittance());
-  for (int i = 0; i * Surroundings::kSunStep_m <= kHighestSun_m; ++i) {
-    const physics::AirPlace place{static_cast<float>(i * Surroundings::kSunStep_m), towards_sun.z};
-    around.sun_by_height.push_back(scene.sun.irradiance *
-                                   glm::dvec3(shared->atmosphere.SunTransmittance(place)));
-  }
+  const auto shared = std::make_shared<const Around>(
+      scene, towards_sun, view, static_cast<float>(lowest_m), std::move(light));
+  around.sun_irradiance = scene.sun.irradiance * glm::dvec3(shared->light->sky.SunTransmittance());
+  around.sun_by_height = shared->light->sun_by_height;
   const physics::AirPlace eye{static_cast<float>(std::max(view.altitude_m, 0.0)),
                               static_cast<float>((view.local_from_world * around.towards_sun).z)};
   const double solid_angle = 2.0 * std::numbers::pi * (1.0 - std::cos(physics::kSunRadius_rad));
-  around.disc = SunDisc{
-      std::cos(physics::kSunRadius_rad),
-      scene.sun.irradiance / solid_angle * glm::dvec3(shared->atmosphere.SunTransmittance(eye))};
-  for (const scene::DirectionalLight& light : scene.lights) {
+  around.disc = SunDisc{std::cos(physics::kSunRadius_rad),
+                        scene.sun.irradiance / solid_angle *
+                            glm::dvec3(shared->light->atmosphere.SunTransmittance(eye))};
+  for (const scene::DirectionalLight& lamp : scene.lights) {
     around.lights.push_back(
-        {scene::Direction(light.azimuth_deg, light.elevation_deg), light.irradiance * light.color});
+        {scene::Direction(lamp.azimuth_deg, lamp.elevation_deg), lamp.irradiance * lamp.color});
   }
   around.sky = [shared](const glm::dvec3& direction) {
-    return shared->scale * glm::dvec3(shared->sky.At(glm::vec3(direction)).radiance);
+    return shared->scale * glm::dvec3(shared->light->sky.At(glm::vec3(direction)).radiance);
   };
   around.seen_sky = [shared](const glm::dvec3& direction) {
     return glm::dvec3(shared->Seen(direction).radiance);
@@ -387,7 +407,7 @@ Surroundings SurroundingsOf(const scene::Scene& asked, const volume::Hydrometeor
     ground.seen = SeenGroundOf(scene, fields, view);
   } else {
     const glm::dvec3 direct = around.sun_irradiance * std::max(around.towards_sun.z, 0.0);
-    const glm::dvec3 diffuse = shared->scale * glm::dvec3(shared->sky.Light().irradiance);
+    const glm::dvec3 diffuse = shared->scale * glm::dvec3(shared->light->sky.Light().irradiance);
     ground.radiance = albedo * (direct + diffuse) * std::numbers::inv_pi;
   }
   around.ground = ground;

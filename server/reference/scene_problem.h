@@ -50,8 +50,15 @@ std::size_t MediumBytes(const volume::HydrometeorFields& fields, bool similar);
 // from the sun. kUniform has the radiance that the same ground would have without any medium.
 enum class GroundLight { kShaded, kUniform };
 
+// Sun and sky of a scene, whatever its camera: tables that take some 20 ms.
+struct SceneLight;
+std::shared_ptr<const SceneLight> LightOf(const scene::Scene& scene,
+                                          const volume::HydrometeorFields& fields);
+
+// `light` is that of a scene that differs in its camera at most; null: it is made.
 Surroundings SurroundingsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
-                            GroundLight ground_light);
+                            GroundLight ground_light,
+                            std::shared_ptr<const SceneLight> light = nullptr);
 
 Camera CameraOf(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 

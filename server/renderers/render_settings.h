@@ -55,8 +55,6 @@ struct DrawQuality {
   bool single_precision = false;  // in buffers of light and the frame; half is usual
   // Correction of the light volume, for the light that the scene has.
   std::shared_ptr<const LightCorrection> correction{};
-  // Makes the light volume fill LinearFrame::places in place of a picture.
-  bool places = false;
   // Draws the sun's disc and its aureole where they are in view.
   bool sun_seen = true;
   // The size of the linear frame in place of the scene's, for pictures to which

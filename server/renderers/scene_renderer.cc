@@ -118,7 +118,10 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   const scene::Stage first = FirstStageAt(asked, fields, quality);
   sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(asked, fields);
   drawn_scene_.reset();
-  if (first <= scene::Stage::kView) coarse_settings_.reset();
+  if (first <= scene::Stage::kView) {
+    coarse_settings_.reset();
+    whole_settings_.reset();
+  }
   if (first <= scene::Stage::kLight) {
     drawn_light_tolerance_ = quality.light_tolerance;
     drawn_light_layer_ = quality.light_layer;
@@ -165,26 +168,39 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
     } else {
       workspace_.ground.ClearShadow();
     }
-    if (!quality.places) THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, settings, &times));
+    THUNDERHEAD_RETURN_IF_ERROR(ShadeAir(scene, settings, &times));
     if (packed) {
       THUNDERHEAD_RETURN_IF_ERROR(DrawPacked(scene, settings, &times));
-    } else if (!quality.places) {
+    } else {
       const glm::ivec2 size_px = coarse ? *quality.coarse_px : picture_px;
       THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kComposite, &times,
                                         [&] { return Composite(scene, settings, size_px); }));
     }
-    if (coarse) coarse_settings_ = settings;
+    (coarse ? coarse_settings_ : whole_settings_) = settings;
   }
   Keep(asked, fields, quality);
   view_is_drawn_ = true;
   LinearFrame frame = Report(scene, *fields);
   frame.coarse = coarse_settings_.has_value();
-  if (quality.places) {
-    frame.radiance = nullptr;
-    frame.places = &Eye();
-  }
   frame.stages = std::move(times);
   return frame;
+}
+
+absl::StatusOr<LinearFrame> SceneRenderer::DrawBehind() {
+  THUNDERHEAD_CHECK(whole_settings_.has_value() && drawn_scene_.has_value(),
+                    "a whole frame was drawn last");
+  const std::shared_ptr<const volume::HydrometeorFields> fields = drawn_fields_.lock();
+  THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
+  const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);
+  view_is_drawn_ = false;
+  if (!technique_->Empty()) {
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+    gl::Framebuffer(Eye()).Clear(0.0F, 0.0F, 0.0F, 0.0F);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Composite(scene, *whole_settings_, {scene.output.width_px, scene.output.height_px}));
+  return Report(scene, *fields);
 }
 
 void SceneRenderer::Keep(const scene::Scene& scene, const Fields& fields,
@@ -366,6 +382,7 @@ LinearFrame SceneRenderer::Report(const scene::Scene& scene,
                                   const volume::HydrometeorFields& fields) const {
   LinearFrame frame;
   frame.radiance = &linear_.Texture();
+  if (!technique_->Empty()) frame.storm = {&Eye(), technique_->Distances_m(), Box()};
   frame.content = technique_->Describe(scene, fields);
   frame.slices = drawn_slices_;
   frame.device_bytes = Bytes();

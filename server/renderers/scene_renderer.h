@@ -20,16 +20,21 @@
 
 namespace thunderhead::renderers {
 
+// The storm before air, ground and sky, in the pixels of the eye buffer. None if there is none.
+struct SeenStorm {
+  const gl::Texture2D* radiance = nullptr;  // and in alpha the transmittance to the background
+  // The mean distance of what is seen, times the opacity; none if the technique does not know it.
+  const gl::Texture2D* opacity_distance_m = nullptr;
+  // Corrections of light are looked up by the place at that distance in this box.
+  volume::WorldBox box;
+};
+
 struct LinearFrame {
-  // Float, the storm's opacity in alpha; lives until the next Draw. None where places were asked
-  // for.
+  // Float, the storm's opacity in alpha; lives until the next Draw.
   const gl::Texture2D* radiance = nullptr;
   // `radiance` has DrawQuality::coarse_px: chosen rays may add to it.
   bool coarse = false;
-  // Only if DrawQuality::places asked for it, and as long-lived: for each pixel of the eye buffer
-  // the point in the medium's box, 0 to 1 on each axis, where its correction is looked up, and in
-  // alpha the transmittance to the background.
-  const gl::Texture2D* places = nullptr;
+  SeenStorm storm;    // as long-lived
   StageTimes stages;  // those that ran
   Content content;
   int slices = 0;
@@ -65,6 +70,10 @@ class SceneRenderer {
   // Draws the rays of chosen places of the frame drawn last, which must be coarse; the result lives
   // until the next. Places run from (-1, -1), left and bottom, to (1, 1).
   absl::StatusOr<ChosenFrame> DrawChosen(const std::vector<glm::vec2>& places);
+
+  // The frame drawn last, which must not be coarse, with a black storm in its place: the air and
+  // what is behind. The next Draw draws the view again.
+  absl::StatusOr<LinearFrame> DrawBehind();
 
   // On the device.
   std::size_t Bytes() const;
@@ -131,6 +140,7 @@ class SceneRenderer {
   double drawn_light_layer_ = 1.0;
   bool drawn_light_in_turns_ = false;
   std::optional<RenderSettings> coarse_settings_;  // of the last frame, if that is coarse
+  std::optional<RenderSettings> whole_settings_;   // if it is not
   int drawn_slices_ = 0;
   bool sunlight_changed_ = true;  // since the frame before
 };

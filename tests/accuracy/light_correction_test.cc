@@ -139,22 +139,44 @@ TEST_F(LightCorrection, SkylightOnTheGroundIsMultipliedWhereItSays) {
   EXPECT_GT(gain(29), 1.05F);
 }
 
-TEST_F(LightCorrection, PlacesAreWhereTheStormIsSeen) {
-  renderers::DrawQuality quality;
-  quality.single_precision = true;
-  quality.places = true;
-  const auto frame = renderer_->Draw(scene_, fields_, quality);
+TEST_F(LightCorrection, AFrameSaysWhereItShowsTheStorm) {
+  const auto frame = renderer_->Draw(scene_, fields_, {.single_precision = true});
   ASSERT_TRUE(frame.ok()) << frame.status();
-  EXPECT_EQ(frame->radiance, nullptr) << "places are no light";
-  ASSERT_NE(frame->places, nullptr);
-  const glm::vec3 middle =
-      frame::PictureOf(*frame->places).radiance[static_cast<std::size_t>(12 * 32 + 16)];
+  constexpr std::size_t kMiddle = 4 * (12 * 32 + 16);
+  const float transmittance = frame::ReadLinear(*frame->storm.radiance)[kMiddle + 3];
+  EXPECT_LT(transmittance, 0.1F);
+  const double distance_m =
+      frame::ReadLinear(*frame->storm.opacity_distance_m)[kMiddle] / (1.0 - transmittance);
+  const reference::Ray ray = reference::CameraOf(scene_, *fields_).RayThrough(1.0 / 32, 1.0 / 24);
+  const volume::WorldBox& box = frame->storm.box;
+  const glm::dvec3 middle = (ray.At(distance_m) - box.low_m) / (box.high_m - box.low_m);
   // The eye is above in the south-south-west and sees the face towards it.
-  EXPECT_NEAR(middle.x, 0.4F, 0.15F);
-  EXPECT_LT(middle.y, 0.35F);
-  EXPECT_GT(middle.z, 0.2F);
-  EXPECT_LT(middle.z, 0.8F);
-  EXPECT_EQ(renderer_->Draw(scene_, fields_, {})->places, nullptr) << "unless asked for";
+  EXPECT_NEAR(middle.x, 0.4, 0.15);
+  EXPECT_LT(middle.y, 0.35);
+  EXPECT_GT(middle.z, 0.2);
+  EXPECT_LT(middle.z, 0.8);
+}
+
+// What is behind the storm is what a black correction leaves.
+TEST_F(LightCorrection, WhatIsBehindIsDrawnFromTheSameView) {
+  auto black = std::make_shared<renderers::LightCorrection>();
+  black->size = glm::ivec3(1);
+  for (auto& texels : black->texels) texels.assign(1, glm::vec4(0.0F));
+  black->ground_size = glm::ivec2(1);
+  black->ground.assign(1, glm::vec4(1.0F));
+  black->ground_low_m = glm::dvec2(-1e5);
+  black->ground_high_m = glm::dvec2(1e5);
+  const auto expected = frame::ReadLinear(
+      *renderer_->Draw(scene_, fields_, {.single_precision = true, .correction = black})->radiance);
+  auto white = std::make_shared<renderers::LightCorrection>(*black);
+  for (auto& texels : white->texels) texels.assign(1, {1.0F, 0.0F, 0.0F, 0.0F});
+  const renderers::DrawQuality quality{.single_precision = true, .correction = white};
+  const auto whole = frame::ReadLinear(*renderer_->Draw(scene_, fields_, quality)->radiance);
+  EXPECT_NE(whole, expected);
+  const auto behind = renderer_->DrawBehind();
+  ASSERT_TRUE(behind.ok()) << behind.status();
+  EXPECT_EQ(frame::ReadLinear(*behind->radiance), expected);
+  EXPECT_EQ(frame::ReadLinear(*renderer_->Draw(scene_, fields_, quality)->radiance), whole);
 }
 
 TEST_F(LightCorrection, TakesMostOfTheErrorAway) {

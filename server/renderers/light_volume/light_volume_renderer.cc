@@ -283,7 +283,6 @@ absl::Status LightVolumeRenderer::DrawView(const ResidentMedium& medium,
                              .diffusion = diffusion,
                              .tinted = diffusion && (weights.colored || weights.absorbs),
                              .corrected = settings.quality.correction != nullptr,
-                             .places = settings.quality.places,
                              .chosen = settings.chosen != nullptr};
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,

@@ -38,7 +38,6 @@ struct MarchVariant {
   gl::DefineValue diffusion;    // light scattered many times comes from the diffusion equation
   gl::DefineValue tinted;       // that light is absorbed or coloured
   gl::DefineValue corrected;    // by renderers::LightCorrection
-  gl::DefineValue places;       // in place of radiance, where a correction is looked up
   gl::DefineValue chosen;       // the rays of renderers::ChosenRays
 
   gl::Defines Defines() const {
@@ -49,7 +48,6 @@ struct MarchVariant {
                                          {"DIFFUSION", diffusion},
                                          {"TINTED", tinted},
                                          {"CORRECTED", corrected},
-                                         {"PLACES", places},
                                          {"CHOSEN", chosen}});
   }
 };

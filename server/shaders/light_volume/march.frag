@@ -22,7 +22,9 @@
 #else
 #include "light_volume/no_diffuse.glsl"
 #endif
-#include "light_volume/outcome.glsl"
+#if CORRECTED
+#include "light_volume/correction.glsl"
+#endif
 
 layout(binding = kArrivedUnit) uniform sampler3D arrived;  // of arrive.comp, cell by cell as the medium
 
@@ -201,7 +203,9 @@ void main() {
     if (seen.diffuse.transmittance <= kEndTransmittance) close_diffuse(seen.diffuse);
     radiance += diffuse_radiance(seen.diffuse, sunlight);
   }
-  radiance = outcome_of(radiance, seen_place(seen, origin_m, direction), direction);
+#if CORRECTED
+  radiance = corrected(radiance, seen_place(seen, origin_m, direction), direction);
+#endif
   radiance_and_transmittance = vec4(radiance, background_transmittance(seen));
   opacity_distance_m = (1.0 - background_transmittance(seen)) * mean_distance_m(seen);
 }
