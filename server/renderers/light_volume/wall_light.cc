@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "glm/common.hpp"
+#include "glm/geometric.hpp"
 #include "renderers/light_volume/shares.h"
 
 namespace thunderhead::renderers {
