@@ -182,6 +182,7 @@ absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   Probe probe;
   THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame whole,
                                renderer_.Draw(scene_, fields_, quality));
+  if (whole.storm.radiance == nullptr) return probe;  // too faint to be drawn
   probe.whole = frame::ReadLinear(*whole.radiance);
   probe.box = whole.storm.box;
   probe.storm = frame::ReadLinear(*whole.storm.radiance);
@@ -200,6 +201,7 @@ absl::StatusOr<std::vector<glm::dvec3>> LightCorrector::Traced(
 }
 
 absl::Status LightCorrector::TraceProbe(const Probe& probe) {
+  if (probe.storm.empty()) return absl::OkStatus();
   const reference::Camera camera = reference::CameraOf(scene_, *fields_);
   std::vector<reference::Ray> rays;
   std::vector<std::size_t> firsts;  // of each ray's pixel

@@ -65,7 +65,8 @@ class LightCorrector {
   std::shared_ptr<const renderers::LightCorrection> Correction();
 
  private:
-  // Pictures drawn from one camera: four values a pixel, rows from bottom to top.
+  // Pictures drawn from one camera: four values a pixel, rows from bottom to top; empty where there
+  // is no storm to be seen.
   struct Probe {
     std::vector<float> whole;
     std::vector<float> behind;  // with the storm's transmittance, but black

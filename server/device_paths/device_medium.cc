@@ -5,7 +5,11 @@
 #include <map>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "base/out_of_memory.h"
+#include "base/status.h"
 #include "device_paths/bindings.h"
+#include "gl/device_faults.h"
 #include "reference/sampled_phase.h"
 #include "shaders/uniforms.h"
 
@@ -47,7 +51,9 @@ class Tables {
     const auto [found, is_new] = firsts_.emplace(&phase, static_cast<std::int32_t>(values_.size()));
     if (!is_new) return found->second;
     if (values_.empty()) {
-      Append(phase.TableOf(0).x);
+      const std::vector<double>& x = phase.TableOf(0).x;
+      THUNDERHEAD_CHECK(x.size() == shaders::kPhaseIntervals + 1, "tables as shaders read them");
+      Append(x);
       found->second = static_cast<std::int32_t>(values_.size());
     }
     for (int color = 0; color < phase.Tables(); ++color) {
@@ -84,6 +90,13 @@ absl::StatusOr<DeviceMedium> DeviceMedium::Of(const reference::Medium& medium) {
   if (medium.Groups(Optics::kExact).size() > kMaxGroups) {
     return absl::UnimplementedError("the device traces media of at most 8 groups of fields");
   }
+  GLint longest = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &longest);
+  const glm::ivec3& cells = medium.Grid().cells;
+  if (std::max({cells.x, cells.y, cells.z}) > longest) {
+    return absl::UnimplementedError(
+        absl::StrCat("the device has textures of at most ", longest, " cells along a side"));
+  }
   return DeviceMedium(medium);
 }
 
@@ -108,6 +121,9 @@ DeviceMedium::DeviceMedium(const reference::Medium& medium)
          &majorants_);
   UploadGroups(medium);
   UploadOptics(medium);
+  if (absl::Status fault = gl::FaultNow(); !fault.ok()) {
+    throw base::FailedAllocation(std::move(fault));
+  }
 }
 
 void DeviceMedium::UploadGroups(const reference::Medium& medium) {

@@ -14,6 +14,7 @@
 #include "base/status.h"
 #include "device_paths/bindings.h"
 #include "gl/device.h"
+#include "gl/device_faults.h"
 #include "reference/eye_segment.h"
 #include "reference/parallel.h"
 #include "reference/philox.h"
@@ -25,8 +26,10 @@ namespace {
 
 // What the states of so many paths take is some megabytes.
 constexpr std::size_t kPathsOfChunk = 65536;
-// Of a work group in a pass; a guess until one is measured.
-constexpr gl::PieceCost kGroupOfPaths{"paths", 1e6};
+// Of so many work groups in a pass, a guess until one is measured. GPUs run many at a time, so the
+// last paths of all, which few groups follow, must not tell what one of many costs.
+constexpr gl::PieceCost kBlockOfPaths{"paths", 1e7};
+constexpr int kGroupsOfBlock = 64;
 // Paths that the host begins or ends at a time.
 constexpr std::size_t kPathsOfTask = 256;
 
@@ -41,6 +44,9 @@ void ForPaths(int threads, std::size_t count, const Work& work) {
     for (std::size_t i = first; i < std::min(first + kPathsOfTask, count); ++i) work(i);
   });
 }
+
+// Keeps random numbers of the host apart from the device's, whose last word is a sample's number.
+constexpr std::uint64_t kHostStreams = std::uint64_t{1} << 63U;
 
 glm::uvec3 StreamOf(std::size_t ray, std::uint32_t sample, std::uint32_t kind,
                     std::uint32_t hero = 0) {
@@ -64,12 +70,18 @@ struct DeviceTracer::Begun {
 
 absl::StatusOr<std::unique_ptr<DeviceTracer>> DeviceTracer::Create(
     const reference::Medium& medium, std::shared_ptr<gl::ProgramCache> programs) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(DeviceMedium on_device, DeviceMedium::Of(medium));
+  // Work of this thread but for copies to the device.
+  absl::StatusOr<DeviceMedium> on_device = absl::InternalError("not made");
+  THUNDERHEAD_RETURN_IF_ERROR(programs->Pieces().OffTurn([&] {
+    on_device = DeviceMedium::Of(medium);
+    glFinish();
+  }));
+  if (!on_device.ok()) return on_device.status();
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const gl::Program* program,
-      programs->Get(gl::ProgramSource::Compute("paths/trace.comp", on_device.Defines())));
+      programs->Get(gl::ProgramSource::Compute("paths/trace.comp", on_device->Defines())));
   return std::unique_ptr<DeviceTracer>(
-      new DeviceTracer(std::move(on_device), program, std::move(programs)));
+      new DeviceTracer(*std::move(on_device), program, std::move(programs)));
 }
 
 DeviceTracer::DeviceTracer(DeviceMedium medium, const gl::Program* program,
@@ -143,7 +155,7 @@ absl::StatusOr<std::vector<glm::dvec3>> DeviceTracer::Trace(
     // What eyes see up to there, and what that leads to.
     std::vector<Begun> begun(count);
     ForPaths(options.threads, count, [&](std::size_t i) {
-      reference::RandomStream random(options.seed, ray_of(i), sample_of(i));
+      reference::RandomStream random(options.seed, kHostStreams | ray_of(i), sample_of(i));
       const float at_m = met[i].radiance.w;
       const auto collision_m = at_m < 0.0F ? std::nullopt : std::optional<double>(at_m);
       begun[i].segment = reference::FollowFromEye(surroundings, rays[ray_of(i)], grounds_m[i],
@@ -225,10 +237,13 @@ absl::Status DeviceTracer::Run(const reference::Surroundings& surroundings,
     if (states_.Bytes() < bytes) {
       // A list is its length and the paths in it.
       const std::size_t of_list = (states->size() + 1) * sizeof(std::uint32_t);
+      // The states last: their size tells that of the lists.
       states_ = {};
-      states_ = gl::Buffer(bytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
       list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);
       next_list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);
+      gl::Buffer made(bytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
+      THUNDERHEAD_RETURN_IF_ERROR(gl::FaultNow());
+      states_ = std::move(made);
     }
     glNamedBufferSubData(states_.Get(), 0, static_cast<GLsizeiptr>(bytes), states->data());
     medium_.Bind(*program_);
@@ -250,12 +265,16 @@ absl::Status DeviceTracer::RunPasses(const reference::TraceRaysOptions& options,
     list_.BindStorage(shaders::kPathListBinding);
     next_list_.BindStorage(shaders::kPathNextListBinding);
     program_->Set(uniform::by_list, by_list);
-    const int groups = (count + shaders::kPathGroupSize - 1) / shaders::kPathGroupSize;
+    constexpr int kPathsOfBlock = kGroupsOfBlock * shaders::kPathGroupSize;
+    const int blocks = (count + kPathsOfBlock - 1) / kPathsOfBlock;
     THUNDERHEAD_RETURN_IF_ERROR(
-        programs_->Pieces().Steps(kGroupOfPaths, groups, [&](int begin, int end) {
-          program_->Set(uniform::first_path, begin * shaders::kPathGroupSize);
-          program_->Set(uniform::end_path, std::min(end * shaders::kPathGroupSize, count));
-          glDispatchCompute(static_cast<GLuint>(end - begin), 1, 1);
+        programs_->Pieces().Steps(kBlockOfPaths, blocks, [&](int begin, int end) {
+          const int end_path = std::min(end * kPathsOfBlock, count);
+          program_->Set(uniform::first_path, begin * kPathsOfBlock);
+          program_->Set(uniform::end_path, end_path);
+          const int groups = (end_path - begin * kPathsOfBlock + shaders::kPathGroupSize - 1) /
+                             shaders::kPathGroupSize;
+          glDispatchCompute(static_cast<GLuint>(groups), 1, 1);
         }));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     std::uint32_t going = 0;

@@ -52,7 +52,7 @@ struct EyeSegment {
   glm::dvec3 throughput{1.0};         // of the path, where it goes on
   enum class Then {
     kEnds,
-    kScatters,  // by the medium, at the end of `onward`'s origin, having come in its direction
+    kScatters,  // by the medium, at `onward`'s origin, having come in its direction
     kFlies      // from the ground
   };
   Then then = Then::kEnds;

@@ -189,13 +189,15 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
 absl::StatusOr<LinearFrame> SceneRenderer::DrawBehind() {
   THUNDERHEAD_CHECK(whole_settings_.has_value() && drawn_scene_.has_value(),
                     "a whole frame was drawn last");
+  THUNDERHEAD_CHECK(!whole_settings_->quality.sun_seen, "the storm's aureole is the storm's light");
   const std::shared_ptr<const volume::HydrometeorFields> fields = drawn_fields_.lock();
   THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
   const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);
   view_is_drawn_ = false;
   if (!technique_->Empty()) {
+    const gl::Framebuffer eye(Eye());
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-    gl::Framebuffer(Eye()).Clear(0.0F, 0.0F, 0.0F, 0.0F);
+    eye.Clear(0.0F, 0.0F, 0.0F, 0.0F);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   }
   THUNDERHEAD_RETURN_IF_ERROR(

@@ -71,8 +71,9 @@ class SceneRenderer {
   // until the next. Places run from (-1, -1), left and bottom, to (1, 1).
   absl::StatusOr<ChosenFrame> DrawChosen(const std::vector<glm::vec2>& places);
 
-  // The frame drawn last, which must not be coarse, with a black storm in its place: the air and
-  // what is behind. The next Draw draws the view again.
+  // The frame drawn last, which must be neither coarse nor with the sun (DrawQuality::sun_seen),
+  // with a black storm in its place: the air and what is behind. The next Draw draws the view
+  // again.
   absl::StatusOr<LinearFrame> DrawBehind();
 
   // On the device.

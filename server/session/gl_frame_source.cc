@@ -113,7 +113,7 @@ class GlFrameSource final : public FrameSource {
     // Where memory is short it is for pictures; the table's figure stays.
     if (!HasRoomToMeasure(scene, *fields)) return accuracy::ErrorProgress{.ended = true};
     const Correction correction = CorrectionOf(scene, fields);
-    return base::OrOutOfMemory([&] {
+    auto progress = base::OrOutOfMemory([&] {
       const auto draw = [&](const scene::Scene& measured) {
         return Watched([&]() -> absl::StatusOr<picture::LinearPicture> {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
@@ -127,6 +127,8 @@ class GlFrameSource final : public FrameSource {
       return meters_.Step(scene, fields, correction.paths, draw,
                           [this] { return programs_->Pieces().Wanted(); });
     });
+    if (absl::Status fault = Look(); !fault.ok()) return fault;
+    return progress;
   }
 
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,

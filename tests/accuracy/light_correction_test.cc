@@ -167,10 +167,14 @@ TEST_F(LightCorrection, WhatIsBehindIsDrawnFromTheSameView) {
   black->ground_low_m = glm::dvec2(-1e5);
   black->ground_high_m = glm::dvec2(1e5);
   const auto expected = frame::ReadLinear(
-      *renderer_->Draw(scene_, fields_, {.single_precision = true, .correction = black})->radiance);
+      *renderer_
+           ->Draw(scene_, fields_,
+                  {.single_precision = true, .correction = black, .sun_seen = false})
+           ->radiance);
   auto white = std::make_shared<renderers::LightCorrection>(*black);
   for (auto& texels : white->texels) texels.assign(1, {1.0F, 0.0F, 0.0F, 0.0F});
-  const renderers::DrawQuality quality{.single_precision = true, .correction = white};
+  const renderers::DrawQuality quality{
+      .single_precision = true, .correction = white, .sun_seen = false};
   const auto whole = frame::ReadLinear(*renderer_->Draw(scene_, fields_, quality)->radiance);
   EXPECT_NE(whole, expected);
   const auto behind = renderer_->DrawBehind();
@@ -226,6 +230,17 @@ TEST_F(LightCorrection, FromTheNinthPictureOnARayHasTwoPaths) {
   for (int picture = 9; picture <= 16; ++picture) ASSERT_TRUE(corrector->Step().ok());
   // From other places, so not just twice as many.
   EXPECT_NEAR(static_cast<double>(corrector->Progress().paths - of_eight) / of_eight, 2.0, 0.3);
+}
+
+// Of an optical depth below what is drawn at all.
+TEST_F(LightCorrection, AStormTooFaintToBeDrawnEndsWithoutPaths) {
+  auto faint = std::make_shared<volume::HydrometeorFields>(*fields_);
+  for (float& value : faint->fields[0].concentration_kg_per_m3) value *= 1e-18F;
+  fields_ = faint;
+  const auto corrector = MakeCorrector(0);
+  ASSERT_TRUE(corrector->TraceUntil(kMinCorrectingPaths, {}, nullptr).ok());
+  EXPECT_EQ(corrector->Progress().paths, 0);
+  EXPECT_EQ(corrector->Correction(), nullptr);
 }
 
 TEST_F(LightCorrection, FewPathsCorrectNothing) {
