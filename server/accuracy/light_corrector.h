@@ -103,7 +103,7 @@ class LightCorrector {
   CorrectionFit storm_fit_;
   CorrectionFit ground_fit_;
   glm::dvec3 sky_sum_{0.0};  // sum of the clear sky's radiance over the ground's rays
-  // That of the ground so far, with the storm unchanged.
+  // The correction of the ground so far, which leaves the storm as it is.
   std::shared_ptr<const renderers::LightCorrection> plain_;
   std::shared_ptr<const renderers::LightCorrection> correction_;  // null: must be computed again
   std::uint64_t ground_passes_ = 0;

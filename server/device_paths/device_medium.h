@@ -1,7 +1,8 @@
 // A reference medium on the device, as shaders/paths/ reads it.
 #pragma once
 
-#include "absl/status/status.h"
+#include <vector>
+
 #include "absl/status/statusor.h"
 #include "gl/objects.h"
 #include "gl/program.h"
@@ -12,8 +13,9 @@ namespace thunderhead::device_paths {
 
 class DeviceMedium {
  public:
-  // Copies `medium`. UNIMPLEMENTED for one with periodic sides, constant cells or more groups than
-  // fields have; throws base::FailedAllocation where there is no room.
+  // Copies `medium`. UNIMPLEMENTED for one with periodic sides, constant cells, more than eight
+  // groups, or more cells along a side than the device's textures have; throws
+  // base::FailedAllocation where there is no room.
   static absl::StatusOr<DeviceMedium> Of(const reference::Medium& medium);
 
   // Of paths/trace.comp.
@@ -23,7 +25,6 @@ class DeviceMedium {
   glm::dvec3 InBricks(const glm::dvec3& point_m) const {
     return (point_m - brick_low_m_) / brick_m_;
   }
-  glm::dvec3 InWorld_m(const glm::dvec3& bricks) const { return brick_low_m_ + bricks * brick_m_; }
   const glm::dvec3& BrickLow_m() const { return brick_low_m_; }
 
  private:

@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
@@ -24,7 +23,7 @@
 namespace thunderhead::device_paths {
 namespace {
 
-// What the states of so many paths take is some megabytes.
+// The states of so many paths take at most 25 MB.
 constexpr std::size_t kPathsOfChunk = 65536;
 // Of so many work groups in a pass, a guess until one is measured. GPUs run many at a time, so the
 // last paths of all, which few groups follow, must not tell what one of many costs.
@@ -33,16 +32,13 @@ constexpr int kGroupsOfBlock = 64;
 // Paths that the host begins or ends at a time.
 constexpr std::size_t kPathsOfTask = 256;
 
-constexpr float kEndless = 3e38F;
-
 // Runs work(i) for all i before `count` on `threads` threads.
 template <typename Work>
 void ForPaths(int threads, std::size_t count, const Work& work) {
-  const std::size_t tasks = (count + kPathsOfTask - 1) / kPathsOfTask;
-  reference::ParallelFor(threads, static_cast<int>(tasks), [&](int task) {
-    const std::size_t first = static_cast<std::size_t>(task) * kPathsOfTask;
-    for (std::size_t i = first; i < std::min(first + kPathsOfTask, count); ++i) work(i);
-  });
+  reference::ParallelForBlocks(threads, count, kPathsOfTask,
+                               [&](std::size_t begin, std::size_t end) {
+                                 for (std::size_t i = begin; i < end; ++i) work(i);
+                               });
 }
 
 // Keeps random numbers of the host apart from the device's, whose last word is a sample's number.
@@ -91,7 +87,7 @@ DeviceTracer::DeviceTracer(DeviceMedium medium, const gl::Program* program,
 DeviceTracer::PathState DeviceTracer::StateOf(const reference::Ray& ray, int what,
                                               const glm::uvec3& stream) const {
   PathState state;
-  state.place = glm::vec4(glm::vec3(medium_.InBricks(ray.origin_m)), kEndless);
+  state.place = glm::vec4(glm::vec3(medium_.InBricks(ray.origin_m)), shaders::kEndlessPath_m);
   state.direction = glm::vec4(glm::vec3(ray.direction), static_cast<float>(what));
   state.throughput = glm::vec4(1.0F, 1.0F, 1.0F, 0.0F);
   state.spectral = glm::vec4(1.0F, 1.0F, 1.0F, static_cast<float>(reference::kLongPath));
@@ -148,11 +144,12 @@ absl::StatusOr<std::vector<glm::dvec3>> DeviceTracer::Trace(
       grounds_m[i] = reference::GroundDistance_m(surroundings, ray);
       met[i] =
           StateOf(ray, shaders::kPathMeets, StreamOf(ray_of(i), sample_of(i), shaders::kPathMeets));
-      met[i].place.w = static_cast<float>(std::min(grounds_m[i], static_cast<double>(kEndless)));
+      met[i].place.w =
+          static_cast<float>(std::min(grounds_m[i], static_cast<double>(shaders::kEndlessPath_m)));
     });
     THUNDERHEAD_RETURN_IF_ERROR(Run(surroundings, options, &met));
 
-    // What eyes see up to there, and what that leads to.
+    // The paths' first segments, and the states that go on from them.
     std::vector<Begun> begun(count);
     ForPaths(options.threads, count, [&](std::size_t i) {
       reference::RandomStream random(options.seed, kHostStreams | ray_of(i), sample_of(i));
@@ -201,7 +198,8 @@ void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
   states->push_back(state);
 }
 
-// What paths have gathered, and the sky where they left.
+// The sum of a path's first segment, of what its states have gathered, and of the sky where they
+// left.
 glm::dvec3 DeviceTracer::End(const reference::Surroundings& surroundings, const Begun& begun,
                              const std::vector<PathState>& states) {
   const auto light_of = [&](const PathState& state) {

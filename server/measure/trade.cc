@@ -159,9 +159,8 @@ absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> Trade::Correct
   if (!accuracy::TracesLight(traced, *fields_)) return nullptr;
   if (corrector_ == nullptr || !corrector_->Serves(traced, fields_) ||
       corrected_by_ > million_paths) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        corrector_,
-        accuracy::LightCorrector::Create(traced, fields_, std::make_shared<gl::ProgramCache>(), 0));
+    THUNDERHEAD_ASSIGN_OR_RETURN(corrector_,
+                                 accuracy::LightCorrector::Create(traced, fields_, programs_, 0));
     corrected_by_ = 0.0;
   }
   THUNDERHEAD_RETURN_IF_ERROR(
@@ -175,8 +174,7 @@ absl::Status Trade::Estimate(const scene::Scene& scene, const picture::LinearPic
   if (error_seconds_ <= 0.0) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::unique_ptr<accuracy::ErrorMeter> meter,
-      accuracy::ErrorMeter::Create(scene, fields_, 0, 0,
-                                   device_paths::TracersFor(std::make_shared<gl::ProgramCache>())));
+      accuracy::ErrorMeter::Create(scene, fields_, 0, 0, device_paths::TracersFor(programs_)));
   meter->Show(image);
   meter->Measure(error_seconds_, stop);
   if (const auto error = meter->Result(); error.has_value()) *estimate = error->relative_rmse;

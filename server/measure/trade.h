@@ -14,6 +14,7 @@
 #include "accuracy/setting.h"
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
+#include "gl/program.h"
 #include "measure/against_truth.h"
 #include "picture/linear_picture.h"
 #include "renderers/scene_renderer.h"
@@ -81,6 +82,8 @@ class Trade {
   double error_seconds_;
   frame::RgbImage truth_display_;
   renderers::SceneRenderer renderer_;
+  // Of correctors and error meters.
+  const std::shared_ptr<gl::ProgramCache> programs_ = std::make_shared<gl::ProgramCache>();
   std::unique_ptr<accuracy::LightCorrector> corrector_;
   double corrected_by_ = 0.0;  // million paths of the last request
   frame::ToneMapper tone_mapper_;

@@ -106,7 +106,7 @@ class Medium {
     return Of(optics).majorants_per_m[BrickOffset(brick)];
   }
   bool HasSimilar() const { return !similar_.extinction_per_m.empty(); }
-  // What the above is computed from, for those who compute it elsewhere (device_paths/).
+  // The arrays behind these functions, for code that computes the same elsewhere (device_paths/).
   const volume::RegularGrid& Grid() const { return grid_; }
   bool Linear() const { return linear_; }
   const glm::ivec3& FirstCell() const { return first_cell_; }  // of the first brick

@@ -42,4 +42,13 @@ void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   if (thrown) std::rethrow_exception(thrown);
 }
 
+void ParallelForBlocks(int threads, std::size_t count, std::size_t block,
+                       const std::function<void(std::size_t, std::size_t)>& work) {
+  const std::size_t blocks = (count + block - 1) / block;
+  ParallelFor(threads, static_cast<int>(blocks), [&](int i) {
+    const std::size_t begin = static_cast<std::size_t>(i) * block;
+    work(begin, std::min(begin + block, count));
+  });
+}
+
 }  // namespace thunderhead::reference

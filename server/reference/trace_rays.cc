@@ -24,7 +24,6 @@ absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
   THUNDERHEAD_CHECK(options.similar_after == 0 || medium.HasSimilar(), "no similar medium");
   std::vector<glm::dvec3> radiance(rays.size(), glm::dvec3(0.0));
   const PathOptions of_path{.similar_after = options.similar_after};
-  const std::size_t pieces = (rays.size() + kRaysInPiece - 1) / kRaysInPiece;
   std::mutex mutex;
   absl::Status ended = absl::OkStatus();
   std::atomic<bool> has_ended{false};
@@ -38,17 +37,18 @@ absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
     has_ended = true;
     return false;
   };
-  ParallelFor(options.threads, static_cast<int>(pieces), [&](int piece) {
-    if (!goes_on()) return;
-    const std::size_t first = static_cast<std::size_t>(piece) * kRaysInPiece;
-    for (std::size_t i = first; i < std::min(first + kRaysInPiece, rays.size()); ++i) {
-      for (int path = 0; path < options.paths_per_ray; ++path) {
-        RandomStream random(options.seed, i, static_cast<std::uint32_t>(path));
-        radiance[i] += EstimateRadiance(medium, surroundings, rays[i], &random, of_path).radiance;
-      }
-      radiance[i] /= static_cast<double>(options.paths_per_ray);
-    }
-  });
+  ParallelForBlocks(
+      options.threads, rays.size(), kRaysInPiece, [&](std::size_t begin, std::size_t end) {
+        if (!goes_on()) return;
+        for (std::size_t i = begin; i < end; ++i) {
+          for (int path = 0; path < options.paths_per_ray; ++path) {
+            RandomStream random(options.seed, i, static_cast<std::uint32_t>(path));
+            radiance[i] +=
+                EstimateRadiance(medium, surroundings, rays[i], &random, of_path).radiance;
+          }
+          radiance[i] /= static_cast<double>(options.paths_per_ray);
+        }
+      });
   if (!ended.ok()) return ended;
   return radiance;
 }

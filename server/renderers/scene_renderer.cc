@@ -118,10 +118,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   const scene::Stage first = FirstStageAt(asked, fields, quality);
   sunlight_changed_ = first <= scene::Stage::kLight && !OnlyLightsDiffer(asked, fields);
   drawn_scene_.reset();
-  if (first <= scene::Stage::kView) {
-    coarse_settings_.reset();
-    whole_settings_.reset();
-  }
+  if (first <= scene::Stage::kView) drawn_settings_.reset();
   if (first <= scene::Stage::kLight) {
     drawn_light_tolerance_ = quality.light_tolerance;
     drawn_light_layer_ = quality.light_layer;
@@ -176,20 +173,20 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
       THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kComposite, &times,
                                         [&] { return Composite(scene, settings, size_px); }));
     }
-    (coarse ? coarse_settings_ : whole_settings_) = settings;
+    drawn_settings_ = settings;
   }
   Keep(asked, fields, quality);
   view_is_drawn_ = true;
   LinearFrame frame = Report(scene, *fields);
-  frame.coarse = coarse_settings_.has_value();
+  frame.coarse = DrewCoarse();
   frame.stages = std::move(times);
   return frame;
 }
 
 absl::StatusOr<LinearFrame> SceneRenderer::DrawBehind() {
-  THUNDERHEAD_CHECK(whole_settings_.has_value() && drawn_scene_.has_value(),
+  THUNDERHEAD_CHECK(drawn_settings_.has_value() && !DrewCoarse() && drawn_scene_.has_value(),
                     "a whole frame was drawn last");
-  THUNDERHEAD_CHECK(!whole_settings_->quality.sun_seen, "the storm's aureole is the storm's light");
+  THUNDERHEAD_CHECK(!drawn_settings_->quality.sun_seen, "the storm's aureole is the storm's light");
   const std::shared_ptr<const volume::HydrometeorFields> fields = drawn_fields_.lock();
   THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
   const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);
@@ -201,7 +198,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::DrawBehind() {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   }
   THUNDERHEAD_RETURN_IF_ERROR(
-      Composite(scene, *whole_settings_, {scene.output.width_px, scene.output.height_px}));
+      Composite(scene, *drawn_settings_, {scene.output.width_px, scene.output.height_px}));
   return Report(scene, *fields);
 }
 
@@ -338,14 +335,13 @@ bool SceneRenderer::DrawsChosen() const {
 }
 
 absl::StatusOr<ChosenFrame> SceneRenderer::DrawChosen(const std::vector<glm::vec2>& places) {
-  THUNDERHEAD_CHECK(coarse_settings_.has_value() && drawn_scene_.has_value(),
-                    "rays are chosen for a coarse frame");
+  THUNDERHEAD_CHECK(DrewCoarse() && drawn_scene_.has_value(), "rays are chosen for a coarse frame");
   const std::shared_ptr<const volume::HydrometeorFields> fields = drawn_fields_.lock();
   THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
   const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);
   chosen_.Choose(places);
   ChosenFrame frame;
-  THUNDERHEAD_RETURN_IF_ERROR(DrawRays(scene, *coarse_settings_, &frame.stages));
+  THUNDERHEAD_RETURN_IF_ERROR(DrawRays(scene, *drawn_settings_, &frame.stages));
   frame.radiance = &chosen_linear_.Texture();
   frame.part_px = chosen_.Rect().Size();
   return frame;

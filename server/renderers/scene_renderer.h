@@ -80,6 +80,10 @@ class SceneRenderer {
   std::size_t Bytes() const;
 
  private:
+  // True if the last frame was coarse.
+  bool DrewCoarse() const {
+    return drawn_settings_.has_value() && drawn_settings_->detail_size.has_value();
+  }
   // True where the technique and the device draw chosen rays of the scene.
   bool DrawsChosen() const;
   // The scene's technique, made if it was not used before.
@@ -140,8 +144,7 @@ class SceneRenderer {
   double drawn_light_tolerance_ = kLightTolerance;
   double drawn_light_layer_ = 1.0;
   bool drawn_light_in_turns_ = false;
-  std::optional<RenderSettings> coarse_settings_;  // of the last frame, if that is coarse
-  std::optional<RenderSettings> whole_settings_;   // if it is not
+  std::optional<RenderSettings> drawn_settings_;  // of the last frame's view
   int drawn_slices_ = 0;
   bool sunlight_changed_ = true;  // since the frame before
 };

@@ -22,11 +22,11 @@ constexpr double kWallDepth = 1.345;
 // same slope of steps.
 constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
-// There, walls see those that rise above their slope by more than this, in cells.
+// Height in cells above its own slope from which a wall sees another that near.
 constexpr double kAboveSlope = 0.5;
-// And less of these the deeper cells are: half where the transport optical depth of a cell's
-// shortest side is this. In deeper cells the medium between centres is a smooth surface, of which
-// steps are the grid's; in thinner ones they are the cloud's own.
+// Transport optical depth of a cell's shortest side at which half of such a wall's light counts. In
+// deeper cells the medium between centres is a smooth surface, of which steps are the grid's; in
+// thinner ones they are the cloud's own.
 constexpr float kSteppedDepth = 1.0F;
 constexpr float kMinTransmittance = 0.02F;
 constexpr int kTurns = 6;  // from wall to wall that are followed
@@ -161,7 +161,7 @@ glm::dvec3 WallLight::Outward(const DiffusionCells& cells, std::size_t wall) con
   return outward;
 }
 
-// The share of its light that a wall sends to another nearby at `other`.
+// The share of the light between a wall and a near one at `other` that counts.
 float WallLight::NearShare(const DiffusionCells& cells, std::size_t wall, const glm::ivec3& other,
                            const glm::dvec3& outward) {
   const glm::dvec3 way_m = glm::dvec3(other - cells.CellAt(wall)) * cells.cell_m;

@@ -14,7 +14,7 @@ const int kPathLightsBinding = 5;
 const int kPathGroupSize = 64;
 const int kPathEvents = 16;
 
-// What a path does next, or how it has ended.
+// The next step of a path, or its end.
 const int kPathMeets = 0;     // flies up to where it meets a particle: its distance, or -1, and no more
 const int kPathShines = 1;    // straight to infinity: its transmittance, and no more
 const int kPathFlies = 2;
@@ -23,6 +23,9 @@ const int kPathTries = 4;     // flies, and counts only if it meets the medium
 const int kPathEnded = 5;
 const int kPathEscaped = 6;   // to the sky
 const int kPathMissed = 7;    // tried, and did not meet the medium
+
+// The length of a path that nothing ends, metres.
+const float kEndlessPath_m = 3e38F;
 
 // Intervals of a tabulated phase function. A table has its values and its cumulative distribution at their ends, and the interval at
 // which the search for each of as many shares begins.

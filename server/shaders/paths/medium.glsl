@@ -14,8 +14,6 @@ uniform vec3 box_low;      // in bricks
 uniform vec3 box_high;
 uniform vec3 bricks_per_m;
 
-const float kEndless_m = 3e38;
-
 float of_optics(vec2 value, bool similar) { return similar ? value.y : value.x; }
 
 float cell_extinction(ivec3 cell, bool similar) {
@@ -50,15 +48,16 @@ struct Walk {
   vec3 m_per;
   ivec3 stride;
   ivec3 brick;
+  vec3 faces_m;    // the brick's, that the ray goes to
   float before_m;  // the box
   float at_m;      // in it
   float leaves_m;  // the brick
   float end_m;
 };
 
-void find_face(inout Walk walk) {
-  vec3 faces_m = (vec3(walk.brick + max(walk.stride, ivec3(0))) - walk.from) * walk.m_per;
-  walk.leaves_m = clamp(min(faces_m.x, min(faces_m.y, faces_m.z)), walk.at_m, walk.end_m);
+void find_faces(inout Walk walk) {
+  walk.faces_m = (vec3(walk.brick + max(walk.stride, ivec3(0))) - walk.from) * walk.m_per;
+  walk.leaves_m = clamp(min(walk.faces_m.x, min(walk.faces_m.y, walk.faces_m.z)), walk.at_m, walk.end_m);
 }
 
 Walk begin_walk(vec3 place, vec3 direction, float limit_m) {
@@ -77,7 +76,7 @@ Walk begin_walk(vec3 place, vec3 direction, float limit_m) {
   walk.from = place + walk.before_m * walk.per_m;
   walk.stride = ivec3(sign(walk.per_m));
   walk.brick = clamp(ivec3(floor(walk.from)), ivec3(0), brick_count - 1);
-  find_face(walk);
+  find_faces(walk);
   return walk;
 }
 
@@ -86,16 +85,15 @@ bool goes_on(Walk walk) {
 }
 
 void next_brick(inout Walk walk) {
-  vec3 faces_m = (vec3(walk.brick + max(walk.stride, ivec3(0))) - walk.from) * walk.m_per;
   walk.at_m = walk.leaves_m;
-  if (faces_m.x <= faces_m.y && faces_m.x <= faces_m.z) {
+  if (walk.faces_m.x <= walk.faces_m.y && walk.faces_m.x <= walk.faces_m.z) {
     walk.brick.x += walk.stride.x;
-  } else if (faces_m.y <= faces_m.z) {
+  } else if (walk.faces_m.y <= walk.faces_m.z) {
     walk.brick.y += walk.stride.y;
   } else {
     walk.brick.z += walk.stride.z;
   }
-  find_face(walk);
+  find_faces(walk);
 }
 
 float majorant_of(ivec3 brick, bool similar) { return of_optics(texelFetch(majorants, brick, 0).xy, similar); }
@@ -123,7 +121,7 @@ float distance_to_collision(vec3 place, vec3 direction, float limit_m, bool simi
 
 // An unbiased estimate of the transmittance to infinity, exact unless it is small. Simpson's rule is exact in a brick.
 float transmittance_to_infinity(vec3 place, vec3 direction, bool similar) {
-  Walk walk = begin_walk(place, direction, kEndless_m);
+  Walk walk = begin_walk(place, direction, kEndlessPath_m);
   float end_depth = kRouletteDepth + random_exponential();
   float depth = 0.0;
   while (goes_on(walk)) {

@@ -48,6 +48,8 @@ int hero;
 
 float largest(vec3 color) { return max(color.x, max(color.y, color.z)); }
 
+bool is_similar() { return similar_after > 0 && collisions >= similar_after; }
+
 vec3 carried() { return path.throughput.xyz * path.spectral.xyz; }
 
 bool survives() {
@@ -75,13 +77,13 @@ vec3 sunlight_at(vec3 place) {
 
 // As reference/eye_segment.h has it.
 float ground_distance_m() {
-  if (!has_ground) return kEndless_m;
+  if (!has_ground) return kEndlessPath_m;
   vec3 off_m = low_from_touch_m + path.place.xyz * brick_m;
   vec2 across = path.direction.xy;
   float above_m = off_m.z + 0.5 * ground_curvature_per_m * dot(off_m.xy, off_m.xy);
   float closing = -path.direction.z - ground_curvature_per_m * dot(off_m.xy, across);
   float discriminant = closing * closing - 2.0 * ground_curvature_per_m * dot(across, across) * above_m;
-  if (above_m <= 0.0 || closing <= 0.0 || discriminant < 0.0) return kEndless_m;
+  if (above_m <= 0.0 || closing <= 0.0 || discriminant < 0.0) return kEndlessPath_m;
   return 2.0 * above_m / (closing + sqrt(discriminant));
 }
 
@@ -97,16 +99,15 @@ const int kAtParticle = 1;
 const int kAtGround = 2;
 
 int fly(inout int what) {
-  bool similar = similar_after > 0 && collisions >= similar_after;
-  float ground_m = what == kPathMeets ? path.place.w : what == kPathTries ? kEndless_m : ground_distance_m();
-  float at_m = distance_to_collision(path.place.xyz, path.direction.xyz, ground_m, similar);
+  float ground_m = what == kPathMeets ? path.place.w : what == kPathTries ? kEndlessPath_m : ground_distance_m();
+  float at_m = distance_to_collision(path.place.xyz, path.direction.xyz, ground_m, is_similar());
   if (what == kPathMeets) {
     path.radiance.w = at_m;
     what = kPathEnded;
     return kAtEnd;
   }
   bool meets = at_m >= 0.0;
-  if (!meets && (what == kPathTries || ground_m >= kEndless_m)) {
+  if (!meets && (what == kPathTries || ground_m >= kEndlessPath_m)) {
     what = what == kPathTries ? kPathMissed : kPathEscaped;
     return kAtEnd;
   }
@@ -133,12 +134,13 @@ bool advances(inout int what) {
   bool ends = false;
   if (at == kAtParticle) {
     float factor;
-    int group = choose_group(path.place.xyz, random_uniform(), similar_after > 0 && collisions >= similar_after, factor);
+    bool similar_before = is_similar();
+    int group = choose_group(path.place.xyz, random_uniform(), similar_before, factor);
     ends = group < 0;
     if (!ends) {
-      // By the optics of before this collision; from here on all light counts as light of the similar medium, this collision's
-      // sunlight, too. Both have the same phase function of the collision.
-      optics = group_optics[2 * group + int(similar_after > 0 && collisions >= similar_after)];
+      // By the optics of before this collision. Once it is counted, all light may count as light of the similar medium, this
+      // collision's sunlight, too.
+      optics = group_optics[2 * group + int(similar_before)];
       path.throughput.xyz *= factor * optics.albedo.xyz;
       ends = !survives() || !goes_on_at_length();
     }
@@ -152,8 +154,7 @@ bool advances(inout int what) {
     return false;
   }
 
-  // What arrives directly.
-  bool similar = similar_after > 0 && collisions >= similar_after;
+  // Light that arrives directly.
   int count = at == kAtParticle ? 1 + other_lights : 1;
   for (int i = 0; i < count; ++i) {
     int other = sun_heights + 2 * (i - 1);
@@ -170,7 +171,7 @@ bool advances(inout int what) {
     }
     vec3 unshadowed = carried() * reflected * irradiance;
     if (largest(unshadowed) <= 0.0) continue;
-    float transmittance = transmittance_to_infinity(path.place.xyz, towards, similar);
+    float transmittance = transmittance_to_infinity(path.place.xyz, towards, is_similar());
     path.radiance += vec4(unshadowed * transmittance, transmittance);
   }
   if (what == kPathShines) {
