@@ -92,6 +92,7 @@ renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuali
   drawn.light_tolerance = kMovingLightTolerance;
   drawn.light_layer = kMovingLightLayer;
   drawn.light_in_turns = true;
+  drawn.quick_water_paths = true;
   return drawn;
 }
 

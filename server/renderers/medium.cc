@@ -58,7 +58,7 @@ struct Computed {
 };
 
 Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& medium,
-                    DetailNoises* noises) {
+                    DetailNoises* noises, volume::WaterPathEffort effort) {
   Computed computed;
   computed.extinction =
       volume::ComputeExtinction(fields, medium.terms, static_cast<int>(medium.groups.size()));
@@ -70,18 +70,18 @@ Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& mediu
   };
   volume::KeepWaterPaths(
       scene::PlacedDetailOf(layers, tile_of, computed.extinction.grid.spacing_m, fields.motion),
-      &computed.detail_control, &computed.extinction);
+      &computed.detail_control, &computed.extinction, effort);
   return computed;
 }
 
 // On fewer cells if a texture cannot hold all.
 Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium& medium,
-                          DetailNoises* noises) {
+                          DetailNoises* noises, volume::WaterPathEffort effort) {
   GLint max_texels = 0;
   glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &max_texels);
   const glm::ivec3 factor = volume::CoarseningFor(fields, max_texels);
-  return factor == glm::ivec3(1) ? ComputedOf(fields, medium, noises)
-                                 : ComputedOf(volume::Coarsened(fields, factor), medium, noises);
+  if (factor == glm::ivec3(1)) return ComputedOf(fields, medium, noises, effort);
+  return ComputedOf(volume::Coarsened(fields, factor), medium, noises, effort);
 }
 
 // Around what is occupied; the first brick begins at `corner_m`.
@@ -101,7 +101,7 @@ Boxes BoxesOf(const volume::BrickMap& bricks, const glm::dvec3& brick_m,
 }  // namespace
 
 ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields,
-                               DetailNoises* noises, Cost* cost)
+                               DetailNoises* noises, Cost* cost, volume::WaterPathEffort effort)
     : id_(NextId()), content_(scene::GroupedFieldsOf(scene, fields)) {
   constexpr std::array<GLenum, 5> kFormats = {0, GL_R16F, GL_RG16F, 0, GL_RGBA16F};
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
@@ -110,7 +110,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   // Half floats of each group, and the detail's control, on their way to the device.
   const base::MemoryReservation on_the_way = gl::DeviceMemory::ReserveBeside(
       fields.grid.CellCount() * (2 * content_.groups.size() + sizeof(volume::DetailTexel)));
-  Computed computed = ComputedThatFits(fields, content_, noises);
+  Computed computed = ComputedThatFits(fields, content_, noises, effort);
   bounds_ = std::move(computed.extinction);
   const volume::BrickMap bricks = volume::BrickMapOf(bounds_);
   const volume::CellBlocks blocks = volume::CellBlocksOf(bricks, bounds_.grid);
@@ -140,6 +140,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     blocks_ = gl::Buffer(blocks.occupied.size() * sizeof(std::uint32_t), blocks.occupied.data(), 0);
   }
   if (!computed.detail_control.empty()) {
+    has_quick_water_paths_ = effort == volume::WaterPathEffort::kQuick;
     detail_control_ = gl::Texture3D(GL_RGBA8, bounds_.grid.cells);
     detail_control_.Upload(GL_RGBA, GL_UNSIGNED_BYTE, computed.detail_control.data());
     detail_fibres_ = glm::mat3(physics::FibresAlong(fields.motion.shear_m_per_s));

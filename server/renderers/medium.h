@@ -18,6 +18,7 @@
 #include "scene/view.h"
 #include "volume/extinction.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/water_paths.h"
 
 namespace thunderhead::renderers {
 
@@ -49,12 +50,15 @@ class ResidentMedium {
 
   ResidentMedium() = default;
   ResidentMedium(const scene::Scene& scene, const volume::HydrometeorFields& fields,
-                 DetailNoises* noises, Cost* cost);
+                 DetailNoises* noises, Cost* cost,
+                 volume::WaterPathEffort effort = volume::WaterPathEffort::kFull);
 
   bool Empty() const { return bounds_.Empty(); }
   // Differs from that of any other medium of this process; 0 has no content.
   std::uint64_t Id() const { return id_; }
   const Medium& Content() const { return content_; }
+  // With more effort water paths would be kept better.
+  bool HasQuickWaterPaths() const { return has_quick_water_paths_; }
   // The volume's place and scale; its texels are on the device only.
   const volume::ExtinctionVolume& Bounds() const { return bounds_; }
   glm::dvec3 Middle_m() const { return (bounds_.low_m + bounds_.high_m) / 2.0; }
@@ -105,6 +109,7 @@ class ResidentMedium {
   void BindNoises(const gl::Program& program, const Footprint& footprint, double nearest_m) const;
 
   std::uint64_t id_ = 0;
+  bool has_quick_water_paths_ = false;
   Medium content_;
   volume::ExtinctionVolume bounds_;
   std::vector<gl::Texture3D> textures_;

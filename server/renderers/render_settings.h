@@ -67,6 +67,9 @@ struct DrawQuality {
   double light_layer = 1.0;
   // Light that changes little with the sun is found for a part of the cells, and kept for others.
   bool light_in_turns = false;
+  // Water paths of columns are kept less exactly where detail is drawn; those that are kept better
+  // stay.
+  bool quick_water_paths = false;
 
   bool operator==(const DrawQuality&) const = default;
 };

@@ -74,6 +74,9 @@ scene::Stage SceneRenderer::FirstStage(const scene::Scene& scene, const Fields& 
 scene::Stage SceneRenderer::FirstStageAt(const scene::Scene& scene, const Fields& fields,
                                          const DrawQuality& quality) const {
   const scene::Stage first = FirstStage(scene, fields);
+  if (workspace_.medium.HasQuickWaterPaths() && !quality.quick_water_paths) {
+    return std::min(first, scene::Stage::kExtinction);
+  }
   if (quality.light_detail != drawn_quality_.light_detail ||
       quality.light_tolerance < drawn_light_tolerance_ ||
       quality.light_layer < drawn_light_layer_ ||
@@ -127,7 +130,7 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
   StageTimes times;
   if (first <= scene::Stage::kExtinction) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, fields, &times));
+    THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, fields, quality, &times));
   }
   if (first <= scene::Stage::kView) {
     const scene::View view = scene::ViewOf(scene, *fields);
@@ -211,7 +214,7 @@ void SceneRenderer::Keep(const scene::Scene& scene, const Fields& fields,
 }
 
 absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields& fields,
-                                        StageTimes* times) {
+                                        const DrawQuality& quality, StageTimes* times) {
   // Techniques of the medium share it; what others hold of another scene is given back.
   std::erase_if(techniques_, [this](const auto& entry) {
     return entry.second.get() != technique_ && !entry.second->DrawsMedium();
@@ -221,7 +224,10 @@ absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields&
     ResidentMedium::Cost cost;
     // Work of this thread but for copies to the device.
     THUNDERHEAD_RETURN_IF_ERROR(workspace_.Pieces().OffTurn([&] {
-      workspace_.medium = ResidentMedium(scene, *fields, &workspace_.noises, &cost);
+      workspace_.medium =
+          ResidentMedium(scene, *fields, &workspace_.noises, &cost,
+                         quality.quick_water_paths ? volume::WaterPathEffort::kQuick
+                                                   : volume::WaterPathEffort::kFull);
       glFinish();
     }));
     times->push_back({scene::FrameStage::kExtinction, cost.extinction_ms});

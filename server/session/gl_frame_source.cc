@@ -65,10 +65,10 @@ class GlFrameSource final : public FrameSource {
       const scene::Scene scene = accuracy::WithOutputScale(whole, quality.output_scale);
       const Correction correction = CorrectionOf(scene, fields);
       if (quality.sparse) return DrawMoving(scene, fields, quality, correction);
-      THUNDERHEAD_ASSIGN_OR_RETURN(
-          const renderers::LinearFrame linear,
-          renderers_.Draw(scene, fields,
-                          Applied(correction, {quality.image_scale, quality.slice_share})));
+      renderers::DrawQuality drawn{quality.image_scale, quality.slice_share};
+      drawn.quick_water_paths = quality.image_scale < 1.0;
+      THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
+                                   renderers_.Draw(scene, fields, Applied(correction, drawn)));
       return Display(linear, scene, correction);
     });
   }

@@ -1,33 +1,261 @@
 #include "volume/drawn_medium.h"
 
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
-#include "base/half_float.h"
+#include "base/lanes.h"
 #include "glm/common.hpp"
 #include "glm/vec2.hpp"
-#include "glm/vector_relational.hpp"
 
 namespace thunderhead::volume {
 namespace {
 
-// Rounded down. Faster than floor, which is a call without SSE 4.1.
-glm::ivec3 Floor(const glm::vec3& value) {
-  const glm::ivec3 towards_zero(value);
-  return towards_zero - glm::ivec3(glm::lessThan(value, glm::vec3(towards_zero)));
+using base::AnyAbove;
+using base::Convert;
+using base::EightFloats;
+using base::ForLanes;
+using base::Integers;
+using base::Load;
+using base::SetAll;
+
+template <typename Floats>
+THUNDERHEAD_IN_LANES void RoundDown(const Floats& value, Integers<Floats>* down, Floats* rest) {
+  Floats towards_zero;
+  Convert(value, down);
+  Convert(*down, &towards_zero);
+  const Floats over = value < towards_zero ? Floats{} + 1.0F : Floats{};
+  Integers<Floats> less;
+  Convert(over, &less);
+  *down -= less;
+  *rest = value - (towards_zero - over);
 }
 
-// Weights of a linear interpolation between the corners of a cube; along x, then y, then z.
-std::array<float, 8> Weights(const glm::vec3& share) {
-  const glm::vec3 rest = 1.0F - share;
-  std::array<float, 8> weights;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    weights[i] = ((i & 1U) != 0 ? share.x : rest.x) * ((i & 2U) != 0 ? share.y : rest.y) *
-                 ((i & 4U) != 0 ? share.z : rest.z);
-  }
-  return weights;
+// The byte of a word, from the lowest.
+template <int kByte, typename Floats>
+THUNDERHEAD_IN_LANES void ByteOf(const Integers<Floats>& word, Floats* value) {
+  Convert((word >> (8 * kByte)) & 255, value);
+}
+
+// base::FloatFromHalf.
+template <typename Floats>
+THUNDERHEAD_IN_LANES void FromHalf(const Integers<Floats>& half, Floats* value) {
+  *value = __builtin_bit_cast(Floats, half << 13) * 0x1p112F;
+}
+
+template <typename Floats>
+THUNDERHEAD_IN_LANES void Limit(float low, float high, Floats* value) {
+  *value = *value < low ? Floats{} + low : *value;
+  *value = *value > high ? Floats{} + high : *value;
 }
 
 }  // namespace
+
+// Evaluates the medium at places, one in each lane.
+template <typename Floats>
+struct DrawnMedium::Lanes {
+  using Whole = Integers<Floats>;
+  using Weights = std::array<Floats, kCorners>;
+
+  struct Point {
+    Floats x, y, z;
+  };
+
+  // A linear interpolation between cells.
+  struct Place {
+    Whole cell;  // the lowest
+    Weights weights;
+  };
+
+  struct Noise {
+    Floats billows, x, y, z;
+  };
+
+  // Along x, then y, then z.
+  THUNDERHEAD_IN_LANES static void FindWeights(const Point& share, Weights* weights) {
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      (*weights)[i] = ((i & 1U) != 0 ? share.x : 1.0F - share.x) *
+                      ((i & 2U) != 0 ? share.y : 1.0F - share.y) *
+                      ((i & 4U) != 0 ? share.z : 1.0F - share.z);
+    }
+  }
+
+  THUNDERHEAD_IN_LANES static void FindAlong(const Floats& in_cells, int size, Whole* low,
+                                             Floats* share) {
+    Floats from_middle = in_cells - 0.5F;
+    Limit(0.0F, static_cast<float>(size - 1), &from_middle);
+    Convert(from_middle, low);
+    const int last = std::max(size - 2, 0);
+    *low = *low > last ? Whole{} + last : *low;
+    Floats whole;
+    Convert(*low, &whole);
+    *share = from_middle - whole;
+  }
+
+  THUNDERHEAD_IN_LANES static void FindPlace(const DrawnMedium& medium, const Point& in_cells,
+                                             Place* place) {
+    const glm::ivec3& size = medium.volume_.grid.cells;
+    Point share;
+    Whole x, y, z;
+    FindAlong(in_cells.x, size.x, &x, &share.x);
+    FindAlong(in_cells.y, size.y, &y, &share.y);
+    FindAlong(in_cells.z, size.z, &z, &share.z);
+    place->cell = (z * size.y + y) * size.x + x;
+    FindWeights(share, &place->weights);
+  }
+
+  THUNDERHEAD_IN_LANES static void FindNoise(const DrawnMedium& medium, const Layer& layer,
+                                             const Point& in_cells, const Whole& fibres,
+                                             Noise* noise) {
+    constexpr int kSide = physics::DetailTile::kSide;
+    Point tile = {layer.corner.x + in_cells.x * layer.cell.x,
+                  layer.corner.y + in_cells.y * layer.cell.y,
+                  layer.corner.z + in_cells.z * layer.cell.z};
+    const glm::mat3& m = medium.fibres_;
+    const Point along = {m[0].x * tile.x + m[1].x * tile.y + m[2].x * tile.z,
+                         m[0].y * tile.x + m[1].y * tile.y + m[2].y * tile.z,
+                         m[0].z * tile.x + m[1].z * tile.y + m[2].z * tile.z};
+    tile.x = fibres ? along.x : tile.x;
+    tile.y = fibres ? along.y : tile.y;
+    tile.z = fibres ? along.z : tile.z;
+    Whole x, y, z;
+    Point share;
+    RoundDown(tile.x * static_cast<float>(kSide) - 0.5F, &x, &share.x);
+    RoundDown(tile.y * static_cast<float>(kSide) - 0.5F, &y, &share.y);
+    RoundDown(tile.z * static_cast<float>(kSide) - 0.5F, &z, &share.z);
+    Weights weights;
+    FindWeights(share, &weights);
+    for (int i = 0; i < static_cast<int>(kCorners); ++i) {
+      const Whole row = ((z + (i >> 2)) & (kSide - 1)) * kSide + ((y + (i >> 1 & 1)) & (kSide - 1));
+      const Whole texel = row * kSide + ((x + (i & 1)) & (kSide - 1));
+      Whole word;
+      Load<std::uint32_t>(layer.texels, 4, texel, &word);
+      Add(word, weights[static_cast<std::size_t>(i)] / 255.0F, noise);
+    }
+  }
+
+  THUNDERHEAD_IN_LANES static void Add(const Whole& word, const Floats& weight, Noise* noise) {
+    Noise bytes;
+    ByteOf<0>(word, &bytes.billows);
+    ByteOf<1>(word, &bytes.x);
+    ByteOf<2>(word, &bytes.y);
+    ByteOf<3>(word, &bytes.z);
+    noise->billows += weight * bytes.billows;
+    noise->x += weight * bytes.x;
+    noise->y += weight * bytes.y;
+    noise->z += weight * bytes.z;
+  }
+
+  // `plane_values` times the medium's.
+  template <int kPlaneChannels>
+  THUNDERHEAD_IN_LANES static void Multiply(const DrawnMedium& medium, const ExtinctionPlane& plane,
+                                            const Place& from, Floats* values) {
+    constexpr int kTogether = kPlaneChannels == 1 ? 1 : 2;  // channels in a number
+    using Number = std::conditional_t<kTogether == 1, std::uint16_t, std::uint32_t>;
+    for (int first = 0; first < kPlaneChannels; first += kTogether) {
+      Floats low{};
+      Floats high{};
+      for (std::size_t i = 0; i < kCorners; ++i) {
+        Whole number;
+        Load<Number>(plane.texels.data() + first, 2 * kPlaneChannels,
+                     from.cell + static_cast<std::int32_t>(medium.corners_[i]), &number);
+        Floats value;
+        FromHalf(number & 0xFFFF, &value);
+        low += from.weights[i] * value;
+        if constexpr (kTogether == 2) {
+          FromHalf(number >> 16, &value);
+          high += from.weights[i] * value;
+        }
+      }
+      values[first] *= low;
+      if constexpr (kTogether == 2) values[first + 1] *= high;
+    }
+  }
+
+  // `values` are all 1 when it begins.
+  THUNDERHEAD_IN_LANES static void Evaluate(const DrawnMedium& medium, const Point& in_cells,
+                                            std::array<Floats, kMaxChannels>* values) {
+    Place here;
+    FindPlace(medium, in_cells, &here);
+    Point displaced = in_cells;
+    if (!medium.layers_.empty()) {
+      Floats profile{};
+      Floats amplitude{};
+      Floats column{};
+      for (std::size_t i = 0; i < kCorners; ++i) {
+        Whole word;
+        static_assert(sizeof(DetailTexel) == 4);
+        Load<std::uint32_t>(medium.control_.data(), 4,
+                            here.cell + static_cast<std::int32_t>(medium.corners_[i]), &word);
+        Floats byte;
+        ByteOf<0>(word, &byte);
+        profile += here.weights[i] * byte;
+        ByteOf<1>(word, &byte);
+        amplitude += here.weights[i] * byte;
+        ByteOf<2>(word, &byte);
+        column += here.weights[i] * byte;
+      }
+      // Where it is empty nothing is drawn, and nothing is displaced to there.
+      if (!AnyAbove(0.0F, profile)) {
+        for (Floats& value : *values) value = Floats{};
+        return;
+      }
+      profile /= 255.0F;
+      amplitude = (amplitude - 128.0F) / 127.0F;
+      Floats factor = profile > 0.0F ? column : Floats{};
+      ForLanes([](float texel) { return physics::glsl::detail_column_factor(texel / 255.0F); },
+               &factor, factor);
+      for (Floats& value : *values) value *= factor;
+      const Whole fibres = amplitude < 0.0F;
+      for (const Layer& layer : medium.layers_) {
+        Noise noise{};
+        FindNoise(medium, layer, in_cells, fibres, &noise);
+        if (&layer == medium.layers_.data()) {
+          Floats share;
+          ForLanes(
+              [](float p, float a) {
+                return physics::glsl::detail_warp_share({p, a});
+              },
+              &share, profile, amplitude);
+          displaced.x += share * medium.warp_.x * (2.0F * noise.x - 1.0F);
+          displaced.y += share * medium.warp_.y * (2.0F * noise.y - 1.0F);
+          displaced.z += share * medium.warp_.z * (2.0F * noise.z - 1.0F);
+        }
+        Floats change;
+        ForLanes(
+            [](float p, float a, float n) {
+              return physics::glsl::detail_factor({p, a}, n, 0.0F) - 1.0F;
+            },
+            &change, profile, amplitude, noise.billows);
+        for (std::size_t i = 0; i < values->size(); ++i) {
+          (*values)[i] *= 1.0F + change * layer.shares[i];
+        }
+      }
+    }
+    Place from;
+    FindPlace(medium, displaced, &from);
+    Floats* of_plane = values->data();
+    for (const ExtinctionPlane& plane : medium.volume_.planes) {
+      if (plane.channels == 1) Multiply<1>(medium, plane, from, of_plane);
+      if (plane.channels == 2) Multiply<2>(medium, plane, from, of_plane);
+      if (plane.channels == 4) Multiply<4>(medium, plane, from, of_plane);
+      of_plane += plane.channels;
+    }
+    for (; of_plane < values->data() + values->size(); ++of_plane) *of_plane = Floats{};
+  }
+
+  // As lanes of arrays.
+  THUNDERHEAD_IN_LANES static void EvaluateAll(const DrawnMedium& medium, const Places& in_cells,
+                                               ChannelsAt* values) {
+    Point places;
+    static_assert(sizeof(places) == sizeof(in_cells));
+    std::memcpy(&places, &in_cells, sizeof(places));
+    std::array<Floats, kMaxChannels> all;
+    for (Floats& value : all) SetAll(1.0F, &value);
+    Evaluate(medium, places, &all);
+    std::memcpy(values, all.data(), sizeof(*values));
+  }
+};
 
 DrawnMedium::DrawnMedium(const DetailControl& control, const PlacedDetail& detail,
                          const ExtinctionVolume& volume)
@@ -50,83 +278,26 @@ DrawnMedium::DrawnMedium(const DetailControl& control, const PlacedDetail& detai
   }
 }
 
-DrawnMedium::Place DrawnMedium::PlaceAt(const glm::vec3& in_cells) const {
-  const glm::ivec3& size = volume_.grid.cells;
-  const glm::vec3 from_middle = glm::clamp(in_cells - 0.5F, glm::vec3(0.0F), glm::vec3(size - 1));
-  const glm::ivec3 low = glm::clamp(glm::ivec3(from_middle), glm::ivec3(0), glm::max(size - 2, 0));
-  return {volume_.grid.Offset(low.x, low.y, low.z), Weights(from_middle - glm::vec3(low))};
-}
-
 DrawnMedium::Channels DrawnMedium::At(const glm::vec3& in_cells) const {
-  Channels values{};
-  const Place here = PlaceAt(in_cells);
-  glm::vec3 displaced = in_cells;
-  Channels factors;
-  factors.fill(1.0F);
-  if (!layers_.empty()) {
-    glm::vec3 bytes(0.0F);
-    for (std::size_t i = 0; i < kCorners; ++i) {
-      const DetailTexel& texel = control_[here.cell + corners_[i]];
-      bytes += here.weights[i] * glm::vec3(texel.profile, texel.amplitude, texel.column);
-    }
-    // Empty, and nothing is displaced to where it is.
-    if (bytes.x <= 0.0F) return values;
-    factors.fill(physics::glsl::detail_column_factor(bytes.z / 255.0F));
-    const glm::vec2 control(bytes.x / 255.0F, (bytes.y - 128.0F) / 127.0F);
-    for (const Layer& layer : layers_) {
-      const glm::vec4 noise = NoiseAt(layer, in_cells, control.y < 0.0F);
-      if (&layer == layers_.data()) {
-        displaced += physics::glsl::detail_warp_share(control) * warp_ *
-                     (2.0F * glm::vec3(noise.y, noise.z, noise.w) - 1.0F);
-      }
-      const float change = physics::glsl::detail_factor(control, noise.x, 0.0F) - 1.0F;
-      for (std::size_t i = 0; i < factors.size(); ++i) {
-        factors[i] *= 1.0F + change * layer.shares[i];
-      }
-    }
-  }
-  const Place from = PlaceAt(displaced);
-  std::size_t first = 0;
-  for (const ExtinctionPlane& plane : volume_.planes) {
-    const float* of_plane = factors.data() + first;
-    if (plane.channels == 1) AddPlane<1>(plane, from, of_plane, values.data() + first);
-    if (plane.channels == 2) AddPlane<2>(plane, from, of_plane, values.data() + first);
-    if (plane.channels == 4) AddPlane<4>(plane, from, of_plane, values.data() + first);
-    first += static_cast<std::size_t>(plane.channels);
-  }
+  Channels values;
+  values.fill(1.0F);
+  Lanes<float>::Evaluate(*this, {in_cells.x, in_cells.y, in_cells.z}, &values);
   return values;
 }
 
-template <std::size_t kPlaneChannels>
-void DrawnMedium::AddPlane(const ExtinctionPlane& plane, const Place& from, const float* factors,
-                           float* values) const {
-  std::array<float, kPlaneChannels> sums{};
-  for (std::size_t i = 0; i < kCorners; ++i) {
-    const std::uint16_t* texel = plane.texels.data() + kPlaneChannels * (from.cell + corners_[i]);
-    for (std::size_t channel = 0; channel < kPlaneChannels; ++channel) {
-      sums[channel] += from.weights[i] * base::FloatFromHalf(texel[channel]);
-    }
-  }
-  for (std::size_t channel = 0; channel < kPlaneChannels; ++channel) {
-    values[channel] = factors[channel] * sums[channel];
-  }
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] void DrawnMedium::AtWithAvx2(const Places& in_cells,
+                                                     ChannelsAt* values) const {
+  Lanes<EightFloats>::EvaluateAll(*this, in_cells, values);
 }
+#endif
 
-glm::vec4 DrawnMedium::NoiseAt(const Layer& layer, const glm::vec3& in_cells, bool fibres) const {
-  constexpr int kSide = physics::DetailTile::kSide;
-  glm::vec3 tile = layer.corner + in_cells * layer.cell;
-  if (fibres) tile = fibres_ * tile;
-  const glm::vec3 texel = tile * static_cast<float>(kSide) - 0.5F;
-  const glm::ivec3 low = Floor(texel);
-  const std::array<float, kCorners> weights = Weights(texel - glm::vec3(low));
-  const std::array<glm::ivec3, 2> at = {low & (kSide - 1), (low + 1) & (kSide - 1)};
-  glm::vec4 sum(0.0F);
-  for (std::size_t i = 0; i < kCorners; ++i) {
-    const int row = at[i >> 2U].z * kSide + at[i >> 1U & 1U].y;
-    const std::uint8_t* bytes = layer.texels + 4 * (row * kSide + at[i & 1U].x);
-    sum += weights[i] * glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]);
-  }
-  return sum / 255.0F;
+void DrawnMedium::At(const Places& in_cells, ChannelsAt* values) const {
+#if defined(__x86_64__)
+  static const bool kHasAvx2 = __builtin_cpu_supports("avx2") != 0;
+  if (kHasAvx2) return AtWithAvx2(in_cells, values);
+#endif
+  Lanes<EightFloats>::EvaluateAll(*this, in_cells, values);
 }
 
 }  // namespace thunderhead::volume

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/lanes.h"
 #include "glm/mat3x3.hpp"
 #include "glm/vec3.hpp"
-#include "glm/vec4.hpp"
 #include "physics/detail_tile.h"
 #include "volume/detail_control.h"
 #include "volume/extinction.h"
@@ -43,6 +43,13 @@ class DrawnMedium {
   // outermost cells.
   Channels At(const glm::vec3& in_cells) const;
 
+  // At eight places, in less than half of the time.
+  struct Places {
+    std::array<float, base::kLanes> x, y, z;
+  };
+  using ChannelsAt = std::array<std::array<float, base::kLanes>, kMaxChannels>;
+  void At(const Places& in_cells, ChannelsAt* values) const;
+
  private:
   static constexpr std::size_t kCorners = 8;
 
@@ -53,17 +60,10 @@ class DrawnMedium {
     Channels shares;
   };
 
-  // A linear interpolation between cells.
-  struct Place {
-    std::size_t cell;  // the lowest
-    std::array<float, kCorners> weights;
-  };
+  template <typename Floats>
+  struct Lanes;
 
-  Place PlaceAt(const glm::vec3& in_cells) const;
-  glm::vec4 NoiseAt(const Layer& layer, const glm::vec3& in_cells, bool fibres) const;
-  template <std::size_t kPlaneChannels>
-  void AddPlane(const ExtinctionPlane& plane, const Place& from, const float* factors,
-                float* values) const;
+  void AtWithAvx2(const Places& in_cells, ChannelsAt* values) const;
 
   const DetailControl& control_;
   const ExtinctionVolume& volume_;

@@ -1,11 +1,10 @@
 #include "volume/water_paths.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <functional>
 #include <thread>
 #include <utility>
 
@@ -14,163 +13,41 @@
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "physics/chunked_work.h"
+#include "volume/drawn_columns.h"
 
 namespace thunderhead::volume {
 namespace {
 
-using Channels = DrawnMedium::Channels;
-
 // Of DetailTexel::column, a byte.
-constexpr float kLeastRest = 0.25F;
+constexpr float kLeastRest = 8.0F / DetailTexel::kColumnOne;
 constexpr float kMostRest = 255.0F / DetailTexel::kColumnOne;
+
+// Of each step.
+struct Points {
+  ColumnPoints first;
+  ColumnPoints second;
+};
+constexpr ColumnPoints kTwo = {.least_at_surface = 2, .least_elsewhere = 2};
+constexpr ColumnPoints kFew = {.least_at_surface = 8, .least_elsewhere = 2};
+constexpr ColumnPoints kMany = {
+    .at_surfaces = 1024, .elsewhere = 1024, .least_at_surface = 32, .least_elsewhere = 24};
+constexpr Points kQuickPoints = {kTwo, kFew};
+constexpr Points kFullPoints = {kFew, kMany};
 
 // Of a channel in a column, in the first step, and of its total, in the second.
 constexpr float kMostOfColumn = 4.0F;
 constexpr double kMostOfChannel = kMaxColumnFactor / kMostOfColumn;
 
-// A profile above which billows leave all that there is.
-constexpr std::uint8_t kInside = 250;
+// Rounds in which the second step's factors are found at first, and after detail has been made
+// weaker, which is done this often: with more, columns keep no more.
+constexpr int kTurns = 8;
+constexpr int kMoreTurns = 4;
+constexpr int kTimesWeaker = 3;
 
-// Rounds in which the second step's factors are found; with more, columns keep no more.
-constexpr int kTurns = 6;
-
-// The levels of a column at which there is anything, `high` not included.
-struct Levels {
-  int low = std::numeric_limits<int>::max();
-  int high = 0;
-};
-
-// The columns of a medium with detail.
-class Columns {
- public:
-  Columns(const DetailControl& control, const PlacedDetail& detail, const ExtinctionVolume& volume)
-      : medium_(control, detail, volume),
-        control_(control),
-        grid_(volume.grid),
-        levels_(volume.grid.Offset(0, 0, 1)) {
-    for (int z = 0; z < grid_.cells.z; ++z) {
-      const DetailTexel* texels = control.data() + grid_.Offset(0, 0, z);
-      for (std::size_t column = 0; column < levels_.size(); ++column) {
-        if (texels[column].profile == 0) continue;
-        levels_[column].low = std::min(levels_[column].low, z);
-        levels_[column].high = z + 1;
-      }
-    }
-  }
-
-  // Calls visit(z) for the levels of column (x, y) that may hold anything.
-  template <typename Visit>
-  void ForLevels(int x, int y, const Visit& visit) const {
-    const Levels levels = LevelsAround(x, y);
-    const int end = std::min(levels.high + 1, grid_.cells.z);
-    for (int z = std::max(levels.low - 1, 0); z < end; ++z) visit(z);
-  }
-
-  // The medium at a place from the middle of a cell, in cells.
-  Channels At(const glm::ivec3& cell, const glm::vec3& from_middle) const {
-    return medium_.At(glm::vec3(cell) + 0.5F + from_middle);
-  }
-
-  // True where billows may end.
-  bool HasSurface(const glm::ivec3& cell) const {
-    const DetailTexel& texel = control_[grid_.Offset(cell.x, cell.y, cell.z)];
-    const bool billows = texel.amplitude > DetailTexel::kNoAmplitude;
-    return billows && texel.profile > 0 && texel.profile < kInside;
-  }
-
- private:
-  Levels LevelsAround(int x, int y) const {
-    Levels around;
-    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, grid_.cells.y - 1); ++j) {
-      for (int i = std::max(x - 1, 0); i <= std::min(x + 1, grid_.cells.x - 1); ++i) {
-        const Levels& levels = levels_[grid_.Offset(i, j, 0)];
-        around.low = std::min(around.low, levels.low);
-        around.high = std::max(around.high, levels.high);
-      }
-    }
-    return around;
-  }
-
-  const DrawnMedium medium_;
-  const DetailControl& control_;
-  const RegularGrid& grid_;
-  std::vector<Levels> levels_;
-};
-
-// Two points in a cell of level z, from its middle: a quarter of a cell off along each axis, and on
-// other sides from level to level.
-std::array<glm::vec3, 2> TwoPoints(int z) {
-  const glm::vec3 point(0.25F, (z & 1) != 0 ? 0.25F : -0.25F, (z & 2) != 0 ? 0.25F : -0.25F);
-  return {-point, point};
-}
-
-// Nine, three by three across, every other one higher.
-std::array<glm::vec3, 9> NinePoints(int z) {
-  std::array<glm::vec3, 9> points;
-  for (int i = 0; i < 9; ++i) {
-    const glm::ivec2 across(i % 3 - 1, i / 3 - 1);
-    const float up = ((i + z) & 1) != 0 ? 0.25F : -0.25F;
-    points[static_cast<std::size_t>(i)] = {glm::vec2(across) / 3.0F, up};
-  }
-  return points;
-}
-
-// The sum over the levels of a column, by channel.
-Channels SumOf(const Columns& columns, int x, int y) {
-  Channels sums{};
-  columns.ForLevels(x, y, [&](int z) {
-    for (const glm::vec3& point : TwoPoints(z)) {
-      const Channels here = columns.At({x, y, z}, point);
-      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += here[i] / 2.0F;
-    }
-  });
-  return sums;
-}
-
-// Shares of the sum of a column's channels that interpolation takes from the 3 x 3 columns around
-// it, x fastest.
-using Shares = std::array<float, 9>;
-
-// Weights of linear interpolation at `from_middle` cells from the middle one of three.
-std::array<float, 3> LinearWeights(float from_middle) {
-  return {std::max(-from_middle, 0.0F), 1.0F - std::abs(from_middle), std::max(from_middle, 0.0F)};
-}
-
-// The sums over the levels of a column, as SumOf has them but from more points.
-struct Column {
-  Channels sums{};
-  Shares shares{};
-};
-
-Column ColumnOf(const Columns& columns, int x, int y) {
-  Column column;
-  columns.ForLevels(x, y, [&](int z) {
-    const glm::ivec3 cell(x, y, z);
-    const auto add = [&](const auto& points) {
-      for (const glm::vec3& point : points) {
-        const Channels here = columns.At(cell, point);
-        float all = 0.0F;
-        for (std::size_t i = 0; i < here.size(); ++i) {
-          const float part = here[i] / static_cast<float>(points.size());
-          column.sums[i] += part;
-          all += part;
-        }
-        const std::array<float, 3> across = LinearWeights(point.x);
-        const std::array<float, 3> along = LinearWeights(point.y);
-        for (std::size_t k = 0; k < column.shares.size(); ++k) {
-          column.shares[k] += all * across[k % 3] * along[k / 3];
-        }
-      }
-    };
-    // Inside a cloud, and among fibres, there is nothing as small as the surface of billows.
-    if (columns.HasSurface(cell)) {
-      add(NinePoints(z));
-    } else {
-      add(TwoPoints(z));
-    }
-  });
-  return column;
-}
+// Of what a column lacks in spite of the largest factor, detail is made so much weaker that it has
+// this share more than it should.
+constexpr float kRoom = 1.5F;
+constexpr float kNegligible = 0.005F;
 
 int ChannelsOf(const ExtinctionVolume& volume) {
   int channels = 0;
@@ -239,14 +116,13 @@ void ForColumns(const RegularGrid& grid, const Work& work) {
   });
 }
 
-std::vector<float> SumsWith(const DetailControl& control, const PlacedDetail& detail,
-                            const ExtinctionVolume& volume) {
-  const Columns columns(control, detail, volume);
+std::vector<float> SumsWith(const DrawnColumns& columns, const ExtinctionVolume& volume,
+                            const ColumnPoints& points) {
   const auto channels = static_cast<std::size_t>(ChannelsOf(volume));
   std::vector<float> sums(volume.grid.Offset(0, 0, 1) * channels);
   ForColumns(volume.grid, [&](int x, int y) {
-    const Channels column = SumOf(columns, x, y);
-    std::copy_n(column.data(), channels, sums.data() + volume.grid.Offset(x, y, 0) * channels);
+    const DrawnColumn column = columns.Sum({x, y}, points);
+    std::copy_n(column.sums.data(), channels, sums.data() + volume.grid.Offset(x, y, 0) * channels);
   });
   return sums;
 }
@@ -256,73 +132,127 @@ std::vector<float> SumsWith(const DetailControl& control, const PlacedDetail& de
 // detail.
 class Rests {
  public:
-  // `without` are sums by channel and column, as SumsWithout has them.
-  Rests(const DetailControl& control, const PlacedDetail& detail, const ExtinctionVolume& volume,
-        const std::vector<float>& without)
-      : size_(volume.grid.cells),
-        of_columns_(volume.grid.Offset(0, 0, 1), 1.0F),
+  // `without` are sums by channel and column, as SumsWithout has them; the columns' channels have
+  // been multiplied by `factors` since. All must outlive it.
+  Rests(const DrawnColumns& columns, const RegularGrid& grid, const std::vector<float>& without,
+        const std::vector<float>& factors, const ColumnPoints& points)
+      : columns_(columns),
+        points_(points),
+        grid_(grid),
+        without_(without),
+        factors_(factors),
+        of_columns_(grid.Offset(0, 0, 1), 1.0F),
         of_channels_(without.size() / of_columns_.size(), 1.0F),
-        shares_(of_columns_.size()),
-        sums_(without.size()) {
-    const Columns columns(control, detail, volume);
-    ForColumns(volume.grid, [&](int x, int y) {
-      const std::size_t at = volume.grid.Offset(x, y, 0);
-      const Column column = ColumnOf(columns, x, y);
-      shares_[at] = column.shares;
-      std::copy_n(column.sums.data(), of_channels_.size(), sums_.data() + at * of_channels_.size());
-    });
-    for (int turn = 0; turn < kTurns; ++turn) {
-      FitColumns(without);
-      FitChannels(without);
+        drawn_(of_columns_.size()) {
+    ForColumns(grid_, [&](int x, int y) { Evaluate(x, y); });
+    Fit(kTurns);
+  }
+
+  // By column, the share of detail's amplitude with which factors are large enough; 1 where they
+  // are.
+  std::vector<float> AmplitudesThatFit() const {
+    std::vector<float> shares(of_columns_.size(), 1.0F);
+    for (std::size_t column = 0; column < shares.size(); ++column) {
+      const Held held = HeldBy(column);
+      const float missing = held.wanted - held.now;
+      if (std::abs(missing) <= kNegligible * held.wanted) continue;
+      if (missing < 0.0F && of_columns_[column] <= kLeastRest) {
+        // The displacement, which is less with less amplitude, brings in too much.
+        shares[column] = 0.5F;
+      } else if (missing > 0.0F && of_columns_[column] >= kMostRest) {
+        const float enough = kRoom * held.wanted;
+        shares[column] =
+            held.smooth > enough ? (held.smooth - enough) / (held.smooth - held.now) : 0.0F;
+      }
     }
+    return shares;
+  }
+
+  // Call when detail's amplitude has been multiplied by `shares`.
+  void FitAgain(const std::vector<float>& shares) {
+    ForColumns(grid_, [&](int x, int y) {
+      bool changed = false;
+      for (int k = 0; k < 9; ++k) changed |= shares[Beside(x, y, k)] < 1.0F;
+      if (changed) Evaluate(x, y);
+    });
+    Fit(kMoreTurns);
   }
 
   const std::vector<float>& OfColumns() const { return of_columns_; }
   const std::vector<float>& OfChannels() const { return of_channels_; }
 
  private:
+  // By a column, of all channels together.
+  struct Held {
+    float wanted = 0.0F;
+    float now = 0.0F;
+    float smooth = 0.0F;  // with the same factors, were there no detail
+  };
+
+  // The index of the column `k` of 3 x 3 around another, x fastest.
+  std::size_t Beside(int x, int y, int k) const {
+    const int i = std::clamp(x + k % 3 - 1, 0, grid_.cells.x - 1);
+    const int j = std::clamp(y + k / 3 - 1, 0, grid_.cells.y - 1);
+    return grid_.Offset(i, j, 0);
+  }
+
+  void Evaluate(int x, int y) { drawn_[grid_.Offset(x, y, 0)] = columns_.Sum({x, y}, points_); }
+
+  Held HeldBy(std::size_t column) const {
+    Held held;
+    for (std::size_t i = 0; i < of_channels_.size(); ++i) {
+      const std::size_t at = column * of_channels_.size() + i;
+      held.wanted += without_[at];
+      held.now += of_channels_[i] * drawn_[column].sums[i];
+      held.smooth += of_channels_[i] * factors_[at] * without_[at];
+    }
+    const float between = Between(column);
+    held.now *= between;
+    held.smooth *= between;
+    return held;
+  }
+
   // The mean of the factors of a column and of those around it, weighted by what interpolation
   // takes from each.
-  float Between(int x, int y) const {
+  float Between(std::size_t column) const {
+    const int x = static_cast<int>(column) % grid_.cells.x;
+    const int y = static_cast<int>(column) / grid_.cells.x;
     float with = 0.0F;
     float before = 0.0F;
-    const Shares& shares = shares_[static_cast<std::size_t>(y * size_.x + x)];
     for (int k = 0; k < 9; ++k) {
-      const int i = std::clamp(x + k % 3 - 1, 0, size_.x - 1);
-      const int j = std::clamp(y + k / 3 - 1, 0, size_.y - 1);
-      const float share = shares[static_cast<std::size_t>(k)];
-      with += share * of_columns_[static_cast<std::size_t>(j * size_.x + i)];
+      const float share = drawn_[column].shares[static_cast<std::size_t>(k)];
+      with += share * of_columns_[Beside(x, y, k)];
       before += share;
     }
     return before > 0.0F ? with / before : 1.0F;
   }
 
-  void FitColumns(const std::vector<float>& without) {
-    std::vector<float> next(of_columns_.size());
+  void Fit(int turns) {
+    for (int turn = 0; turn < turns; ++turn) {
+      FitColumns();
+      FitChannels();
+    }
+  }
+
+  void FitColumns() {
+    std::vector<float> next(of_columns_.size(), 1.0F);
     for (std::size_t column = 0; column < next.size(); ++column) {
-      float wanted = 0.0F;
-      float has = 0.0F;
-      for (std::size_t i = 0; i < of_channels_.size(); ++i) {
-        wanted += without[column * of_channels_.size() + i];
-        has += of_channels_[i] * sums_[column * of_channels_.size() + i];
-      }
-      const auto at = static_cast<int>(column);
-      has *= Between(at % size_.x, at / size_.x);
+      const Held held = HeldBy(column);
+      if (held.now <= 0.0F) continue;
       next[column] =
-          has > 0.0F ? std::clamp(of_columns_[column] * wanted / has, kLeastRest, kMostRest) : 1.0F;
+          std::clamp(of_columns_[column] * held.wanted / held.now, kLeastRest, kMostRest);
     }
     of_columns_ = std::move(next);
   }
 
-  void FitChannels(const std::vector<float>& without) {
+  void FitChannels() {
     std::vector<double> wanted(of_channels_.size(), 0.0);
     std::vector<double> has(of_channels_.size(), 0.0);
     for (std::size_t column = 0; column < of_columns_.size(); ++column) {
-      const auto at = static_cast<int>(column);
-      const float between = Between(at % size_.x, at / size_.x);
+      const float between = Between(column);
       for (std::size_t i = 0; i < of_channels_.size(); ++i) {
-        wanted[i] += without[column * of_channels_.size() + i];
-        has[i] += between * sums_[column * of_channels_.size() + i];
+        wanted[i] += without_[column * of_channels_.size() + i];
+        has[i] += between * drawn_[column].sums[i];
       }
     }
     for (std::size_t i = 0; i < of_channels_.size(); ++i) {
@@ -333,34 +263,63 @@ class Rests {
     }
   }
 
-  glm::ivec2 size_;
+  const DrawnColumns& columns_;
+  const ColumnPoints points_;
+  const RegularGrid& grid_;
+  const std::vector<float>& without_;
+  const std::vector<float>& factors_;
   std::vector<float> of_columns_;
   std::vector<float> of_channels_;
-  std::vector<Shares> shares_;  // by column
-  std::vector<float> sums_;     // by column, channels beside each other
+  std::vector<DrawnColumn> drawn_;
 };
+
+// `shares` are by column.
+void ScaleAmplitudes(const std::vector<float>& shares, DetailControl* control) {
+  for (std::size_t i = 0; i < control->size(); ++i) {
+    std::uint8_t& amplitude = (*control)[i].amplitude;
+    const float from_none = static_cast<float>(amplitude - DetailTexel::kNoAmplitude);
+    amplitude = static_cast<std::uint8_t>(DetailTexel::kNoAmplitude +
+                                          std::lround(shares[i % shares.size()] * from_none));
+  }
+}
+
+// What rounding to a byte leaves goes to the next level.
+void StoreColumnFactors(const std::vector<float>& factors, DetailControl* control) {
+  std::vector<float> left(factors.size(), 0.0F);
+  for (std::size_t i = 0; i < control->size(); ++i) {
+    const std::size_t column = i % factors.size();
+    const float wanted = factors[column] * DetailTexel::kColumnOne + left[column];
+    const float byte = std::clamp(std::round(wanted), 0.0F, 255.0F);
+    left[column] = wanted - byte;
+    (*control)[i].column = static_cast<std::uint8_t>(byte);
+  }
+}
 
 }  // namespace
 
 std::vector<float> KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
-                                  ExtinctionVolume* volume) {
+                                  ExtinctionVolume* volume, WaterPathEffort effort) {
+  const Points& points = effort == WaterPathEffort::kQuick ? kQuickPoints : kFullPoints;
   const std::vector<float> without = SumsWithout(*volume);
-  std::vector<float> factors = SumsWith(*control, detail, *volume);
+  const DrawnColumns columns(*control, detail, *volume);
+  std::vector<float> factors = SumsWith(columns, *volume, points.first);
   std::transform(without.begin(), without.end(), factors.begin(), factors.begin(), FactorOf);
   ScaleColumns(factors, volume);
-  const Rests rests(*control, detail, *volume, without);
+  Rests rests(columns, volume->grid, without, factors, points.second);
+  for (int i = 0; i < kTimesWeaker; ++i) {
+    const std::vector<float> shares = rests.AmplitudesThatFit();
+    ScaleAmplitudes(shares, control);
+    rests.FitAgain(shares);
+  }
   const std::vector<float>& of_channels = rests.OfChannels();
   std::vector<float> of_totals(factors.size());
   for (std::size_t i = 0; i < factors.size(); ++i) {
     of_totals[i] = of_channels[i % of_channels.size()];
-    factors[i] *= of_totals[i];
   }
   ScaleColumns(of_totals, volume);
-  for (std::size_t i = 0; i < control->size(); ++i) {
-    const float of_column = rests.OfColumns()[i % rests.OfColumns().size()];
-    (*control)[i].column =
-        static_cast<std::uint8_t>(std::lround(of_column * DetailTexel::kColumnOne));
-  }
+  StoreColumnFactors(rests.OfColumns(), control);
+  std::transform(factors.begin(), factors.end(), of_totals.begin(), factors.begin(),
+                 std::multiplies<>());
   return factors;
 }
 

@@ -31,7 +31,7 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     std::vector<float> factors;
     std::vector<float> columns;
 
-    // Both are the same at all levels.
+    // Both are the same at all levels, but for the rounding of columns to bytes.
     double Of(const std::vector<float>& values, const glm::dvec3& world_m) const {
       const glm::dvec3 from_middle = (world_m - grid.low_corner_m) / grid.spacing_m - 0.5;
       const glm::dvec3 low = glm::floor(from_middle);

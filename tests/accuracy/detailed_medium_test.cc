@@ -83,7 +83,8 @@ TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
   EXPECT_LT(covered / kPixels, 0.95);
   // Rays end at a transmittance of 0.005, and llvmpipe interpolates textures of bytes with 8 bits.
   EXPECT_LT(off / kPixels, 0.004);
-  EXPECT_GT(off_without / kPixels, 0.02);
+  // Straight down, columns of cells hold as much without detail.
+  EXPECT_GT(off_without, 5.0 * off);
 }
 
 // Billows move through a storm that stays.

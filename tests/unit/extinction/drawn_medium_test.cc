@@ -39,5 +39,59 @@ TEST(DrawnMedium, DetailMovesWithTheWind) {
   EXPECT_GT(differ, 20);
 }
 
+// Whatever instructions the processor has for it.
+TEST(DrawnMedium, EightPlacesHaveWhatEachHas) {
+  for (const int channels : {1, 2, 3, 5}) {
+    HydrometeorFields fields;
+    fields.grid.cells = glm::ivec3(9, 7, 5);
+    fields.grid.spacing_m = glm::dvec3(500.0, 400.0, 300.0);
+    fields.condensate = {glm::ivec3(0), fields.grid.cells};
+    std::vector<ExtinctionTerm> terms;
+    for (int channel = 0; channel < channels; ++channel) {
+      HydrometeorField& field = fields.fields.emplace_back();
+      for (std::size_t i = 0; i < fields.grid.CellCount(); ++i) {
+        field.concentration_kg_per_m3.push_back(static_cast<float>((7 * i + 3) % 11) * 1e-4F);
+      }
+      terms.push_back({channel, 50.0F + 10.0F * static_cast<float>(channel), channel, false});
+    }
+    const ExtinctionVolume volume = ComputeExtinction(fields, terms, channels);
+    DetailControl control(volume.grid.CellCount());
+    for (std::size_t i = 0; i < control.size(); ++i) {
+      control[i].profile = i % 3 == 0 ? 0 : static_cast<std::uint8_t>((31 * i) % 256);
+      control[i].amplitude = static_cast<std::uint8_t>((57 * i) % 255 + 1);
+      control[i].column = static_cast<std::uint8_t>((13 * i) % 256);
+    }
+    const physics::DetailTile tile = physics::MakeDetailTile(2, 1);
+    PlacedDetail detail;
+    detail.layers = {{&tile, 12e3, {1.0F, 0.5F, 0.0F, 1.0F, 0.25F}},
+                     {&tile, 5e3, {0.0F, 0.5F, 1.0F, 0.0F, 0.75F}}};
+    detail.warp_m = glm::dvec3(200.0, 200.0, 100.0);
+    detail.fibres = physics::FibresAlong({20.0, -10.0});
+    const DrawnMedium medium(control, detail, volume);
+    double sum = 0.0;
+    for (int batch = 0; batch < 50; ++batch) {
+      DrawnMedium::Places places;
+      for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
+        const auto k = static_cast<float>(batch * 8 + static_cast<int>(lane));
+        // Some beyond the grid.
+        places.x[lane] = std::fmod(0.755F * k, 10.0F) - 0.5F;
+        places.y[lane] = std::fmod(0.57F * k, 8.0F) - 0.5F;
+        places.z[lane] = std::fmod(0.31F * k, 6.0F) - 0.5F;
+      }
+      DrawnMedium::ChannelsAt together;
+      medium.At(places, &together);
+      for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
+        const DrawnMedium::Channels alone =
+            medium.At({places.x[lane], places.y[lane], places.z[lane]});
+        for (std::size_t channel = 0; channel < alone.size(); ++channel) {
+          EXPECT_FLOAT_EQ(together[channel][lane], alone[channel]) << channels;
+          sum += double{alone[channel]};
+        }
+      }
+    }
+    EXPECT_GT(sum, 1.0);
+  }
+}
+
 }  // namespace
 }  // namespace thunderhead::volume

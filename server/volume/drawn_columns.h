@@ -1,0 +1,57 @@
+// What the columns of a medium with detail hold, from the medium at many points in each of their
+// cells. Knows no scene and no GL.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "glm/vec2.hpp"
+#include "volume/detail_control.h"
+#include "volume/drawn_medium.h"
+#include "volume/extinction.h"
+
+namespace thunderhead::volume {
+
+struct DrawnColumn {
+  DrawnMedium::Channels sums{};  // over the column's levels
+  // Shares of the sum of all channels that interpolation takes from the 3 x 3 columns around, x
+  // fastest.
+  std::array<float, 9> shares{};
+};
+
+// Points at which a column is evaluated: so many shared out among its cells in which billows may
+// end, and among all others, but at least so many in each.
+struct ColumnPoints {
+  int at_surfaces = 0;
+  int elsewhere = 0;
+  int least_at_surface = 1;
+  int least_elsewhere = 1;
+};
+
+class DrawnColumns {
+ public:
+  // All must outlive it. When the control of a column changes, so do the columns beside it.
+  DrawnColumns(const DetailControl& control, const PlacedDetail& detail,
+               const ExtinctionVolume& volume);
+
+  DrawnColumn Sum(const glm::ivec2& column, const ColumnPoints& points) const;
+
+ private:
+  // The levels at which there may be anything, `end` not included.
+  struct Levels {
+    int begin = 0;
+    int end = 0;
+  };
+
+  Levels LevelsOf(const glm::ivec2& column) const;
+  bool HasSurface(const glm::ivec3& cell) const;
+
+  const DrawnMedium medium_;
+  const DetailControl& control_;
+  const RegularGrid& grid_;
+  std::size_t channels_ = 0;
+  std::vector<Levels> occupied_;  // by column
+};
+
+}  // namespace thunderhead::volume
