@@ -1,6 +1,7 @@
 // The motion of the air that a file has, as far as detail finer than its grid depends on it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,6 +36,15 @@ inline constexpr float kAscentUnit_m_per_s = 0.25F;
 // Amplitude of detail, 0 to 1, where turbulence has this kinetic energy (at least 0).
 inline float TurbulentAmplitude(float energy_m2_per_s2) {
   return energy_m2_per_s2 / (energy_m2_per_s2 + kHalfAmplitudeEnergy_m2_per_s2);
+}
+
+// As AirMotion stores them, before rounding; of missing values 0.
+inline float TurbulenceByte(float energy_m2_per_s2) {
+  return energy_m2_per_s2 > 0.0F ? 255.0F * TurbulentAmplitude(std::min(energy_m2_per_s2, 1e6F))
+                                 : 0.0F;
+}
+inline float AscentByte(float upward_m_per_s) {
+  return upward_m_per_s > 0.0F ? upward_m_per_s / kAscentUnit_m_per_s : 0.0F;
 }
 
 }  // namespace thunderhead::volume

@@ -182,6 +182,29 @@ absl::Status CheckSameAxes(const NetcdfFile& file, const CfVariable& variable,
   return absl::OkStatus();
 }
 
+// What detail follows, as far as the file has it on the fields' own grid.
+void FindWind(const NetcdfFile& file, const std::vector<CfDescription>& variables,
+              CfMetadata* metadata) {
+  const auto has = [&](WindVariable wind) {
+    return std::ranges::find(metadata->wind, wind, &CfWindField::wind) != metadata->wind.end();
+  };
+  for (const CfDescription& variable : variables) {
+    const std::optional<WindVariable> wind = WindVariableOf(variable);
+    if (!wind.has_value() || has(*wind)) continue;
+    const auto shape = file.Shape(variable.name);
+    if (!shape.ok() || shape->size() < 3) continue;
+    absl::StatusOr<CfVariable> arranged = Arrange(file, variable.name);
+    if (!arranged.ok() || !CheckSameAxes(file, *arranged, *metadata).ok()) continue;
+    metadata->wind.push_back({*std::move(arranged), *wind});
+  }
+  if (has(WindVariable::kEastward) && has(WindVariable::kNorthward) && has(WindVariable::kUpward)) {
+    return;
+  }
+  std::erase_if(metadata->wind, [](const CfWindField& field) {
+    return field.wind != WindVariable::kTurbulentEnergy;
+  });
+}
+
 struct TimeUnits {
   absl::Time origin;
   double seconds = 1.0;
@@ -293,6 +316,7 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const NetcdfFile& file) {
   for (const CfAirField& field : metadata.air) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckSameAxes(file, field.variable, metadata));
   }
+  FindWind(file, variables, &metadata);
   THUNDERHEAD_RETURN_IF_ERROR(ReadCfTimes(file, &metadata));
   metadata.surface = FindSurface(file, variables, metadata);
   metadata.source = file.TextAttribute("", "title").value_or("");

@@ -36,6 +36,11 @@ struct CfAirField {
   CfAir air;
 };
 
+struct CfWindField {
+  CfVariable variable;
+  WindVariable wind;
+};
+
 // Radius of the sphere on which degrees become metres.
 inline constexpr double kCfEarthRadius_m = 6.371e6;
 
@@ -45,6 +50,8 @@ struct CfMetadata {
   std::vector<absl::Time> times;  // at least one; year 1 if the file gives none
   std::vector<CfField> fields;    // in the order of physics::kHydrometeors, or the extinction alone
   std::vector<CfAirField> air;    // only the variables that mixing ratios need
+  // Turbulent energy, and either all three components of the wind or none.
+  std::vector<CfWindField> wind;
   std::optional<std::string> surface;  // height of the ground (m) on y, x
   std::string source;                  // the file's title, else its source
 };

@@ -199,6 +199,33 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   return air;
 }
 
+std::optional<WindVariable> WindVariableOf(const CfDescription& variable) {
+  const std::string& standard = variable.standard_name;
+  const std::string name = absl::AsciiStrToLower(variable.name);
+  const bool plain = standard.empty();
+  const std::string units = PlainUnits(variable.units);
+  if (IsOneOf(units, {"ms-1", "m/s", "meterspersecond", "metrespersecond"})) {
+    if (IsOneOf(standard, {"eastward_wind", "x_wind", "grid_eastward_wind"}) ||
+        (plain && IsOneOf(name, {"u", "ua", "uinterp", "u_wind"}))) {
+      return WindVariable::kEastward;
+    }
+    if (IsOneOf(standard, {"northward_wind", "y_wind", "grid_northward_wind"}) ||
+        (plain && IsOneOf(name, {"v", "va", "vinterp", "v_wind"}))) {
+      return WindVariable::kNorthward;
+    }
+    if (standard == "upward_air_velocity" ||
+        (plain && IsOneOf(name, {"w", "wa", "winterp", "w_wind"}))) {
+      return WindVariable::kUpward;
+    }
+  }
+  if (IsOneOf(units, {"m2s-2", "m2/s2", "jkg-1", "j/kg"}) &&
+      (standard == "specific_turbulent_kinetic_energy_of_air" ||
+       (plain && IsOneOf(name, {"tke", "tke_pbl"})))) {
+    return WindVariable::kTurbulentEnergy;
+  }
+  return std::nullopt;
+}
+
 std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
   const std::string axis = absl::AsciiStrToUpper(coordinate.axis);
   if (axis == "X") return CfDirection::kX;

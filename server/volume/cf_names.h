@@ -47,6 +47,12 @@ struct CfAir {
 
 std::optional<CfAir> AirVariableOf(const CfDescription& variable);
 
+// Variables of the motion of the air.
+enum class WindVariable { kEastward, kNorthward, kUpward, kTurbulentEnergy };
+
+// Nothing if the variable is none of them, or not in m s-1 or m2 s-2.
+std::optional<WindVariable> WindVariableOf(const CfDescription& variable);
+
 enum class CfDirection { kX, kY, kZ, kTime };
 
 // The direction of a coordinate, from its axis attribute, standard name, units, `positive` or name.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -12,8 +13,10 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "physics/air.h"
+#include "volume/air_motion.h"
 #include "volume/field_scan.h"
 #include "volume/netcdf_file.h"
+#include "volume/wind_motion.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -21,6 +24,14 @@ namespace {
 // Values below kMinAmount are codes for "missing"; air never holds more than kMaxAmount.
 constexpr float kMinAmount = -0.5F;
 constexpr float kMaxAmount = 0.5F;
+
+std::vector<std::uint8_t> BytesOf(const std::vector<float>& values, float (*byte_of)(float)) {
+  std::vector<std::uint8_t> bytes(values.size());
+  std::ranges::transform(values, bytes.begin(), [&](float value) {
+    return static_cast<std::uint8_t>(std::min(byte_of(value) + 0.5F, 255.0F));
+  });
+  return bytes;
+}
 
 class CfTimeReader {
  public:
@@ -44,6 +55,8 @@ class CfTimeReader {
   std::vector<float> OntoGrid(std::vector<float> layers) const;
   void AddPaths(HydrometeorField* field) const;
   absl::Status ReadTerrain(HydrometeorFields* fields) const;
+  absl::StatusOr<std::vector<float>> ReadWind(WindVariable wind) const;
+  absl::Status ReadMotion(HydrometeorFields* fields) const;
   AirDensity MeanDensity(bool moist) const;
 
   const std::vector<float>* Air(AirVariable variable) const {
@@ -220,6 +233,52 @@ absl::Status CfTimeReader::ReadTerrain(HydrometeorFields* fields) const {
   return absl::OkStatus();
 }
 
+// On the grid; empty if the file does not have it.
+absl::StatusOr<std::vector<float>> CfTimeReader::ReadWind(WindVariable wind) const {
+  const auto field = std::ranges::find(metadata_.wind, wind, &CfWindField::wind);
+  if (field == metadata_.wind.end()) return std::vector<float>();
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> layers, ReadLayers(field->variable));
+  return OntoGrid(std::move(layers));
+}
+
+absl::Status CfTimeReader::ReadMotion(HydrometeorFields* fields) const {
+  AirMotion& motion = fields->motion;
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> energy, ReadWind(WindVariable::kTurbulentEnergy));
+  if (!energy.empty()) {
+    motion.source = TurbulenceSource::kEnergy;
+    motion.variable =
+        std::ranges::find(metadata_.wind, WindVariable::kTurbulentEnergy, &CfWindField::wind)
+            ->variable.name;
+  }
+  Wind wind = {.cells = grid_.cells, .dx_m = grid_.spacing_m.x, .dy_m = grid_.spacing_m.y};
+  THUNDERHEAD_ASSIGN_OR_RETURN(wind.u_m_per_s, ReadWind(WindVariable::kEastward));
+  THUNDERHEAD_ASSIGN_OR_RETURN(wind.v_m_per_s, ReadWind(WindVariable::kNorthward));
+  THUNDERHEAD_ASSIGN_OR_RETURN(wind.w_m_per_s, ReadWind(WindVariable::kUpward));
+  if (!wind.u_m_per_s.empty()) {
+    std::vector<double> interface_height_m;
+    for (int level = 0; level <= grid_.cells.z; ++level) {
+      interface_height_m.push_back(grid_.low_corner_m.z + level * grid_.spacing_m.z);
+    }
+    if (energy.empty()) {
+      for (int level = 0; level < grid_.cells.z; ++level) {
+        const double middle_m =
+            interface_height_m[static_cast<std::size_t>(level)] + 0.5 * grid_.spacing_m.z;
+        wind.height_m.insert(wind.height_m.end(), grid_.Offset(0, 0, 1),
+                             static_cast<float>(middle_m));
+      }
+      energy = EnergyOfDeformation(wind);
+      motion.source = TurbulenceSource::kDeformation;
+    }
+    motion.ascent = BytesOf(wind.w_m_per_s, AscentByte);
+    const std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, grid_.cells.z);
+    motion.steering_m_per_s = SteeringWind_m_per_s(winds, interface_height_m);
+    motion.shear_m_per_s = Shear_m_per_s(*fields, winds, interface_height_m);
+    motion.time_s = absl::ToDoubleSeconds(metadata_.times[record_] - absl::UnixEpoch());
+  }
+  motion.turbulence = BytesOf(energy, TurbulenceByte);
+  return absl::OkStatus();
+}
+
 // Fields that refer to moist and to dry air in one file share the density of the first one.
 AirDensity CfTimeReader::MeanDensity(bool moist) const {
   const CfAxis& axis = metadata_.axes[2];
@@ -247,7 +306,7 @@ AirDensity CfTimeReader::MeanDensity(bool moist) const {
 }
 
 absl::StatusOr<HydrometeorFields> CfTimeReader::Read(const ReadCheckpoint& checkpoint) {
-  const auto steps = static_cast<double>(metadata_.fields.size() + 1);
+  const auto steps = static_cast<double>(metadata_.fields.size() + metadata_.wind.size() + 1);
   const auto advance = [&](double done) {
     return checkpoint ? checkpoint(done / steps) : absl::OkStatus();
   };
@@ -272,6 +331,8 @@ absl::StatusOr<HydrometeorFields> CfTimeReader::Read(const ReadCheckpoint& check
       std::ranges::find(metadata_.fields, Quantity::kMixingRatio,
                         [](const CfField& field) { return field.quantity.quantity; });
   if (ratio != metadata_.fields.end()) result.air = MeanDensity(ratio->quantity.of_moist_air);
+  THUNDERHEAD_RETURN_IF_ERROR(advance(static_cast<double>(result.fields.size() + 1)));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadMotion(&result));
   THUNDERHEAD_RETURN_IF_ERROR(advance(steps));
   return result;
 }

@@ -14,7 +14,7 @@
 #include "volume/field_scan.h"
 #include "volume/layer_air.h"
 #include "volume/netcdf_file.h"
-#include "volume/wrf_motion.h"
+#include "volume/wind_motion.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -360,36 +360,6 @@ std::vector<std::uint8_t> TimeReader::RemapBytes(const std::vector<float>& value
   return bytes;
 }
 
-// The mean height of the mass of cloud water, or of all that is frozen.
-std::optional<double> MeanHeight_m(const HydrometeorFields& fields, bool frozen) {
-  double mass = 0.0;
-  double moment = 0.0;
-  const RegularGrid& grid = fields.grid;
-  const std::size_t layer = grid.Offset(0, 0, 1);
-  for (const HydrometeorField& field : fields.fields) {
-    const bool cloud = field.hydrometeor == Hydrometeor::kCloud;
-    const bool rain = field.hydrometeor == Hydrometeor::kRain;
-    if (field.concentration_kg_per_m3.empty() || (frozen ? cloud || rain : !cloud)) continue;
-    for (int z = 0; z < grid.cells.z; ++z) {
-      const float* first =
-          field.concentration_kg_per_m3.data() + static_cast<std::size_t>(z) * layer;
-      const double sum = std::accumulate(first, first + layer, 0.0);
-      mass += sum;
-      moment += sum * (grid.low_corner_m.z + (z + 0.5) * grid.spacing_m.z);
-    }
-  }
-  if (mass <= 0.0) return std::nullopt;
-  return moment / mass;
-}
-
-// The wind at a height of the first column's layers, by `winds` of each level.
-glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds, const LayerAir& air) {
-  std::size_t level = 0;
-  const auto top_m = [&](std::size_t i) { return air.interface_height_m[(i + 1) * air.columns]; };
-  while (level + 1 < winds.size() && static_cast<double>(top_m(level)) < height_m) ++level;
-  return winds[level];
-}
-
 absl::Status TimeReader::ReadMotion(HydrometeorFields& result) {
   AirMotion& motion = result.motion;
   std::vector<float> energy;
@@ -401,26 +371,24 @@ absl::Status TimeReader::ReadMotion(HydrometeorFields& result) {
   if (metadata_.has_wind) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const StaggeredWind wind, ReadWind());
     if (energy.empty()) {
-      energy = EnergyOfDeformation(wind, air_.interface_height_m);
+      energy = EnergyOfDeformation(WindInCells(wind, air_.interface_height_m));
       motion.source = TurbulenceSource::kDeformation;
     }
     std::vector<float> ascent = LayerMeans(wind.w_m_per_s, air_.levels, air_.columns);
-    for (float& value : ascent) value = value > 0.0F ? value / kAscentUnit_m_per_s : 0.0F;
+    std::ranges::transform(ascent, ascent.begin(), AscentByte);
     motion.ascent = RemapBytes(ascent);
-    const std::vector<glm::dvec2> winds = MeanWinds(wind);
+    const std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, wind.cells.z);
     motion.steering_m_per_s =
         SteeringWind_m_per_s(winds, LevelMeans(air_.interface_height_m, air_.levels + 1));
     motion.time_s = absl::ToDoubleSeconds(metadata_.times[record_] - absl::UnixEpoch());
-    const std::optional<double> cloud_m = MeanHeight_m(result, false);
-    const std::optional<double> ice_m = MeanHeight_m(result, true);
-    if (cloud_m.has_value() && ice_m.has_value()) {
-      motion.shear_m_per_s = WindAt(*ice_m, winds, air_) - WindAt(*cloud_m, winds, air_);
+    std::vector<double> first_column_m;
+    for (std::size_t i = 0; i < air_.interface_height_m.size(); i += air_.columns) {
+      first_column_m.push_back(air_.interface_height_m[i]);
     }
+    motion.shear_m_per_s = Shear_m_per_s(result, winds, first_column_m);
   }
   if (energy.empty()) return absl::OkStatus();
-  for (float& value : energy) {
-    value = value > 0.0F ? 255.0F * TurbulentAmplitude(std::min(value, 1e6F)) : 0.0F;
-  }
+  std::ranges::transform(energy, energy.begin(), TurbulenceByte);
   motion.turbulence = RemapBytes(energy);
   return absl::OkStatus();
 }

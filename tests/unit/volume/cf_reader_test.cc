@@ -356,6 +356,79 @@ TEST_F(CfReader, SaysWhatAFileLacks) {
   ExpectError(file, "q");
 }
 
+// Cloud water below ice, and wind that grows with height: two layers of 50 m.
+SyntheticCf Windy() {
+  SyntheticCf file = Water("lwc", {{"units", "kg m-3"}}, 0.0);
+  file.variables[0].value = [](const Index& at) { return at.at("z") == 0 ? 1e-3 : 0.0; };
+  CfContent ice = file.variables[0];
+  ice.name = "iwc";
+  ice.value = [](const Index& at) { return at.at("z") == 1 ? 1e-4 : 0.0; };
+  file.variables.push_back(ice);
+  CfContent eastward = UniformField("u", "m s-1", 0.0);
+  eastward.value = [](const Index& at) { return at.at("z") == 0 ? 4.0 : 10.0; };
+  file.variables.push_back(eastward);
+  file.variables.push_back(UniformField("V_north", "m/s", -3.0));
+  file.variables.back().attributes["standard_name"] = "northward_wind";
+  file.variables.push_back(UniformField("winterp", "m s**-1", 2.0));
+  return file;
+}
+
+TEST_F(CfReader, TurbulenceIsThatOfTheWindsDeformation) {
+  const auto fields = Read(Windy());
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const AirMotion& motion = (*fields)->motion;
+  EXPECT_EQ(motion.source, TurbulenceSource::kDeformation);
+  EXPECT_EQ(motion.shear_m_per_s, glm::dvec2(6.0, 0.0));
+  EXPECT_EQ(motion.steering_m_per_s, glm::dvec2(7.0, -3.0));
+  ASSERT_THAT(motion.ascent, SizeIs((*fields)->grid.CellCount()));
+  EXPECT_EQ(motion.ascent[7], 8);  // in 0.25 m/s
+  // Shear of 6 m/s on 50 m, in cells of 100 x 200 x 50 m.
+  const double root = 0.4 * std::cbrt(100.0 * 200.0 * 50.0) * 6.0 / 50.0;
+  ASSERT_THAT(motion.turbulence, SizeIs((*fields)->grid.CellCount()));
+  EXPECT_NEAR(motion.turbulence[7], 255.0 * root * root / (root * root + 0.25), 1.0);
+}
+
+TEST_F(CfReader, TurbulenceIsTheFilesOwnWhereItHasSome) {
+  SyntheticCf file = Windy();
+  file.variables.push_back(UniformField("tke", "m2 s-2", 0.25));
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, TurbulenceSource::kEnergy);
+  EXPECT_EQ((*fields)->motion.variable, "tke");
+  EXPECT_EQ((*fields)->motion.turbulence[7], 128);
+  EXPECT_EQ((*fields)->motion.shear_m_per_s, glm::dvec2(6.0, 0.0));
+  // Without one component there is no wind; the energy stays.
+  file.variables.erase(file.variables.begin() + 4);
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, TurbulenceSource::kEnergy);
+  EXPECT_TRUE((*fields)->motion.ascent.empty());
+}
+
+TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
+  // Pressure velocity; wind on a grid of its own, as CM1 has it; missing values.
+  SyntheticCf file = Windy();
+  file.variables[4].attributes["units"] = "Pa s-1";
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, TurbulenceSource::kGradient);
+  EXPECT_TRUE((*fields)->motion.turbulence.empty());
+  file = Windy();
+  file.coordinates.push_back({"xf", {-250.0, -150.0, -50.0, 50.0, 150.0}, {{"units", "m"}}, {}});
+  file.variables[2].dimensions = {"z", "y", "xf"};
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, TurbulenceSource::kGradient);
+  file = Windy();
+  file.variables[2].value = [](const Index& at) {
+    return at.at("x") == 0 ? std::nan("") : 5.0 + static_cast<double>(at.at("z"));
+  };
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.turbulence[0], 0);
+  EXPECT_EQ((*fields)->motion.shear_m_per_s, glm::dvec2(1.0, 0.0));
+}
+
 TEST(CfNames, UnitsAreReadInTheirSpellings) {
   EXPECT_EQ(PlainUnits("kg m**-3"), "kgm-3");
   EXPECT_EQ(PlainUnits("g.m^(-3)"), "gm-3");

@@ -1,4 +1,4 @@
-#include "volume/wrf_motion.h"
+#include "volume/wind_motion.h"
 
 #include <cmath>
 #include <functional>
@@ -46,7 +46,7 @@ const Component kStill = [](double, double, double) { return 0.0; };
 TEST(EnergyOfDeformation, IsZeroInSolidRotation) {
   const StaggeredWind wind = WindOf([](double, double y_m, double) { return -0.01 * y_m; },
                                     [](double x_m, double, double) { return 0.01 * x_m; }, kStill);
-  for (const float energy : EnergyOfDeformation(wind, Heights(wind.cells))) {
+  for (const float energy : EnergyOfDeformation(WindInCells(wind, Heights(wind.cells)))) {
     EXPECT_NEAR(energy, 0.0, 1e-6);
   }
 }
@@ -56,12 +56,12 @@ TEST(EnergyOfDeformation, IsThatOfShearAndOfStretching) {
   const double unit = std::pow(0.4 * length_m * 0.01, 2);
   const StaggeredWind shear =
       WindOf([](double, double, double z_m) { return 0.01 * z_m; }, kStill, kStill);
-  for (const float energy : EnergyOfDeformation(shear, Heights(shear.cells))) {
+  for (const float energy : EnergyOfDeformation(WindInCells(shear, Heights(shear.cells)))) {
     EXPECT_NEAR(energy / unit, 1.0, 1e-3);
   }
   const StaggeredWind stretch =
       WindOf(kStill, kStill, [](double, double, double z_m) { return 0.01 * z_m; });
-  for (const float energy : EnergyOfDeformation(stretch, Heights(stretch.cells))) {
+  for (const float energy : EnergyOfDeformation(WindInCells(stretch, Heights(stretch.cells)))) {
     EXPECT_NEAR(energy / unit, 2.0, 2e-3);
   }
 }
@@ -70,7 +70,7 @@ TEST(EnergyOfDeformation, IsZeroWhereWindIsMissing) {
   StaggeredWind wind =
       WindOf([](double, double, double z_m) { return 0.01 * z_m; }, kStill, kStill);
   wind.u_m_per_s[0] = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<float> energy = EnergyOfDeformation(wind, Heights(wind.cells));
+  const std::vector<float> energy = EnergyOfDeformation(WindInCells(wind, Heights(wind.cells)));
   EXPECT_EQ(energy[0], 0.0F);
   EXPECT_GT(energy.back(), 0.0F);
 }
@@ -82,7 +82,7 @@ TEST(LayerMeans, LieBetweenInterfaces) {
 TEST(MeanWinds, AreThoseOfEachLevel) {
   const StaggeredWind wind = WindOf([](double, double, double z_m) { return 0.01 * z_m; },
                                     [](double, double, double) { return -3.0; }, kStill);
-  const std::vector<glm::dvec2> winds = MeanWinds(wind);
+  const std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, wind.cells.z);
   ASSERT_EQ(winds.size(), 6U);
   EXPECT_NEAR(winds[0].x, 0.5, 1e-6);
   EXPECT_NEAR(winds[5].x, 5.5, 1e-6);

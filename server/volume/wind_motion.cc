@@ -1,8 +1,10 @@
-#include "volume/wrf_motion.h"
+#include "volume/wind_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <optional>
 #include <tuple>
 
 #include "glm/geometric.hpp"
@@ -14,9 +16,9 @@ namespace {
 constexpr double kSteeringDepth_m = 6e3;
 constexpr float kEnergyOfDeformation = 0.4F;  // root of the energy over l |D|: 0.2^2 / 0.1
 
-// One component of the wind at the middles of cells, and how a cell's offset changes along axes.
+// Values at the middles of cells.
 struct Centred {
-  std::vector<float> values;
+  const std::vector<float>& values;
   glm::ivec3 cells;
 
   float At(int x, int y, int z) const {
@@ -30,24 +32,24 @@ struct Centred {
   }
 };
 
-// From faces that lie along `axis`.
-Centred CentredOf(const std::vector<float>& faces, const glm::ivec3& cells, int axis) {
+// Means of both faces along `axis`.
+std::vector<float> MiddlesOf(const std::vector<float>& faces, const glm::ivec3& cells, int axis) {
   glm::ivec3 size = cells;
   size[axis] += 1;
   const auto width = static_cast<std::size_t>(size.x);
   const auto layer = width * static_cast<std::size_t>(size.y);
   const std::size_t stride = axis == 0 ? 1 : axis == 1 ? width : layer;
-  Centred centred{{}, cells};
-  centred.values.reserve(static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y) *
-                         static_cast<std::size_t>(cells.z));
+  std::vector<float> middles;
+  middles.reserve(static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y) *
+                  static_cast<std::size_t>(cells.z));
   for (int z = 0; z < cells.z; ++z) {
     for (int y = 0; y < cells.y; ++y) {
       const float* row =
           faces.data() + static_cast<std::size_t>(z) * layer + static_cast<std::size_t>(y) * width;
-      for (int x = 0; x < cells.x; ++x) centred.values.push_back(0.5F * (row[x] + row[x + stride]));
+      for (int x = 0; x < cells.x; ++x) middles.push_back(0.5F * (row[x] + row[x + stride]));
     }
   }
-  return centred;
+  return middles;
 }
 
 // Distances of the middles of a cell's neighbours.
@@ -72,22 +74,61 @@ float DeformationSquared(const glm::vec3& u, const glm::vec3& v, const glm::vec3
   return 2.0F * (u.x * u.x + v.y * v.y + w.z * w.z) + xy * xy + xz * xz + yz * yz;
 }
 
+// The mean height of the mass of cloud water, or of all that is frozen.
+std::optional<double> MeanHeight_m(const HydrometeorFields& fields, bool frozen) {
+  double mass = 0.0;
+  double moment = 0.0;
+  const RegularGrid& grid = fields.grid;
+  const std::size_t layer = grid.Offset(0, 0, 1);
+  for (const HydrometeorField& field : fields.fields) {
+    const bool cloud = field.hydrometeor == physics::Hydrometeor::kCloud;
+    const bool rain = field.hydrometeor == physics::Hydrometeor::kRain;
+    if (field.concentration_kg_per_m3.empty() || (frozen ? cloud || rain : !cloud)) continue;
+    for (int z = 0; z < grid.cells.z; ++z) {
+      const float* first =
+          field.concentration_kg_per_m3.data() + static_cast<std::size_t>(z) * layer;
+      const double sum = std::accumulate(first, first + layer, 0.0);
+      mass += sum;
+      moment += sum * (grid.low_corner_m.z + (z + 0.5) * grid.spacing_m.z);
+    }
+  }
+  if (mass <= 0.0) return std::nullopt;
+  return moment / mass;
+}
+
+// The wind of the level at a height.
+glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds,
+                  const std::vector<double>& interface_height_m) {
+  std::size_t level = 0;
+  while (level + 1 < winds.size() && interface_height_m[level + 1] < height_m) ++level;
+  return winds[level];
+}
+
 }  // namespace
 
-std::vector<float> EnergyOfDeformation(const StaggeredWind& wind,
-                                       const std::vector<float>& interface_height_m) {
+Wind WindInCells(const StaggeredWind& wind, const std::vector<float>& interface_height_m) {
+  return {wind.cells,
+          wind.dx_m,
+          wind.dy_m,
+          MiddlesOf(wind.u_m_per_s, wind.cells, 0),
+          MiddlesOf(wind.v_m_per_s, wind.cells, 1),
+          MiddlesOf(wind.w_m_per_s, wind.cells, 2),
+          MiddlesOf(interface_height_m, wind.cells, 2)};
+}
+
+std::vector<float> EnergyOfDeformation(const Wind& wind) {
   const glm::ivec3& cells = wind.cells;
-  const Centred u = CentredOf(wind.u_m_per_s, cells, 0);
-  const Centred v = CentredOf(wind.v_m_per_s, cells, 1);
-  const Centred w = CentredOf(wind.w_m_per_s, cells, 2);
-  const Centred height_m = CentredOf(interface_height_m, cells, 2);
+  const Centred u{wind.u_m_per_s, cells};
+  const Centred v{wind.v_m_per_s, cells};
+  const Centred w{wind.w_m_per_s, cells};
+  const Centred height_m{wind.height_m, cells};
   const auto between = [](int at, int count) {
     return static_cast<float>(std::min(at + 1, count - 1) - std::max(at - 1, 0));
   };
   const auto dx_m = static_cast<float>(wind.dx_m);
   const auto dy_m = static_cast<float>(wind.dy_m);
   std::vector<float> energy;
-  energy.reserve(u.values.size());
+  energy.reserve(wind.u_m_per_s.size());
   for (int z = 0; z < cells.z; ++z) {
     for (int y = 0; y < cells.y; ++y) {
       for (int x = 0; x < cells.x; ++x) {
@@ -132,9 +173,10 @@ std::vector<double> LevelMeans(const std::vector<float>& values, int levels) {
   return means;
 }
 
-std::vector<glm::dvec2> MeanWinds(const StaggeredWind& wind) {
-  const std::vector<double> u = LevelMeans(wind.u_m_per_s, wind.cells.z);
-  const std::vector<double> v = LevelMeans(wind.v_m_per_s, wind.cells.z);
+std::vector<glm::dvec2> MeanWinds(const std::vector<float>& u_m_per_s,
+                                  const std::vector<float>& v_m_per_s, int levels) {
+  const std::vector<double> u = LevelMeans(u_m_per_s, levels);
+  const std::vector<double> v = LevelMeans(v_m_per_s, levels);
   std::vector<glm::dvec2> winds;
   for (std::size_t level = 0; level < u.size(); ++level) {
     winds.emplace_back(std::isnan(u[level]) ? 0.0 : u[level],
@@ -157,6 +199,14 @@ glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
   }
   const glm::dvec2 mean = depth_m > 0.0 ? sum / depth_m : glm::dvec2(0.0);
   return glm::length(mean) <= kMaxSteering_m_per_s ? mean : glm::dvec2(0.0);
+}
+
+glm::dvec2 Shear_m_per_s(const HydrometeorFields& fields, const std::vector<glm::dvec2>& winds,
+                         const std::vector<double>& interface_height_m) {
+  const std::optional<double> cloud_m = MeanHeight_m(fields, false);
+  const std::optional<double> ice_m = MeanHeight_m(fields, true);
+  if (!cloud_m.has_value() || !ice_m.has_value()) return glm::dvec2(0.0);
+  return WindAt(*ice_m, winds, interface_height_m) - WindAt(*cloud_m, winds, interface_height_m);
 }
 
 }  // namespace thunderhead::volume
