@@ -215,7 +215,8 @@ DetailControl DetailControlOf(const HydrometeorFields& fields,
   Smooth(grid.cells, &weight);
   DetailControl texels(amplitude.size());
   for (std::size_t i = 0; i < amplitude.size(); ++i) {
-    if (opacity[i] > 0.0F) texels[i].profile = ByteOf(255.0F * profile[i]);
+    texels[i].profile = ByteOf(255.0F * profile[i]);
+    if (opacity[i] > 0.0F) texels[i].occupied = 255;
     if (weight[i] > 0.0F) {
       texels[i].amplitude = ByteOf(DetailTexel::kNoAmplitude + 127.0F * amplitude[i] / weight[i]);
     }

@@ -107,7 +107,7 @@ DrawnColumns::DrawnColumns(const DetailControl& control, const PlacedDetail& det
   for (int z = 0; z < grid_.cells.z; ++z) {
     const DetailTexel* texels = control.data() + grid_.Offset(0, 0, z);
     for (std::size_t column = 0; column < occupied_.size(); ++column) {
-      if (texels[column].profile == 0) continue;
+      if (texels[column].occupied == 0) continue;
       occupied_[column].begin = std::min(occupied_[column].begin, z);
       occupied_[column].end = z + 1;
     }
@@ -165,7 +165,7 @@ DrawnColumns::Levels DrawnColumns::LevelsOf(const glm::ivec2& column) const {
 bool DrawnColumns::HasSurface(const glm::ivec3& cell) const {
   const DetailTexel& texel = control_[grid_.Offset(cell.x, cell.y, cell.z)];
   const bool billows = texel.amplitude > DetailTexel::kNoAmplitude;
-  return billows && texel.profile > 0 && texel.profile < kInside;
+  return billows && texel.occupied > 0 && texel.profile < kInside;
 }
 
 }  // namespace thunderhead::volume

@@ -182,6 +182,7 @@ struct DrawnMedium::Lanes {
       Floats profile{};
       Floats amplitude{};
       Floats column{};
+      Floats occupied{};
       for (std::size_t i = 0; i < kCorners; ++i) {
         Whole word;
         static_assert(sizeof(DetailTexel) == 4);
@@ -194,15 +195,18 @@ struct DrawnMedium::Lanes {
         amplitude += here.weights[i] * byte;
         ByteOf<2>(word, &byte);
         column += here.weights[i] * byte;
+        ByteOf<3>(word, &byte);
+        occupied += here.weights[i] * byte;
       }
       // Where it is empty nothing is drawn, and nothing is displaced to there.
-      if (!AnyAbove(0.0F, profile)) {
+      if (!AnyAbove(0.0F, occupied)) {
         for (Floats& value : *values) value = Floats{};
         return;
       }
       profile /= 255.0F;
+      occupied /= 255.0F;
       amplitude = (amplitude - 128.0F) / 127.0F;
-      Floats factor = profile > 0.0F ? column : Floats{};
+      Floats factor = occupied > 0.0F ? column : Floats{};
       ForLanes([](float texel) { return physics::glsl::detail_column_factor(texel / 255.0F); },
                &factor, factor);
       for (Floats& value : *values) value *= factor;
@@ -212,11 +216,8 @@ struct DrawnMedium::Lanes {
         FindNoise(medium, layer, in_cells, fibres, &noise);
         if (&layer == medium.layers_.data()) {
           Floats share;
-          ForLanes(
-              [](float p, float a) {
-                return physics::glsl::detail_warp_share({p, a});
-              },
-              &share, profile, amplitude);
+          ForLanes([](float o, float a) { return physics::glsl::detail_warp_share(o, a); }, &share,
+                   occupied, amplitude);
           displaced.x += share * medium.warp_.x * (2.0F * noise.x - 1.0F);
           displaced.y += share * medium.warp_.y * (2.0F * noise.y - 1.0F);
           displaced.z += share * medium.warp_.z * (2.0F * noise.z - 1.0F);

@@ -29,10 +29,11 @@ struct Points {
 };
 constexpr ColumnPoints kTwo = {.least_at_surface = 2, .least_elsewhere = 2};
 constexpr ColumnPoints kFew = {.least_at_surface = 8, .least_elsewhere = 2};
+constexpr ColumnPoints kMore = {.least_at_surface = 16, .least_elsewhere = 4};
 constexpr ColumnPoints kMany = {
     .at_surfaces = 1024, .elsewhere = 1024, .least_at_surface = 32, .least_elsewhere = 24};
 constexpr Points kQuickPoints = {kTwo, kFew};
-constexpr Points kFullPoints = {kFew, kMany};
+constexpr Points kFullPoints = {kMore, kMany};
 
 // Of a channel in a column, in the first step, and of its total, in the second.
 constexpr float kMostOfColumn = 4.0F;

@@ -79,7 +79,7 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     const double tile_m = detail.wavelength_m * double{physics::DetailTile::kWaves};
     const glm::dmat3 fibres = physics::FibresAlong({0.0, 0.0});
     const glm::vec2 control(1.0F, Amplitude());
-    const glm::dvec3 warp_m = double{physics::glsl::detail_warp_share(control)} *
+    const glm::dvec3 warp_m = double{physics::glsl::detail_warp_share(1.0F, Amplitude())} *
                               physics::DetailWarp_m(kept.grid.spacing_m, detail.wavelength_m);
     const glm::dvec3 direction = scene::Direction(kViewAzimuth_deg, elevation_deg);
     const double half_m = kHeight_m / 2 / direction.z;

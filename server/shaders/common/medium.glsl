@@ -53,7 +53,7 @@ struct Medium {
 Medium medium_at_place(vec3 place, float distance_m) {
 #if DETAILS > 0
   // An amplitude of 0 is a texel of 128 of 255.
-  vec3 here = texture(detail_control, place).rgb;
+  vec4 here = texture(detail_control, place);
   vec2 control = here.rg * vec2(1.0, 255.0 / 127.0) - vec2(0.0, 128.0 / 127.0);
   float column_factor = detail_column_factor(here.b);
   vec4 noise[DETAILS];
@@ -65,7 +65,7 @@ Medium medium_at_place(vec3 place, float distance_m) {
     noise[i] = mix(texture(detail_noise[i], tile), vec4(0.5), fade);
     faded[i] = max(detail_left_out[i], fade);
   }
-  place += detail_warp_share(control) * detail_warp * (noise[0].gba * 2.0 - 1.0);
+  place += detail_warp_share(here.a, control.y) * detail_warp * (noise[0].gba * 2.0 - 1.0);
 #endif
   Medium medium;
   medium.plane[0] = texture(medium_plane_0, place);

@@ -27,7 +27,8 @@ PHYSICS_FUNCTION float detail_factor(vec2 control, float noise, float faded) {
   return 1.0f + abs(control.y) * ((control.y > 0.0f ? billows : fibres) - 1.0f);
 }
 
-// The share of the full warp by which the medium is displaced; none at the faces of empty space.
-PHYSICS_FUNCTION float detail_warp_share(vec2 control) {
-  return min(1.5f * control.x, 1.0f) * (kMinWarp + (1.0f - kMinWarp) * abs(control.y));
+// The share of the full warp by which the medium is displaced. `occupied` falls to 0 where the cells around are empty, so that
+// nothing is displaced to there.
+PHYSICS_FUNCTION float detail_warp_share(float occupied, float amplitude) {
+  return occupied * (kMinWarp + (1.0f - kMinWarp) * abs(amplitude));
 }

@@ -57,7 +57,13 @@ void SetAscent(float ascent_m_per_s, HydrometeorFields* fields) {
 TEST(DetailControl, ProfileRisesFromEmptyCellsInwards) {
   const Control control(BlockOf(Hydrometeor::kCloud));
   ASSERT_EQ(control.volume.grid.cells, glm::ivec3(12));  // with a border of empty cells
-  EXPECT_EQ(control.Profile(0, 5, 5), 0);
+  EXPECT_EQ(control.At(0, 5, 5).occupied, 0);
+  EXPECT_EQ(control.At(1, 5, 5).occupied, 255);
+  EXPECT_GT(control.Profile(0, 5, 5), 0);
+  EXPECT_LT(control.Profile(0, 5, 5), 127);
+  // The surface is nearly the face between the two.
+  EXPECT_NEAR(control.Profile(0, 5, 5) + control.Profile(1, 5, 5), 255, 20);
+  EXPECT_LT(control.Profile(0, 1, 1), control.Profile(0, 5, 5));
   EXPECT_GT(control.Profile(1, 5, 5), 100);
   EXPECT_GT(control.Profile(2, 5, 5), control.Profile(1, 5, 5));
   EXPECT_EQ(control.Profile(5, 5, 5), 255);

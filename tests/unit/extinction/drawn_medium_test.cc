@@ -18,7 +18,8 @@ TEST(DrawnMedium, DetailMovesWithTheWind) {
   fields.fields[0].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-3F);
   const ExtinctionVolume volume = ComputeExtinction(fields, {{0, 100.0F, 0, false}}, 1);
   // At the surface of billows, everywhere.
-  const DetailControl control(volume.grid.CellCount(), {.profile = 128, .amplitude = 255});
+  const DetailControl control(volume.grid.CellCount(),
+                              {.profile = 128, .amplitude = 255, .occupied = 255});
   const physics::DetailTile tile = physics::MakeDetailTile(4, 1);
   PlacedDetail detail;
   detail.layers = {{&tile, 12e3, {1.0F}}};
@@ -57,7 +58,8 @@ TEST(DrawnMedium, EightPlacesHaveWhatEachHas) {
     const ExtinctionVolume volume = ComputeExtinction(fields, terms, channels);
     DetailControl control(volume.grid.CellCount());
     for (std::size_t i = 0; i < control.size(); ++i) {
-      control[i].profile = i % 3 == 0 ? 0 : static_cast<std::uint8_t>((31 * i) % 256);
+      control[i].profile = static_cast<std::uint8_t>((31 * i) % 256);
+      control[i].occupied = i % 3 == 0 ? 0 : 255;
       control[i].amplitude = static_cast<std::uint8_t>((57 * i) % 255 + 1);
       control[i].column = static_cast<std::uint8_t>((13 * i) % 256);
     }

@@ -157,6 +157,7 @@ class WaterPathsTest : public testing::Test {
     const Texels plain = ExtinctionOf(plain_);
     const Texels drawn = ExtinctionOf(volume);
     const Texels control = Of(with_control);
+    const Texels occupied = OccupiedOf(with_control);
     const glm::ivec3 points = glm::ivec3(1, 1, grid.cells.z) * along;
     const double length_m = grid.spacing_m.z / std::pow(along, 3);
     Paths paths{(glm::ivec2(grid.cells) + stride - 1) / stride, {}, {}};
@@ -170,7 +171,8 @@ class WaterPathsTest : public testing::Test {
         const glm::dvec3 place = corner + (point + 0.5) / double(along);
         const Values at = control.At(place);
         without += plain.At(place);
-        if (at.x > 0.0) with += Drawn(drawn, at, place);
+        const double share = occupied.At(place).x;
+        if (share > 0.0) with += Drawn(drawn, at, share, place);
       }
       paths.without.push_back(without * length_m);
       paths.with.push_back(with * length_m);
@@ -189,14 +191,20 @@ class WaterPathsTest : public testing::Test {
     return {plain_.grid, std::move(bytes)};
   }
 
-  Values Drawn(const Texels& extinction, const Values& control_bytes,
+  Texels OccupiedOf(const DetailControl& control) const {
+    std::vector<Values> shares;
+    for (const DetailTexel& texel : control) shares.emplace_back(texel.occupied / 255.0, 0, 0);
+    return {plain_.grid, std::move(shares)};
+  }
+
+  Values Drawn(const Texels& extinction, const Values& control_bytes, double occupied,
                const glm::dvec3& place) const {
     const RegularGrid& grid = plain_.grid;
     const glm::vec2 control(control_bytes.x / 255.0, (control_bytes.y - 128.0) / 127.0);
     glm::dvec3 tile = (grid.low_corner_m + place * grid.spacing_m) / detail_.layers[0].tile_m;
     if (control.y < 0.0F) tile = detail_.fibres * tile;
     const glm::dvec4 noise = physics::DetailNoiseAt(tile_, tile);
-    const double share = physics::glsl::detail_warp_share(control);
+    const double share = physics::glsl::detail_warp_share(static_cast<float>(occupied), control.y);
     const glm::dvec3 warp = detail_.warp_m / grid.spacing_m;
     const Values value =
         extinction.At(place + share * warp * glm::dvec3(noise.y, noise.z, noise.w));

@@ -120,9 +120,9 @@ TEST(DetailFactor, WhatIsFadedHasTheMeanOfWhatIsNot) {
 }
 
 TEST(DetailWarp, IsNoneAtTheFacesOfEmptySpace) {
-  EXPECT_EQ(glsl::detail_warp_share({0.0F, 1.0F}), 0.0F);
-  EXPECT_EQ(glsl::detail_warp_share({1.0F, -1.0F}), 1.0F);
-  EXPECT_GT(glsl::detail_warp_share({1.0F, 0.0F}), 0.0F);
+  EXPECT_EQ(glsl::detail_warp_share(0.0F, 1.0F), 0.0F);
+  EXPECT_EQ(glsl::detail_warp_share(1.0F, -1.0F), 1.0F);
+  EXPECT_GT(glsl::detail_warp_share(1.0F, 0.0F), 0.0F);
 }
 
 TEST(DetailDrift, GoesWithTheWindAndNeverJumps) {
