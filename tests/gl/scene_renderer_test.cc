@@ -95,6 +95,25 @@ TEST_F(SceneRendererTest, TheLightVolumeIsKeptWhileOnlyTheCameraMoves) {
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "air", "composite"));
 }
 
+TEST_F(SceneRendererTest, WaterPathsThatWereKeptQuicklyAreKeptInFullAtRest) {
+  test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
+  DrawQuality moving;
+  moving.quick_water_paths = true;
+  // Without detail there is nothing to keep.
+  StagesOf(moving);
+  EXPECT_THAT(StagesOf(), ElementsAre("view", "air", "composite"));
+  scene::MediumSettingsOf(&scene_.rendering.technique)->look.detail = true;
+  StagesOf(moving);
+  Orbit().azimuth_deg += 5.0;
+  EXPECT_THAT(StagesOf(moving), ElementsAre("view", "air", "composite"));
+  EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "air", "composite"));
+  SceneRenderer fresh;
+  EXPECT_EQ(Pixels(renderer_.get()), Pixels(&fresh));
+  // What is kept better stays.
+  Orbit().azimuth_deg += 5.0;
+  EXPECT_THAT(StagesOf(moving), ElementsAre("view", "air", "composite"));
+}
+
 TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   scene::Cumulus& cumulus = test_support::CumulusOf(scene_.rendering.technique);
