@@ -33,7 +33,9 @@ constexpr ColumnPoints kMore = {.least_at_surface = 16, .least_elsewhere = 4};
 constexpr ColumnPoints kMany = {
     .at_surfaces = 1024, .elsewhere = 1024, .least_at_surface = 32, .least_elsewhere = 24};
 constexpr Points kQuickPoints = {kTwo, kFew};
-constexpr Points kFullPoints = {kMore, kMany};
+
+// From so many columns that hold anything on, each gets fewer points.
+constexpr double kManyColumns = 2e4;
 
 // Of a channel in a column, in the first step, and of its total, in the second.
 constexpr float kMostOfColumn = 4.0F;
@@ -128,6 +130,36 @@ std::vector<float> SumsWith(const DrawnColumns& columns, const ExtinctionVolume&
   return sums;
 }
 
+// Those that hold anything.
+std::vector<std::size_t> FilledColumns(const std::vector<float>& without, std::size_t columns) {
+  const std::size_t channels = without.size() / columns;
+  std::vector<std::size_t> filled;
+  for (std::size_t column = 0; column < columns; ++column) {
+    const auto first = without.begin() + static_cast<std::ptrdiff_t>(column * channels);
+    const auto last = first + static_cast<std::ptrdiff_t>(channels);
+    if (std::any_of(first, last, [](float sum) { return sum > 0.0F; })) filled.push_back(column);
+  }
+  return filled;
+}
+
+// As many as a share of `many` in each column, but at least `few`.
+ColumnPoints FewerPoints(const ColumnPoints& many, const ColumnPoints& few, double share) {
+  const auto part = [share](int points, int least) {
+    return std::max(static_cast<int>(std::lround(share * points)), least);
+  };
+  return {.at_surfaces = part(many.at_surfaces, few.at_surfaces),
+          .elsewhere = part(many.elsewhere, few.elsewhere),
+          .least_at_surface = part(many.least_at_surface, few.least_at_surface),
+          .least_elsewhere = part(many.least_elsewhere, few.least_elsewhere)};
+}
+
+// Of the first step and the second, for so many columns that hold anything.
+Points PointsFor(WaterPathEffort effort, std::size_t columns) {
+  if (effort == WaterPathEffort::kQuick) return kQuickPoints;
+  const double share = std::min(kManyColumns / std::max(static_cast<double>(columns), 1.0), 1.0);
+  return {FewerPoints(kMore, kTwo, share), FewerPoints(kMany, kFew, share)};
+}
+
 // The second step: factors of columns, linear between their middles, and of channels, with which
 // both all channels of each column and all columns of each channel have what they had without
 // detail.
@@ -144,7 +176,8 @@ class Rests {
         factors_(factors),
         of_columns_(grid.Offset(0, 0, 1), 1.0F),
         of_channels_(without.size() / of_columns_.size(), 1.0F),
-        drawn_(of_columns_.size()) {
+        drawn_(of_columns_.size()),
+        filled_(FilledColumns(without, of_columns_.size())) {
     ForColumns(grid_, [&](int x, int y) { Evaluate(x, y); });
     Fit(kTurns);
   }
@@ -153,7 +186,7 @@ class Rests {
   // are.
   std::vector<float> AmplitudesThatFit() const {
     std::vector<float> shares(of_columns_.size(), 1.0F);
-    for (std::size_t column = 0; column < shares.size(); ++column) {
+    for (const std::size_t column : filled_) {
       const Held held = HeldBy(column);
       const float missing = held.wanted - held.now;
       if (std::abs(missing) <= kNegligible * held.wanted) continue;
@@ -237,7 +270,7 @@ class Rests {
 
   void FitColumns() {
     std::vector<float> next(of_columns_.size(), 1.0F);
-    for (std::size_t column = 0; column < next.size(); ++column) {
+    for (const std::size_t column : filled_) {
       const Held held = HeldBy(column);
       if (held.now <= 0.0F) continue;
       next[column] =
@@ -249,7 +282,7 @@ class Rests {
   void FitChannels() {
     std::vector<double> wanted(of_channels_.size(), 0.0);
     std::vector<double> has(of_channels_.size(), 0.0);
-    for (std::size_t column = 0; column < of_columns_.size(); ++column) {
+    for (const std::size_t column : filled_) {
       const float between = Between(column);
       for (std::size_t i = 0; i < of_channels_.size(); ++i) {
         wanted[i] += without_[column * of_channels_.size() + i];
@@ -272,6 +305,7 @@ class Rests {
   std::vector<float> of_columns_;
   std::vector<float> of_channels_;
   std::vector<DrawnColumn> drawn_;
+  const std::vector<std::size_t> filled_;  // columns
 };
 
 // `shares` are by column.
@@ -300,8 +334,9 @@ void StoreColumnFactors(const std::vector<float>& factors, DetailControl* contro
 
 std::vector<float> KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
                                   ExtinctionVolume* volume, WaterPathEffort effort) {
-  const Points& points = effort == WaterPathEffort::kQuick ? kQuickPoints : kFullPoints;
   const std::vector<float> without = SumsWithout(*volume);
+  const std::size_t filled = FilledColumns(without, volume->grid.Offset(0, 0, 1)).size();
+  const Points points = PointsFor(effort, filled);
   const DrawnColumns columns(*control, detail, *volume);
   std::vector<float> factors = SumsWith(columns, *volume, points.first);
   std::transform(without.begin(), without.end(), factors.begin(), factors.begin(), FactorOf);
@@ -309,6 +344,7 @@ std::vector<float> KeepWaterPaths(const PlacedDetail& detail, DetailControl* con
   Rests rests(columns, volume->grid, without, factors, points.second);
   for (int i = 0; i < kTimesWeaker; ++i) {
     const std::vector<float> shares = rests.AmplitudesThatFit();
+    if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 1.0F; })) break;
     ScaleAmplitudes(shares, control);
     rests.FitAgain(shares);
   }
