@@ -130,7 +130,9 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
   StageTimes times;
   if (first <= scene::Stage::kExtinction) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, fields, quality, &times));
+    // New fields are kept in full at once, as they would be at rest anyway.
+    const bool quick = quality.quick_water_paths && first > scene::Stage::kStorm;
+    THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, fields, quick, &times));
   }
   if (first <= scene::Stage::kView) {
     const scene::View view = scene::ViewOf(scene, *fields);
@@ -214,7 +216,7 @@ void SceneRenderer::Keep(const scene::Scene& scene, const Fields& fields,
 }
 
 absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields& fields,
-                                        const DrawQuality& quality, StageTimes* times) {
+                                        bool quick_water_paths, StageTimes* times) {
   // Techniques of the medium share it; what others hold of another scene is given back.
   std::erase_if(techniques_, [this](const auto& entry) {
     return entry.second.get() != technique_ && !entry.second->DrawsMedium();
@@ -224,10 +226,9 @@ absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields&
     ResidentMedium::Cost cost;
     // Work of this thread but for copies to the device.
     THUNDERHEAD_RETURN_IF_ERROR(workspace_.Pieces().OffTurn([&] {
-      workspace_.medium =
-          ResidentMedium(scene, *fields, &workspace_.noises, &cost,
-                         quality.quick_water_paths ? volume::WaterPathEffort::kQuick
-                                                   : volume::WaterPathEffort::kFull);
+      workspace_.medium = ResidentMedium(
+          scene, *fields, &workspace_.noises, &cost,
+          quick_water_paths ? volume::WaterPathEffort::kQuick : volume::WaterPathEffort::kFull);
       glFinish();
     }));
     times->push_back({scene::FrameStage::kExtinction, cost.extinction_ms});

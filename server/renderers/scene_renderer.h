@@ -90,8 +90,8 @@ class SceneRenderer {
   absl::StatusOr<Technique*> Choose(const scene::Scene& scene);
   scene::Stage FirstStageAt(const scene::Scene& scene, const Fields& fields,
                             const DrawQuality& quality) const;
-  absl::Status MakeContent(const scene::Scene& scene, const Fields& fields,
-                           const DrawQuality& quality, StageTimes* times);
+  absl::Status MakeContent(const scene::Scene& scene, const Fields& fields, bool quick_water_paths,
+                           StageTimes* times);
   // Nothing but lights besides the sun differs up to the stage of light.
   bool OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const;
   // Notes what is kept for the next picture: all but the view.
