@@ -182,7 +182,7 @@ absl::Status CheckSameAxes(const NetcdfFile& file, const CfVariable& variable,
   return absl::OkStatus();
 }
 
-// What detail follows, as far as the file has it on the fields' own grid.
+// The wind and the turbulent energy, as far as the file has them on the fields' own grid.
 void FindWind(const NetcdfFile& file, const std::vector<CfDescription>& variables,
               CfMetadata* metadata) {
   const auto has = [&](WindVariable wind) {

@@ -146,7 +146,7 @@ struct DrawnMedium::Lanes {
     noise->z += weight * bytes.z;
   }
 
-  // `plane_values` times the medium's.
+  // Multiplies `values` by the plane's.
   template <int kPlaneChannels>
   THUNDERHEAD_IN_LANES static void Multiply(const DrawnMedium& medium, const ExtinctionPlane& plane,
                                             const Place& from, Floats* values) {

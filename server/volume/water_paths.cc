@@ -166,9 +166,10 @@ Points PointsFor(WaterPathEffort effort, std::size_t columns) {
 class Rests {
  public:
   // `without` are sums by channel and column, as SumsWithout has them; the columns' channels have
-  // been multiplied by `factors` since. All must outlive it.
+  // been multiplied by `factors` since. All must outlive it but `filled`, FilledColumns.
   Rests(const DrawnColumns& columns, const RegularGrid& grid, const std::vector<float>& without,
-        const std::vector<float>& factors, const ColumnPoints& points)
+        const std::vector<float>& factors, std::vector<std::size_t> filled,
+        const ColumnPoints& points)
       : columns_(columns),
         points_(points),
         grid_(grid),
@@ -177,7 +178,7 @@ class Rests {
         of_columns_(grid.Offset(0, 0, 1), 1.0F),
         of_channels_(without.size() / of_columns_.size(), 1.0F),
         drawn_(of_columns_.size()),
-        filled_(FilledColumns(without, of_columns_.size())) {
+        filled_(std::move(filled)) {
     ForColumns(grid_, [&](int x, int y) { Evaluate(x, y); });
     Fit(kTurns);
   }
@@ -318,7 +319,7 @@ void ScaleAmplitudes(const std::vector<float>& shares, DetailControl* control) {
   }
 }
 
-// What rounding to a byte leaves goes to the next level.
+// The remainder of rounding to a byte goes to the next level.
 void StoreColumnFactors(const std::vector<float>& factors, DetailControl* control) {
   std::vector<float> left(factors.size(), 0.0F);
   for (std::size_t i = 0; i < control->size(); ++i) {
@@ -335,13 +336,13 @@ void StoreColumnFactors(const std::vector<float>& factors, DetailControl* contro
 std::vector<float> KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
                                   ExtinctionVolume* volume, WaterPathEffort effort) {
   const std::vector<float> without = SumsWithout(*volume);
-  const std::size_t filled = FilledColumns(without, volume->grid.Offset(0, 0, 1)).size();
-  const Points points = PointsFor(effort, filled);
+  std::vector<std::size_t> filled = FilledColumns(without, volume->grid.Offset(0, 0, 1));
+  const Points points = PointsFor(effort, filled.size());
   const DrawnColumns columns(*control, detail, *volume);
   std::vector<float> factors = SumsWith(columns, *volume, points.first);
   std::transform(without.begin(), without.end(), factors.begin(), factors.begin(), FactorOf);
   ScaleColumns(factors, volume);
-  Rests rests(columns, volume->grid, without, factors, points.second);
+  Rests rests(columns, volume->grid, without, factors, std::move(filled), points.second);
   for (int i = 0; i < kTimesWeaker; ++i) {
     const std::vector<float> shares = rests.AmplitudesThatFit();
     if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 1.0F; })) break;
