@@ -5,17 +5,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <vector>
 
+#include "base/lanes.h"
 #include "glm/common.hpp"
 #include "glm/vec3.hpp"
 
 namespace thunderhead::volume {
 namespace {
 
-constexpr int kMaxPoints = 512;  // in a cell
+constexpr int kMostInCell = 1024;
 
 // A profile above which billows leave all that there is.
 constexpr std::uint8_t kInside = 250;
+
+using Lanes = std::array<float, base::kLanes>;
+
+float Total(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0F); }
 
 // Adds up points of a column, eight at a time.
 class PointSum {
@@ -36,20 +42,20 @@ class PointSum {
   }
 
   DrawnColumn Sum() {
-    std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(count_), weights_.end(), 0.0F);
-    AddLanes();
-    const auto total = [](const Lanes& lanes) {
-      return std::accumulate(lanes.begin(), lanes.end(), 0.0F);
-    };
+    if (count_ > 0) {
+      std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(count_), weights_.end(), 0.0F);
+      AddLanes();
+    }
     DrawnColumn column;
-    std::transform(sums_.begin(), sums_.end(), column.sums.begin(), total);
-    std::transform(shares_.begin(), shares_.end(), column.shares.begin(), total);
+    std::transform(sums_.begin(), sums_.end(), column.sums.begin(), Total);
+    std::transform(shares_.begin(), shares_.end(), column.shares.begin(), Total);
     return column;
   }
 
- private:
-  using Lanes = std::array<float, base::kLanes>;
+  // Of all channels together, each point with its weight, of the last eight.
+  const Lanes& Last() const { return last_; }
 
+ private:
   // Weights of a linear interpolation between three columns, at places in the middle one.
   static std::array<Lanes, 3> InterpolationAt(const Lanes& from_middle) {
     std::array<Lanes, 3> weights;
@@ -65,19 +71,19 @@ class PointSum {
     count_ = 0;
     DrawnMedium::ChannelsAt here;
     medium_.At(places_, &here);
-    Lanes all{};
+    last_ = {};
     for (std::size_t i = 0; i < channels_; ++i) {
-      for (std::size_t lane = 0; lane < all.size(); ++lane) {
+      for (std::size_t lane = 0; lane < last_.size(); ++lane) {
         const float part = here[i][lane] * weights_[lane];
         sums_[i][lane] += part;
-        all[lane] += part;
+        last_[lane] += part;
       }
     }
     const std::array<Lanes, 3> x = InterpolationAt(from_middle_[0]);
     const std::array<Lanes, 3> y = InterpolationAt(from_middle_[1]);
     for (std::size_t k = 0; k < shares_.size(); ++k) {
-      for (std::size_t lane = 0; lane < all.size(); ++lane) {
-        shares_[k][lane] += all[lane] * x[k % 3][lane] * y[k / 3][lane];
+      for (std::size_t lane = 0; lane < last_.size(); ++lane) {
+        shares_[k][lane] += last_[lane] * x[k % 3][lane] * y[k / 3][lane];
       }
     }
   }
@@ -89,9 +95,51 @@ class PointSum {
   DrawnMedium::Places places_{};
   Lanes weights_{};
   std::array<Lanes, 2> from_middle_{};
+  Lanes last_{};
   std::array<Lanes, kMaxChannels> sums_{};
   std::array<Lanes, 9> shares_{};
 };
+
+// Points of all levels together are spread evenly across the column, at multiples of the powers of
+// 1 / 1.3247 (1.3247^3 = 1.3247 + 1).
+class PointsAcross {
+ public:
+  // Adds `count` points in a cell of the level, each with the weight.
+  void AddCell(int level, int count, float weight, PointSum* sum) {
+    for (int i = 0; i < count; ++i) {
+      const float up = (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
+      sum->Add(Next(), static_cast<float>(level) + up, weight);
+    }
+  }
+
+ private:
+  glm::vec2 Next() {
+    constexpr std::uint32_t kStepX = 3242174889U;  // of 2^32
+    constexpr std::uint32_t kStepY = 2447445414U;
+    const auto of_one = [](std::uint32_t value) {
+      return static_cast<float>(static_cast<std::int32_t>(value >> 1U)) * 0x1p-31F;
+    };
+    x_ += kStepX;
+    y_ += kStepY;
+    return {of_one(x_), of_one(y_)};
+  }
+
+  std::uint32_t x_ = 0;
+  std::uint32_t y_ = 0;
+};
+
+// What a cell's first points show of it, of all channels together.
+struct Probe {
+  double mean = 0.0;
+  double spread = 0.0;  // standard deviation
+};
+
+Probe ProbeOf(const Lanes& points) {
+  constexpr double kCount = base::kLanes;
+  const double mean = Total(points) / kCount;
+  const double square = std::inner_product(points.begin(), points.end(), points.begin(), 0.0F);
+  return {mean, std::sqrt(std::max(square / kCount - mean * mean, 0.0))};
+}
 
 }  // namespace
 
@@ -100,6 +148,7 @@ DrawnColumns::DrawnColumns(const DetailControl& control, const PlacedDetail& det
     : medium_(control, detail, volume),
       control_(control),
       grid_(volume.grid),
+      cell_depth_(volume.extinction_per_m * volume.grid.spacing_m.z),
       occupied_(volume.grid.Offset(0, 0, 1), {volume.grid.cells.z, 0}) {
   for (const ExtinctionPlane& plane : volume.planes) {
     channels_ += static_cast<std::size_t>(plane.channels);
@@ -114,38 +163,46 @@ DrawnColumns::DrawnColumns(const DetailControl& control, const PlacedDetail& det
   }
 }
 
-// Points of all levels together are spread evenly across the column, at multiples of the powers of
-// 1 / 1.3247 (1.3247^3 = 1.3247 + 1).
 DrawnColumn DrawnColumns::Sum(const glm::ivec2& column, const ColumnPoints& points) const {
-  constexpr std::uint32_t kStepX = 3242174889U;  // of 2^32
-  constexpr std::uint32_t kStepY = 2447445414U;
-  const auto of_one = [](std::uint32_t value) {
-    return static_cast<float>(static_cast<std::int32_t>(value >> 1U)) * 0x1p-31F;
-  };
-  const auto shared = [](int all, int cells, int least) {
-    return std::clamp(all / std::max(cells, 1), least, kMaxPoints);
-  };
   const Levels levels = LevelsOf(column);
-  int surfaces = 0;
-  for (int z = levels.begin; z < levels.end; ++z) {
-    surfaces += HasSurface({column.x, column.y, z}) ? 1 : 0;
-  }
-  const int at_surface = shared(points.at_surfaces, surfaces, points.least_at_surface);
-  const int elsewhere = shared(points.elsewhere, levels.end - levels.begin, points.least_elsewhere);
+  std::vector<double> more;  // by level, of all points of the column
+  if (points.error > 0.0) more = PointsByError(column, levels, points);
+  PointsAcross across;
   PointSum sum(medium_, column, channels_);
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
   for (int z = levels.begin; z < levels.end; ++z) {
-    const int count = HasSurface({column.x, column.y, z}) ? at_surface : elsewhere;
-    const float weight = 1.0F / static_cast<float>(count);
-    for (int i = 0; i < count; ++i) {
-      x += kStepX;
-      y += kStepY;
-      const float up = (static_cast<float>(i) + 0.5F) * weight;
-      sum.Add({of_one(x), of_one(y)}, static_cast<float>(z) + up, weight);
+    const bool surface = HasSurface({column.x, column.y, z});
+    int count = surface ? points.at_surface : points.elsewhere;
+    if (!more.empty()) {
+      const double wanted = more[static_cast<std::size_t>(z - levels.begin)];
+      count = std::clamp(static_cast<int>(wanted), count, kMostInCell);
     }
+    across.AddCell(z, count, 1.0F / static_cast<float>(count), &sum);
   }
   return sum.Sum();
+}
+
+// In proportion to the spread in each cell fewest points have an error (Neyman's allocation). Other
+// points find what the cells hold: where these happen to miss what there is, both their mean and
+// their spread are too small.
+std::vector<double> DrawnColumns::PointsByError(const glm::ivec2& column, const Levels& levels,
+                                                const ColumnPoints& points) const {
+  std::vector<double> counts;
+  double all = 0.0;
+  double spread = 0.0;
+  PointsAcross across;
+  PointSum sum(medium_, column, channels_);
+  for (int z = levels.begin; z < levels.end; ++z) {
+    across.AddCell(z, base::kLanes, 1.0F, &sum);
+    const Probe probe = ProbeOf(sum.Last());
+    all += probe.mean;
+    spread += probe.spread;
+    counts.push_back(probe.spread);
+  }
+  if (spread == 0.0) return counts;
+  const double deviations = spread / (points.error * std::max(all, 1.0 / cell_depth_));
+  const double wanted = std::min(deviations * deviations, static_cast<double>(points.most));
+  for (double& count : counts) count *= wanted / spread;
+  return counts;
 }
 
 DrawnColumns::Levels DrawnColumns::LevelsOf(const glm::ivec2& column) const {

@@ -20,13 +20,16 @@ struct DrawnColumn {
   std::array<float, 9> shares{};
 };
 
-// Points at which a column is evaluated: so many shared out among its cells in which billows may
-// end, and among all others, but at least so many in each.
+// Points at which a column is evaluated.
 struct ColumnPoints {
-  int at_surfaces = 0;
-  int elsewhere = 0;
-  int least_at_surface = 1;
-  int least_elsewhere = 1;
+  // In each cell at least.
+  int at_surface = 1;  // where billows may end
+  int elsewhere = 1;
+
+  // Where it is not 0, cells in which the medium varies get more, until the column's sum has this
+  // relative standard error, or where its optical depth is less than 1, that depth has this error.
+  double error = 0.0;
+  int most = 0;  // by the error, in a column
 };
 
 class DrawnColumns {
@@ -45,11 +48,14 @@ class DrawnColumns {
   };
 
   Levels LevelsOf(const glm::ivec2& column) const;
+  std::vector<double> PointsByError(const glm::ivec2& column, const Levels& levels,
+                                    const ColumnPoints& points) const;
   bool HasSurface(const glm::ivec3& cell) const;
 
   const DrawnMedium medium_;
   const DetailControl& control_;
   const RegularGrid& grid_;
+  const double cell_depth_;  // optical depth of a cell's height where a texel is 1
   std::size_t channels_ = 0;
   std::vector<Levels> occupied_;  // by column
 };

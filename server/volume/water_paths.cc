@@ -27,11 +27,10 @@ struct Points {
   ColumnPoints first;
   ColumnPoints second;
 };
-constexpr ColumnPoints kTwo = {.least_at_surface = 2, .least_elsewhere = 2};
-constexpr ColumnPoints kFew = {.least_at_surface = 8, .least_elsewhere = 2};
-constexpr ColumnPoints kMore = {.least_at_surface = 16, .least_elsewhere = 4};
-constexpr ColumnPoints kMany = {
-    .at_surfaces = 1024, .elsewhere = 1024, .least_at_surface = 32, .least_elsewhere = 24};
+constexpr ColumnPoints kTwo = {.at_surface = 2, .elsewhere = 2};
+constexpr ColumnPoints kFew = {.at_surface = 8, .elsewhere = 2};
+constexpr ColumnPoints kMore = {.at_surface = 16, .elsewhere = 4};
+constexpr ColumnPoints kMany = {.at_surface = 16, .elsewhere = 4, .error = 0.01, .most = 12000};
 constexpr Points kQuickPoints = {kTwo, kFew};
 
 // From so many columns that hold anything on, each gets fewer points.
@@ -43,13 +42,14 @@ constexpr double kMostOfChannel = kMaxColumnFactor / kMostOfColumn;
 
 // Rounds in which the second step's factors are found at first, and after detail has been made
 // weaker, which is done this often: with more, columns keep no more.
-constexpr int kTurns = 8;
-constexpr int kMoreTurns = 4;
-constexpr int kTimesWeaker = 3;
+constexpr int kTurns = 12;
+constexpr int kMoreTurns = 8;
+constexpr int kTimesWeaker = 5;
 
-// Of what a column lacks in spite of the largest factor, detail is made so much weaker that it has
-// this share more than it should.
-constexpr float kRoom = 1.5F;
+// Detail of a column that lacks something in spite of the largest factor is made so weak that the
+// column would hold this many times what it should, as the detail of columns beside it thins it,
+// too.
+constexpr float kRoom = 3.0F;
 constexpr float kNegligible = 0.005F;
 
 int ChannelsOf(const ExtinctionVolume& volume) {
@@ -142,22 +142,18 @@ std::vector<std::size_t> FilledColumns(const std::vector<float>& without, std::s
   return filled;
 }
 
-// As many as a share of `many` in each column, but at least `few`.
-ColumnPoints FewerPoints(const ColumnPoints& many, const ColumnPoints& few, double share) {
-  const auto part = [share](int points, int least) {
-    return std::max(static_cast<int>(std::lround(share * points)), least);
-  };
-  return {.at_surfaces = part(many.at_surfaces, few.at_surfaces),
-          .elsewhere = part(many.elsewhere, few.elsewhere),
-          .least_at_surface = part(many.least_at_surface, few.least_at_surface),
-          .least_elsewhere = part(many.least_elsewhere, few.least_elsewhere)};
-}
-
 // Of the first step and the second, for so many columns that hold anything.
 Points PointsFor(WaterPathEffort effort, std::size_t columns) {
   if (effort == WaterPathEffort::kQuick) return kQuickPoints;
-  const double share = std::min(kManyColumns / std::max(static_cast<double>(columns), 1.0), 1.0);
-  return {FewerPoints(kMore, kTwo, share), FewerPoints(kMany, kFew, share)};
+  const double share = kManyColumns / std::max(static_cast<double>(columns), kManyColumns);
+  const auto with_fewer = [share](ColumnPoints points) {
+    points.at_surface = std::max(static_cast<int>(share * points.at_surface), kFew.at_surface);
+    points.elsewhere = std::max(static_cast<int>(share * points.elsewhere), kFew.elsewhere);
+    points.error /= std::sqrt(share);
+    points.most = static_cast<int>(share * points.most);
+    return points;
+  };
+  return {with_fewer(kMore), with_fewer(kMany)};
 }
 
 // The second step: factors of columns, linear between their middles, and of channels, with which
@@ -311,11 +307,14 @@ class Rests {
 
 // `shares` are by column.
 void ScaleAmplitudes(const std::vector<float>& shares, DetailControl* control) {
-  for (std::size_t i = 0; i < control->size(); ++i) {
-    std::uint8_t& amplitude = (*control)[i].amplitude;
-    const float from_none = static_cast<float>(amplitude - DetailTexel::kNoAmplitude);
-    amplitude = static_cast<std::uint8_t>(DetailTexel::kNoAmplitude +
-                                          std::lround(shares[i % shares.size()] * from_none));
+  for (std::size_t column = 0; column < shares.size(); ++column) {
+    if (shares[column] == 1.0F) continue;
+    for (std::size_t i = column; i < control->size(); i += shares.size()) {
+      std::uint8_t& amplitude = (*control)[i].amplitude;
+      const float from_none = static_cast<float>(amplitude - DetailTexel::kNoAmplitude);
+      amplitude = static_cast<std::uint8_t>(DetailTexel::kNoAmplitude +
+                                            std::lround(shares[column] * from_none));
+    }
   }
 }
 

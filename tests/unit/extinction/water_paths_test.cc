@@ -243,9 +243,9 @@ TEST_P(WaterPathsOfStorm, AreThoseWithoutDetail) {
   EXPECT_LT(all.InBlocks(8).Deviation(0), 0.01);
   // By fewer points single columns seem to differ by up to some percent.
   const Paths single = PathsOf(kept_, kept_control_, 8, 4).Together();
-  EXPECT_GT(single.ShareWithin(0.01), 0.93);
-  EXPECT_GT(single.ShareWithin(0.03), 0.98);
-  EXPECT_LT(single.Deviation(0), 0.04);
+  EXPECT_GT(single.ShareWithin(0.01), 0.98);
+  EXPECT_GT(single.ShareWithin(0.03), 0.995);
+  EXPECT_LT(single.Deviation(0), 0.02);
   // By channels alone.
   EXPECT_GT(PathsOf(kept_, control_).Together().Deviation(0), 0.09);
   // Detail takes much more than that.
