@@ -17,7 +17,7 @@
 #include "volume/brick_map.h"
 #include "volume/coarsen.h"
 #include "volume/detail_control.h"
-#include "volume/water_paths.h"
+#include "volume/water_path_memo.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -55,7 +55,15 @@ std::uint64_t NextId() {
 struct Computed {
   volume::ExtinctionVolume extinction;
   volume::DetailControl detail_control;  // empty without detail
+  volume::WaterPathEffort effort = volume::WaterPathEffort::kFull;
 };
+
+// Of all of the process's media: sessions of the same storm, in whichever context they are drawn.
+volume::WaterPathMemo& RememberedWaterPaths() {
+  constexpr std::size_t kMostBytes = 32U << 20U;
+  static volume::WaterPathMemo memo(kMostBytes);
+  return memo;
+}
 
 Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& medium,
                     DetailNoises* noises, volume::WaterPathEffort effort) {
@@ -68,7 +76,7 @@ Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& mediu
   const auto tile_of = [&](const scene::Detail& detail) {
     return &noises->Get(detail.octaves, detail.seed)->tile;
   };
-  volume::KeepWaterPaths(
+  computed.effort = RememberedWaterPaths().Keep(
       scene::PlacedDetailOf(layers, tile_of, computed.extinction.grid.spacing_m, fields.motion),
       &computed.detail_control, &computed.extinction, effort);
   return computed;
@@ -140,7 +148,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
     blocks_ = gl::Buffer(blocks.occupied.size() * sizeof(std::uint32_t), blocks.occupied.data(), 0);
   }
   if (!computed.detail_control.empty()) {
-    has_quick_water_paths_ = effort == volume::WaterPathEffort::kQuick;
+    has_quick_water_paths_ = computed.effort == volume::WaterPathEffort::kQuick;
     detail_control_ = gl::Texture3D(GL_RGBA8, bounds_.grid.cells);
     detail_control_.Upload(GL_RGBA, GL_UNSIGNED_BYTE, computed.detail_control.data());
     detail_fibres_ = glm::mat3(physics::FibresAlong(fields.motion.shear_m_per_s));

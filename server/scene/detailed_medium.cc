@@ -14,14 +14,6 @@
 namespace thunderhead::scene {
 namespace {
 
-std::size_t ChannelsOf(const volume::ExtinctionVolume& volume) {
-  std::size_t channels = 0;
-  for (const volume::ExtinctionPlane& plane : volume.planes) {
-    channels += static_cast<std::size_t>(plane.channels);
-  }
-  return channels;
-}
-
 // A group for each field.
 GroupedFields Parted(const GroupedFields& grouped) {
   GroupedFields parted = grouped;
@@ -67,9 +59,9 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
       of_groups.layers[i].shares.assign(shares.begin(), shares.end());
     }
     const std::vector<float> factors =
-        volume::KeepWaterPaths(of_groups, &detailed->control_, &by_group);
-    const std::size_t from_channels = ChannelsOf(by_group);
-    const std::size_t channels = ChannelsOf(volume);
+        volume::KeepWaterPaths(of_groups, &detailed->control_, &by_group).OfVolume();
+    const auto from_channels = static_cast<std::size_t>(by_group.Channels());
+    const auto channels = static_cast<std::size_t>(volume.Channels());
     std::vector<float> by_field(factors.size() / from_channels * channels, 1.0F);
     for (std::size_t i = 0; i < grouped.terms.size(); ++i) {
       const auto group = static_cast<std::size_t>(grouped.terms[i].channel);

@@ -214,10 +214,9 @@ BrickMap BrickMapOf(const ExtinctionVolume& volume) {
   map.cells_per_brick = across;
   map.bricks = cells / across + 1;
   const double diagonal_m = glm::length(glm::dvec3(across) * volume.grid.spacing_m);
-  int channels = 0;  // their extinctions add up
-  for (const ExtinctionPlane& plane : volume.planes) channels += plane.channels;
+  // Extinctions of all channels add up.
   const std::vector<std::uint8_t> fillings =
-      MaxOf(FillingsOf(volume, BrickMap::kThinOpticalDepth / diagonal_m / channels), cells,
+      MaxOf(FillingsOf(volume, BrickMap::kThinOpticalDepth / diagonal_m / volume.Channels()), cells,
             map.bricks, [&](int axis, int brick) {
               const int n = across[axis];
               return BrickRange{brick * n - 1, (brick + 1) * n - 1};

@@ -14,7 +14,13 @@
 namespace thunderhead::volume {
 namespace {
 
-constexpr int kMostInCell = 1024;
+// Of the sequence of points across a column: probes are others than those that are added up.
+constexpr std::uint32_t kFirstPoint = 0;
+constexpr std::uint32_t kFirstProbe = 1U << 31U;
+
+// By the error. Where a single cell would need more, its column's error is a little larger; with
+// twice as many no more columns keep their water path.
+constexpr double kMostInCell = 1024.0;
 
 // A profile above which billows leave all that there is.
 constexpr std::uint8_t kInside = 250;
@@ -23,22 +29,33 @@ using Lanes = std::array<float, base::kLanes>;
 
 float Total(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0F); }
 
+// Of a sequence that fills a square evenly: multiples of the powers of 1 / 1.3247 (1.3247^3
+// = 1.3247
+// + 1), less whole numbers.
+glm::vec2 AcrossAt(std::uint32_t index) {
+  constexpr std::uint32_t kStepX = 3242174889U;  // of 2^32
+  constexpr std::uint32_t kStepY = 2447445414U;
+  const auto of_one = [](std::uint32_t value) {
+    return static_cast<float>(static_cast<std::int32_t>(value >> 1U)) * 0x1p-31F;
+  };
+  return {of_one(index * kStepX), of_one(index * kStepY)};
+}
+
 // Adds up points of a column, eight at a time.
 class PointSum {
  public:
-  PointSum(const DrawnMedium& medium, const glm::ivec2& column, std::size_t channels)
-      : medium_(medium), corner_(column), channels_(channels) {}
+  // Points of all cells together are spread evenly across the column, from `first` of their
+  // sequence on.
+  PointSum(const DrawnMedium& medium, const glm::ivec2& column, std::size_t channels,
+           std::uint32_t first)
+      : medium_(medium), corner_(column), channels_(channels), next_(first) {}
 
-  // `across` is from the column's corner, `z` from the volume's, in cells.
-  void Add(const glm::vec2& across, float z, float weight) {
-    const std::size_t lane = count_++;
-    places_.x[lane] = corner_.x + across.x;
-    places_.y[lane] = corner_.y + across.y;
-    places_.z[lane] = z;
-    weights_[lane] = weight;
-    from_middle_[0][lane] = across.x - 0.5F;
-    from_middle_[1][lane] = across.y - 0.5F;
-    if (count_ == weights_.size()) AddLanes();
+  // Adds points of the cell at a level, each with the weight.
+  void AddCell(int level, int count, float weight) {
+    for (int i = 0; i < count; ++i) {
+      const float up = (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
+      Add(AcrossAt(next_++), static_cast<float>(level) + up, weight);
+    }
   }
 
   DrawnColumn Sum() {
@@ -52,10 +69,22 @@ class PointSum {
     return column;
   }
 
-  // Of all channels together, each point with its weight, of the last eight.
+  // Of all channels together, each point with its weight, of the last eight; any after them wait.
   const Lanes& Last() const { return last_; }
 
  private:
+  // `across` is from the column's corner, `z` from the volume's, in cells.
+  void Add(const glm::vec2& across, float z, float weight) {
+    const std::size_t lane = count_++;
+    places_.x[lane] = corner_.x + across.x;
+    places_.y[lane] = corner_.y + across.y;
+    places_.z[lane] = z;
+    weights_[lane] = weight;
+    from_middle_[0][lane] = across.x - 0.5F;
+    from_middle_[1][lane] = across.y - 0.5F;
+    if (count_ == weights_.size()) AddLanes();
+  }
+
   // Weights of a linear interpolation between three columns, at places in the middle one.
   static std::array<Lanes, 3> InterpolationAt(const Lanes& from_middle) {
     std::array<Lanes, 3> weights;
@@ -91,6 +120,7 @@ class PointSum {
   const DrawnMedium& medium_;
   const glm::vec2 corner_;
   const std::size_t channels_;
+  std::uint32_t next_;
   std::size_t count_ = 0;  // in the lanes
   DrawnMedium::Places places_{};
   Lanes weights_{};
@@ -98,34 +128,6 @@ class PointSum {
   Lanes last_{};
   std::array<Lanes, kMaxChannels> sums_{};
   std::array<Lanes, 9> shares_{};
-};
-
-// Points of all levels together are spread evenly across the column, at multiples of the powers of
-// 1 / 1.3247 (1.3247^3 = 1.3247 + 1).
-class PointsAcross {
- public:
-  // Adds `count` points in a cell of the level, each with the weight.
-  void AddCell(int level, int count, float weight, PointSum* sum) {
-    for (int i = 0; i < count; ++i) {
-      const float up = (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
-      sum->Add(Next(), static_cast<float>(level) + up, weight);
-    }
-  }
-
- private:
-  glm::vec2 Next() {
-    constexpr std::uint32_t kStepX = 3242174889U;  // of 2^32
-    constexpr std::uint32_t kStepY = 2447445414U;
-    const auto of_one = [](std::uint32_t value) {
-      return static_cast<float>(static_cast<std::int32_t>(value >> 1U)) * 0x1p-31F;
-    };
-    x_ += kStepX;
-    y_ += kStepY;
-    return {of_one(x_), of_one(y_)};
-  }
-
-  std::uint32_t x_ = 0;
-  std::uint32_t y_ = 0;
 };
 
 // What a cell's first points show of it, of all channels together.
@@ -141,6 +143,12 @@ Probe ProbeOf(const Lanes& points) {
   return {mean, std::sqrt(std::max(square / kCount - mean * mean, 0.0))};
 }
 
+// The next multiple of kLanes, so that other processors' rounding hardly ever changes it.
+int InLanes(double count) {
+  constexpr auto kLanes = static_cast<double>(base::kLanes);
+  return static_cast<int>(kLanes * std::ceil(count / kLanes));
+}
+
 }  // namespace
 
 DrawnColumns::DrawnColumns(const DetailControl& control, const PlacedDetail& detail,
@@ -148,11 +156,9 @@ DrawnColumns::DrawnColumns(const DetailControl& control, const PlacedDetail& det
     : medium_(control, detail, volume),
       control_(control),
       grid_(volume.grid),
+      channels_(static_cast<std::size_t>(volume.Channels())),
       cell_depth_(volume.extinction_per_m * volume.grid.spacing_m.z),
       occupied_(volume.grid.Offset(0, 0, 1), {volume.grid.cells.z, 0}) {
-  for (const ExtinctionPlane& plane : volume.planes) {
-    channels_ += static_cast<std::size_t>(plane.channels);
-  }
   for (int z = 0; z < grid_.cells.z; ++z) {
     const DetailTexel* texels = control.data() + grid_.Offset(0, 0, z);
     for (std::size_t column = 0; column < occupied_.size(); ++column) {
@@ -165,34 +171,30 @@ DrawnColumns::DrawnColumns(const DetailControl& control, const PlacedDetail& det
 
 DrawnColumn DrawnColumns::Sum(const glm::ivec2& column, const ColumnPoints& points) const {
   const Levels levels = LevelsOf(column);
-  std::vector<double> more;  // by level, of all points of the column
-  if (points.error > 0.0) more = PointsByError(column, levels, points);
-  PointsAcross across;
-  PointSum sum(medium_, column, channels_);
+  std::vector<double> by_error(static_cast<std::size_t>(std::max(levels.end - levels.begin, 0)));
+  if (points.error > 0.0) by_error = PointsByError(column, levels, points);
+  PointSum sum(medium_, column, channels_, kFirstPoint);
   for (int z = levels.begin; z < levels.end; ++z) {
     const bool surface = HasSurface({column.x, column.y, z});
-    int count = surface ? points.at_surface : points.elsewhere;
-    if (!more.empty()) {
-      const double wanted = more[static_cast<std::size_t>(z - levels.begin)];
-      count = std::clamp(static_cast<int>(wanted), count, kMostInCell);
-    }
-    across.AddCell(z, count, 1.0F / static_cast<float>(count), &sum);
+    const double wanted = by_error[static_cast<std::size_t>(z - levels.begin)];
+    const int least = surface ? points.at_surface : points.elsewhere;
+    const int count = wanted > least ? InLanes(std::min(wanted, kMostInCell)) : least;
+    sum.AddCell(z, count, 1.0F / static_cast<float>(count));
   }
   return sum.Sum();
 }
 
-// In proportion to the spread in each cell fewest points have an error (Neyman's allocation). Other
-// points find what the cells hold: where these happen to miss what there is, both their mean and
-// their spread are too small.
+// In proportion to the spread in each cell the fewest points have an error (Neyman's allocation).
+// Other points than those that are added up find the spread: where they happen to miss what there
+// is, both mean and spread are too small.
 std::vector<double> DrawnColumns::PointsByError(const glm::ivec2& column, const Levels& levels,
                                                 const ColumnPoints& points) const {
   std::vector<double> counts;
   double all = 0.0;
   double spread = 0.0;
-  PointsAcross across;
-  PointSum sum(medium_, column, channels_);
+  PointSum sum(medium_, column, channels_, kFirstProbe);
   for (int z = levels.begin; z < levels.end; ++z) {
-    across.AddCell(z, base::kLanes, 1.0F, &sum);
+    sum.AddCell(z, base::kLanes, 1.0F);
     const Probe probe = ProbeOf(sum.Last());
     all += probe.mean;
     spread += probe.spread;

@@ -22,14 +22,15 @@ struct DrawnColumn {
 
 // Points at which a column is evaluated.
 struct ColumnPoints {
-  // In each cell at least.
+  // In each cell; at least, where there is an error.
   int at_surface = 1;  // where billows may end
   int elsewhere = 1;
 
   // Where it is not 0, cells in which the medium varies get more, until the column's sum has this
-  // relative standard error, or where its optical depth is less than 1, that depth has this error.
+  // relative standard error, or where its optical depth is less than 1, that depth has this error;
+  // but at most so many of them in a column.
   double error = 0.0;
-  int most = 0;  // by the error, in a column
+  int most = 0;
 };
 
 class DrawnColumns {
@@ -55,8 +56,8 @@ class DrawnColumns {
   const DrawnMedium medium_;
   const DetailControl& control_;
   const RegularGrid& grid_;
-  const double cell_depth_;  // optical depth of a cell's height where a texel is 1
-  std::size_t channels_ = 0;
+  const std::size_t channels_;
+  const double cell_depth_;       // optical depth of a cell's height where a texel is 1
   std::vector<Levels> occupied_;  // by column
 };
 

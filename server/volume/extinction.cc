@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "base/half_float.h"
@@ -126,6 +127,12 @@ void FillPlane(const HydrometeorFields& fields, const std::vector<ExtinctionTerm
 }
 
 }  // namespace
+
+int ExtinctionVolume::Channels() const {
+  return std::accumulate(
+      planes.begin(), planes.end(), 0,
+      [](int channels, const ExtinctionPlane& plane) { return channels + plane.channels; });
+}
 
 float NegligibleExtinction_per_m(const RegularGrid& grid, float maximum_per_m) {
   const double diagonal_m = glm::length(glm::dvec3(grid.cells) * grid.spacing_m);

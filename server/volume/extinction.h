@@ -43,6 +43,7 @@ struct ExtinctionVolume {
   float negligible_per_m = 0.0F;        // NegligibleExtinction_per_m of it
 
   bool Empty() const { return grid.CellCount() == 0; }
+  int Channels() const;  // of all planes, those that only fill one included
 };
 
 // A cell is left out if its extinction, along the domain's diagonal, adds up to less than this

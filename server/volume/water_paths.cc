@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <thread>
 #include <utility>
 
@@ -48,32 +47,27 @@ constexpr int kTimesWeaker = 5;
 
 // Detail of a column that lacks something in spite of the largest factor is made so weak that the
 // column would hold this many times what it should, as the detail of columns beside it thins it,
-// too.
+// too; where even without detail it would hold less, there is none.
 constexpr float kRoom = 3.0F;
 constexpr float kNegligible = 0.005F;
 
-int ChannelsOf(const ExtinctionVolume& volume) {
-  int channels = 0;
-  for (const ExtinctionPlane& plane : volume.planes) channels += plane.channels;
-  return channels;
-}
-
 float FactorOf(float without, float with) {
-  return with > 0.0F ? std::clamp(without / with, 1.0F / kMostOfColumn, kMostOfColumn) : 1.0F;
+  if (without <= 0.0F) return 1.0F;
+  return with > 0.0F ? std::clamp(without / with, 1.0F / kMostOfColumn, kMostOfColumn)
+                     : kMostOfColumn;
 }
 
 // Calls visit(texel, channel of a column), those of a column being beside each other, for texels
 // that are not 0.
-template <typename Planes, typename Visit>
-void ForEachTexel(Planes& planes, int levels, const Visit& visit) {
-  std::size_t all = 0;
-  for (const ExtinctionPlane& plane : planes) all += static_cast<std::size_t>(plane.channels);
+template <typename Volume, typename Visit>
+void ForEachTexel(Volume& volume, const Visit& visit) {
+  const auto all = static_cast<std::size_t>(volume.Channels());
+  const std::size_t columns = volume.grid.Offset(0, 0, 1);
   std::size_t first = 0;
-  for (auto& plane : planes) {
+  for (auto& plane : volume.planes) {
     const auto channels = static_cast<std::size_t>(plane.channels);
-    const std::size_t columns = plane.texels.size() / channels / static_cast<std::size_t>(levels);
     auto* texel = plane.texels.data();
-    for (int z = 0; z < levels; ++z) {
+    for (int z = 0; z < volume.grid.cells.z; ++z) {
       for (std::size_t column = 0; column < columns; ++column) {
         for (std::size_t channel = 0; channel < channels; ++channel, ++texel) {
           if (*texel != 0) visit(*texel, column * all + first + channel);
@@ -87,10 +81,10 @@ void ForEachTexel(Planes& planes, int levels, const Visit& visit) {
 // Sums of columns over levels, x fastest, by channel: what linear interpolation has in the middle
 // of a quarter of a cell, on the mean.
 std::vector<float> SumsWithout(const ExtinctionVolume& volume) {
-  const auto channels = static_cast<std::size_t>(ChannelsOf(volume));
+  const auto channels = static_cast<std::size_t>(volume.Channels());
   const glm::ivec3& size = volume.grid.cells;
   std::vector<float> sums(volume.grid.Offset(0, 0, 1) * channels, 0.0F);
-  ForEachTexel(volume.planes, size.z, [&](std::uint16_t texel, std::size_t channel) {
+  ForEachTexel(volume, [&](std::uint16_t texel, std::size_t channel) {
     sums[channel] += base::FloatFromHalf(texel);
   });
   const auto smooth = [&](std::size_t stride, int count, std::size_t at_first) {
@@ -121,7 +115,7 @@ void ForColumns(const RegularGrid& grid, const Work& work) {
 
 std::vector<float> SumsWith(const DrawnColumns& columns, const ExtinctionVolume& volume,
                             const ColumnPoints& points) {
-  const auto channels = static_cast<std::size_t>(ChannelsOf(volume));
+  const auto channels = static_cast<std::size_t>(volume.Channels());
   std::vector<float> sums(volume.grid.Offset(0, 0, 1) * channels);
   ForColumns(volume.grid, [&](int x, int y) {
     const DrawnColumn column = columns.Sum({x, y}, points);
@@ -179,32 +173,37 @@ class Rests {
     Fit(kTurns);
   }
 
-  // By column, the share of detail's amplitude with which factors are large enough; 1 where they
-  // are.
-  std::vector<float> AmplitudesThatFit() const {
-    std::vector<float> shares(of_columns_.size(), 1.0F);
+  // Columns in which no factor is large enough, or none small enough, with the share of detail's
+  // amplitude with which one is.
+  std::vector<WaterPaths::Weaker> ThoseToWeaken() const {
+    std::vector<WaterPaths::Weaker> weaker;
     for (const std::size_t column : filled_) {
       const Held held = HeldBy(column);
       const float missing = held.wanted - held.now;
       if (std::abs(missing) <= kNegligible * held.wanted) continue;
+      float share = 1.0F;
       if (missing < 0.0F && of_columns_[column] <= kLeastRest) {
         // The displacement, which is less with less amplitude, brings in too much.
-        shares[column] = 0.5F;
+        share = 0.5F;
       } else if (missing > 0.0F && of_columns_[column] >= kMostRest) {
         const float enough = kRoom * held.wanted;
-        shares[column] =
-            held.smooth > enough ? (held.smooth - enough) / (held.smooth - held.now) : 0.0F;
+        share = held.smooth > enough ? (held.smooth - enough) / (held.smooth - held.now) : 0.0F;
       }
+      if (share < 1.0F) weaker.push_back({static_cast<std::uint32_t>(column), share});
     }
-    return shares;
+    return weaker;
   }
 
-  // Call when detail's amplitude has been multiplied by `shares`.
-  void FitAgain(const std::vector<float>& shares) {
+  // Call when the detail of these columns has been weakened.
+  void FitAgain(const std::vector<WaterPaths::Weaker>& weaker) {
+    std::vector<bool> changed(of_columns_.size(), false);
+    for (const auto& [column, share] : weaker) {
+      const int x = static_cast<int>(column) % grid_.cells.x;
+      const int y = static_cast<int>(column) / grid_.cells.x;
+      for (int k = 0; k < 9; ++k) changed[Beside(x, y, k)] = true;
+    }
     ForColumns(grid_, [&](int x, int y) {
-      bool changed = false;
-      for (int k = 0; k < 9; ++k) changed |= shares[Beside(x, y, k)] < 1.0F;
-      if (changed) Evaluate(x, y);
+      if (changed[grid_.Offset(x, y, 0)]) Evaluate(x, y);
     });
     Fit(kMoreTurns);
   }
@@ -269,9 +268,10 @@ class Rests {
     std::vector<float> next(of_columns_.size(), 1.0F);
     for (const std::size_t column : filled_) {
       const Held held = HeldBy(column);
-      if (held.now <= 0.0F) continue;
-      next[column] =
-          std::clamp(of_columns_[column] * held.wanted / held.now, kLeastRest, kMostRest);
+      if (held.wanted <= 0.0F) continue;
+      next[column] = held.now > 0.0F ? std::clamp(of_columns_[column] * held.wanted / held.now,
+                                                  kLeastRest, kMostRest)
+                                     : kMostRest;
     }
     of_columns_ = std::move(next);
   }
@@ -305,15 +305,14 @@ class Rests {
   const std::vector<std::size_t> filled_;  // columns
 };
 
-// `shares` are by column.
-void ScaleAmplitudes(const std::vector<float>& shares, DetailControl* control) {
-  for (std::size_t column = 0; column < shares.size(); ++column) {
-    if (shares[column] == 1.0F) continue;
-    for (std::size_t i = column; i < control->size(); i += shares.size()) {
+void ScaleAmplitudes(const std::vector<WaterPaths::Weaker>& columns, std::size_t count,
+                     DetailControl* control) {
+  for (const auto& [column, share] : columns) {
+    for (std::size_t i = column; i < control->size(); i += count) {
       std::uint8_t& amplitude = (*control)[i].amplitude;
       const float from_none = static_cast<float>(amplitude - DetailTexel::kNoAmplitude);
-      amplitude = static_cast<std::uint8_t>(DetailTexel::kNoAmplitude +
-                                            std::lround(shares[column] * from_none));
+      amplitude =
+          static_cast<std::uint8_t>(DetailTexel::kNoAmplitude + std::lround(share * from_none));
     }
   }
 }
@@ -330,42 +329,63 @@ void StoreColumnFactors(const std::vector<float>& factors, DetailControl* contro
   }
 }
 
+std::vector<float> RepeatedByColumn(const std::vector<float>& by_channel, std::size_t columns) {
+  std::vector<float> repeated;
+  repeated.reserve(columns * by_channel.size());
+  for (std::size_t column = 0; column < columns; ++column) {
+    repeated.insert(repeated.end(), by_channel.begin(), by_channel.end());
+  }
+  return repeated;
+}
+
 }  // namespace
 
-std::vector<float> KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
-                                  ExtinctionVolume* volume, WaterPathEffort effort) {
+WaterPaths KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
+                          ExtinctionVolume* volume, WaterPathEffort effort) {
   const std::vector<float> without = SumsWithout(*volume);
-  std::vector<std::size_t> filled = FilledColumns(without, volume->grid.Offset(0, 0, 1));
+  const std::size_t count = volume->grid.Offset(0, 0, 1);
+  std::vector<std::size_t> filled = FilledColumns(without, count);
   const Points points = PointsFor(effort, filled.size());
   const DrawnColumns columns(*control, detail, *volume);
-  std::vector<float> factors = SumsWith(columns, *volume, points.first);
-  std::transform(without.begin(), without.end(), factors.begin(), factors.begin(), FactorOf);
-  ScaleColumns(factors, volume);
-  Rests rests(columns, volume->grid, without, factors, std::move(filled), points.second);
+  WaterPaths paths;
+  paths.by_column = SumsWith(columns, *volume, points.first);
+  std::transform(without.begin(), without.end(), paths.by_column.begin(), paths.by_column.begin(),
+                 FactorOf);
+  ScaleColumns(paths.by_column, volume);
+  Rests rests(columns, volume->grid, without, paths.by_column, std::move(filled), points.second);
   for (int i = 0; i < kTimesWeaker; ++i) {
-    const std::vector<float> shares = rests.AmplitudesThatFit();
-    if (std::all_of(shares.begin(), shares.end(), [](float share) { return share == 1.0F; })) break;
-    ScaleAmplitudes(shares, control);
-    rests.FitAgain(shares);
+    std::vector<WaterPaths::Weaker> weaker = rests.ThoseToWeaken();
+    if (weaker.empty()) break;
+    ScaleAmplitudes(weaker, count, control);
+    rests.FitAgain(weaker);
+    paths.weakened.push_back(std::move(weaker));
   }
-  const std::vector<float>& of_channels = rests.OfChannels();
-  std::vector<float> of_totals(factors.size());
-  for (std::size_t i = 0; i < factors.size(); ++i) {
-    of_totals[i] = of_channels[i % of_channels.size()];
-  }
-  ScaleColumns(of_totals, volume);
-  StoreColumnFactors(rests.OfColumns(), control);
-  std::transform(factors.begin(), factors.end(), of_totals.begin(), factors.begin(),
-                 std::multiplies<>());
+  paths.by_channel = rests.OfChannels();
+  paths.drawn = rests.OfColumns();
+  ScaleColumns(RepeatedByColumn(paths.by_channel, count), volume);
+  StoreColumnFactors(paths.drawn, control);
+  return paths;
+}
+
+void KeepWaterPathsAgain(const WaterPaths& paths, DetailControl* control,
+                         ExtinctionVolume* volume) {
+  const std::size_t count = volume->grid.Offset(0, 0, 1);
+  ScaleColumns(paths.by_column, volume);
+  for (const auto& weaker : paths.weakened) ScaleAmplitudes(weaker, count, control);
+  ScaleColumns(RepeatedByColumn(paths.by_channel, count), volume);
+  StoreColumnFactors(paths.drawn, control);
+}
+
+std::vector<float> WaterPaths::OfVolume() const {
+  std::vector<float> factors = by_column;
+  for (std::size_t i = 0; i < factors.size(); ++i) factors[i] *= by_channel[i % by_channel.size()];
   return factors;
 }
 
 void ScaleColumns(const std::vector<float>& factors, ExtinctionVolume* volume) {
-  ForEachTexel(volume->planes, volume->grid.cells.z,
-               [&](std::uint16_t& texel, std::size_t channel) {
-                 const float product = base::FloatFromHalf(texel) * factors[channel];
-                 texel = base::HalfFromFloat(product);
-               });
+  ForEachTexel(*volume, [&](std::uint16_t& texel, std::size_t channel) {
+    texel = base::HalfFromFloat(base::FloatFromHalf(texel) * factors[channel]);
+  });
 }
 
 }  // namespace thunderhead::volume

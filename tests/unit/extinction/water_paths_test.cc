@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -10,6 +12,7 @@
 #include "gtest/gtest.h"
 #include "volume/detail_control.h"
 #include "volume/storm_store.h"
+#include "volume/water_path_memo.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -292,22 +295,91 @@ TEST_F(WaterPathsTest, AreKeptInFibres) {
   EXPECT_LT(PathsKept().Deviation(2), 0.02);
 }
 
+// Turbulent ice, in which detail has billows.
+HydrometeorFields TurbulentIce(const glm::ivec3& cells) {
+  HydrometeorFields fields;
+  fields.grid.cells = cells;
+  fields.grid.spacing_m = glm::dvec3(500.0);
+  fields.condensate = {glm::ivec3(0), fields.grid.cells};
+  fields.motion.source = TurbulenceSource::kEnergy;
+  fields.motion.turbulence.assign(fields.grid.CellCount(), 100);
+  fields.fields.resize(3);
+  fields.fields[2].hydrometeor = physics::Hydrometeor::kIce;
+  fields.fields[2].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-2F);
+  return fields;
+}
+
 // A single column, and a single cell.
 TEST_F(WaterPathsTest, AreKeptInTheSmallestGrids) {
   for (const int levels : {1, 8}) {
-    HydrometeorFields fields;
-    fields.grid.cells = glm::ivec3(1, 1, levels);
-    fields.grid.spacing_m = glm::dvec3(500.0);
-    fields.condensate = {glm::ivec3(0), fields.grid.cells};
-    fields.motion.source = TurbulenceSource::kEnergy;
-    fields.motion.turbulence.assign(fields.grid.CellCount(), 100);
-    fields.fields.resize(3);
-    fields.fields[2].hydrometeor = physics::Hydrometeor::kIce;
-    fields.fields[2].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-2F);
-    Draw(fields);
-    // Two points a cell are few.
-    EXPECT_NEAR(PathsKept().Ratio()[2], 1.0, 0.2) << levels;
+    Draw(TurbulentIce({1, 1, levels}));
+    EXPECT_NEAR(PathsOf(kept_, kept_control_, 8).Ratio()[2], 1.0, 0.01) << levels;
   }
+}
+
+class WaterPathMemoTest : public WaterPathsTest {
+ protected:
+  void SetUp() override { Draw(TurbulentIce({6, 6, 4})); }
+
+  // The effort that `memo` keeps the water paths of the volume with, which are to be as without it.
+  WaterPathEffort KeptBy(WaterPathMemo* memo, WaterPathEffort effort) {
+    DetailControl control = control_;
+    ExtinctionVolume volume = plain_;
+    const WaterPathEffort kept = memo->Keep(detail_, &control, &volume, effort);
+    DetailControl alone_control = control_;
+    ExtinctionVolume alone = plain_;
+    KeepWaterPaths(detail_, &alone_control, &alone, kept);
+    EXPECT_EQ(volume.planes[0].texels, alone.planes[0].texels);
+    EXPECT_EQ(
+        std::memcmp(control.data(), alone_control.data(), control.size() * sizeof(DetailTexel)), 0);
+    return kept;
+  }
+
+  static constexpr std::size_t kEnough = 1U << 20U;
+};
+
+TEST_F(WaterPathMemoTest, WhatIsRememberedIsTheSame) {
+  WaterPathMemo memo(kEnough);
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kFull), WaterPathEffort::kFull);
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kFull), WaterPathEffort::kFull);
+}
+
+TEST_F(WaterPathMemoTest, RemembersTheGreatestEffort) {
+  WaterPathMemo memo(kEnough);
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kQuick);
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kFull), WaterPathEffort::kFull);
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kFull);
+}
+
+TEST_F(WaterPathMemoTest, OtherContentsAreOthers) {
+  WaterPathMemo memo(kEnough);
+  KeptBy(&memo, WaterPathEffort::kFull);
+  detail_.layers[0].tile_m *= 1.5;
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kQuick);
+  detail_.layers[0].tile_m /= 1.5;
+  control_[7].profile ^= 1U;
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kQuick);
+  control_[7].profile ^= 1U;
+  plain_.planes[0].texels[20] ^= 1U;
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kQuick);
+  plain_.planes[0].texels[20] ^= 1U;
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kFull);
+}
+
+TEST_F(WaterPathMemoTest, ForgetsWhatWasNotAskedForLongest) {
+  WaterPathMemo memo(4096);  // those of 36 columns have some 800 bytes
+  const double tile_m = detail_.layers[0].tile_m;
+  KeptBy(&memo, WaterPathEffort::kFull);
+  detail_.layers[0].tile_m = 1.5 * tile_m;
+  KeptBy(&memo, WaterPathEffort::kFull);
+  detail_.layers[0].tile_m = tile_m;
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kFull);
+  for (int i = 2; i < 10; ++i) {
+    detail_.layers[0].tile_m = i * tile_m;
+    KeptBy(&memo, WaterPathEffort::kQuick);
+  }
+  detail_.layers[0].tile_m = tile_m;
+  EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kQuick);
 }
 
 INSTANTIATE_TEST_SUITE_P(Storms, WaterPathsOfStorm,
