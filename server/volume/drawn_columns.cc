@@ -29,9 +29,8 @@ using Lanes = std::array<float, base::kLanes>;
 
 float Total(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0F); }
 
-// Of a sequence that fills a square evenly: multiples of the powers of 1 / 1.3247 (1.3247^3
-// = 1.3247
-// + 1), less whole numbers.
+// Of a sequence that fills a square evenly: multiples of the powers of 1 / 1.3247, less whole
+// numbers. That number's third power is one more than itself.
 glm::vec2 AcrossAt(std::uint32_t index) {
   constexpr std::uint32_t kStepX = 3242174889U;  // of 2^32
   constexpr std::uint32_t kStepY = 2447445414U;

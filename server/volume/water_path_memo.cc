@@ -68,22 +68,24 @@ std::size_t BytesOf(const WaterPaths& paths) {
 WaterPathEffort WaterPathMemo::Keep(const PlacedDetail& detail, DetailControl* control,
                                     ExtinctionVolume* volume, WaterPathEffort effort) {
   const std::uint64_t key = KeyOf(detail, *control, *volume);
-  if (const std::optional<Entry> found = Find(key, effort)) {
-    KeepWaterPathsAgain(*found->paths, control, volume);
-    return found->effort;
+  if (const std::shared_ptr<const WaterPaths> found = Find(key)) {
+    KeepWaterPathsAgain(*found, control, volume);
+    return WaterPathEffort::kFull;
   }
-  Add({key, effort,
-       std::make_shared<const WaterPaths>(KeepWaterPaths(detail, control, volume, effort))});
+  WaterPaths paths = KeepWaterPaths(detail, control, volume, effort);
+  if (effort == WaterPathEffort::kFull) {
+    Add({key, std::make_shared<const WaterPaths>(std::move(paths))});
+  }
   return effort;
 }
 
-std::optional<WaterPathMemo::Entry> WaterPathMemo::Find(std::uint64_t key, WaterPathEffort effort) {
+std::shared_ptr<const WaterPaths> WaterPathMemo::Find(std::uint64_t key) {
   const std::lock_guard lock(mutex_);
-  const auto found = std::ranges::find_if(
-      entries_, [&](const Entry& entry) { return entry.key == key && entry.effort >= effort; });
-  if (found == entries_.end()) return std::nullopt;
+  const auto found =
+      std::ranges::find_if(entries_, [key](const Entry& entry) { return entry.key == key; });
+  if (found == entries_.end()) return nullptr;
   entries_.splice(entries_.begin(), entries_, found);
-  return *found;
+  return found->paths;
 }
 
 void WaterPathMemo::Add(Entry entry) {

@@ -7,7 +7,6 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <optional>
 
 #include "volume/water_paths.h"
 
@@ -20,18 +19,18 @@ class WaterPathMemo {
   explicit WaterPathMemo(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   // As KeepWaterPaths, which it calls for a volume, control and detail that it does not remember.
-  // Returns the effort that they were found with: at least `effort`.
+  // Only full effort is remembered. Returns the effort that they were found with: at least
+  // `effort`.
   WaterPathEffort Keep(const PlacedDetail& detail, DetailControl* control, ExtinctionVolume* volume,
                        WaterPathEffort effort);
 
  private:
   struct Entry {
     std::uint64_t key = 0;  // of the contents of volume, control and detail
-    WaterPathEffort effort = WaterPathEffort::kQuick;
     std::shared_ptr<const WaterPaths> paths;
   };
 
-  std::optional<Entry> Find(std::uint64_t key, WaterPathEffort effort);
+  std::shared_ptr<const WaterPaths> Find(std::uint64_t key);  // null if it is not remembered
   void Add(Entry entry);
 
   const std::size_t most_bytes_;

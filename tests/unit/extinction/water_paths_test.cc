@@ -344,7 +344,7 @@ TEST_F(WaterPathMemoTest, WhatIsRememberedIsTheSame) {
   EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kFull), WaterPathEffort::kFull);
 }
 
-TEST_F(WaterPathMemoTest, RemembersTheGreatestEffort) {
+TEST_F(WaterPathMemoTest, OnlyFullEffortIsRemembered) {
   WaterPathMemo memo(kEnough);
   EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kQuick);
   EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kFull), WaterPathEffort::kFull);
@@ -376,7 +376,7 @@ TEST_F(WaterPathMemoTest, ForgetsWhatWasNotAskedForLongest) {
   EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kFull);
   for (int i = 2; i < 10; ++i) {
     detail_.layers[0].tile_m = i * tile_m;
-    KeptBy(&memo, WaterPathEffort::kQuick);
+    KeptBy(&memo, WaterPathEffort::kFull);
   }
   detail_.layers[0].tile_m = tile_m;
   EXPECT_EQ(KeptBy(&memo, WaterPathEffort::kQuick), WaterPathEffort::kQuick);
