@@ -129,7 +129,7 @@ class PointSum {
   std::array<Lanes, 9> shares_{};
 };
 
-// What a cell's first points show of it, of all channels together.
+// The medium at a cell's first points, all channels added up.
 struct Probe {
   double mean = 0.0;
   double spread = 0.0;  // standard deviation

@@ -198,9 +198,7 @@ class Rests {
   void FitAgain(const std::vector<WaterPaths::Weaker>& weaker) {
     std::vector<bool> changed(of_columns_.size(), false);
     for (const auto& [column, share] : weaker) {
-      const int x = static_cast<int>(column) % grid_.cells.x;
-      const int y = static_cast<int>(column) / grid_.cells.x;
-      for (int k = 0; k < 9; ++k) changed[Beside(x, y, k)] = true;
+      for (int k = 0; k < 9; ++k) changed[Beside(column, k)] = true;
     }
     ForColumns(grid_, [&](int x, int y) {
       if (changed[grid_.Offset(x, y, 0)]) Evaluate(x, y);
@@ -220,7 +218,9 @@ class Rests {
   };
 
   // The index of the column `k` of 3 x 3 around another, x fastest.
-  std::size_t Beside(int x, int y, int k) const {
+  std::size_t Beside(std::size_t column, int k) const {
+    const int x = static_cast<int>(column) % grid_.cells.x;
+    const int y = static_cast<int>(column) / grid_.cells.x;
     const int i = std::clamp(x + k % 3 - 1, 0, grid_.cells.x - 1);
     const int j = std::clamp(y + k / 3 - 1, 0, grid_.cells.y - 1);
     return grid_.Offset(i, j, 0);
@@ -245,13 +245,11 @@ class Rests {
   // The mean of the factors of a column and of those around it, weighted by what interpolation
   // takes from each.
   float Between(std::size_t column) const {
-    const int x = static_cast<int>(column) % grid_.cells.x;
-    const int y = static_cast<int>(column) / grid_.cells.x;
     float with = 0.0F;
     float before = 0.0F;
     for (int k = 0; k < 9; ++k) {
       const float share = drawn_[column].shares[static_cast<std::size_t>(k)];
-      with += share * of_columns_[Beside(x, y, k)];
+      with += share * of_columns_[Beside(column, k)];
       before += share;
     }
     return before > 0.0F ? with / before : 1.0F;
@@ -329,13 +327,14 @@ void StoreColumnFactors(const std::vector<float>& factors, DetailControl* contro
   }
 }
 
-std::vector<float> RepeatedByColumn(const std::vector<float>& by_channel, std::size_t columns) {
-  std::vector<float> repeated;
-  repeated.reserve(columns * by_channel.size());
-  for (std::size_t column = 0; column < columns; ++column) {
-    repeated.insert(repeated.end(), by_channel.begin(), by_channel.end());
+// Multiplies channels by their factors and sets those of columns.
+void StoreSecondStep(const WaterPaths& paths, DetailControl* control, ExtinctionVolume* volume) {
+  std::vector<float> by_column(paths.by_column.size());
+  for (std::size_t i = 0; i < by_column.size(); ++i) {
+    by_column[i] = paths.by_channel[i % paths.by_channel.size()];
   }
-  return repeated;
+  ScaleColumns(by_column, volume);
+  StoreColumnFactors(paths.drawn, control);
 }
 
 }  // namespace
@@ -362,18 +361,17 @@ WaterPaths KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
   }
   paths.by_channel = rests.OfChannels();
   paths.drawn = rests.OfColumns();
-  ScaleColumns(RepeatedByColumn(paths.by_channel, count), volume);
-  StoreColumnFactors(paths.drawn, control);
+  StoreSecondStep(paths, control, volume);
   return paths;
 }
 
 void KeepWaterPathsAgain(const WaterPaths& paths, DetailControl* control,
                          ExtinctionVolume* volume) {
-  const std::size_t count = volume->grid.Offset(0, 0, 1);
   ScaleColumns(paths.by_column, volume);
-  for (const auto& weaker : paths.weakened) ScaleAmplitudes(weaker, count, control);
-  ScaleColumns(RepeatedByColumn(paths.by_channel, count), volume);
-  StoreColumnFactors(paths.drawn, control);
+  for (const auto& weaker : paths.weakened) {
+    ScaleAmplitudes(weaker, volume->grid.Offset(0, 0, 1), control);
+  }
+  StoreSecondStep(paths, control, volume);
 }
 
 std::vector<float> WaterPaths::OfVolume() const {
