@@ -1,4 +1,5 @@
-# Read by ctest when it starts: adds a test for each suite that `program` has then.
+# Read by ctest when it starts: adds a test for each suite that `program` has then. Suites named ...Benchmark state figures that
+# depend on the machine's speed; they have the label `benchmark`, which `./dev test` leaves out and `./dev bench waits` runs.
 if(NOT EXISTS ${program})
   # Fails, since there is no such command.
   add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)
@@ -14,6 +15,9 @@ foreach(line IN LISTS lines)
   string(REGEX REPLACE "^\n(.+)\\..$" "\\1" suite "${line}")
   add_test(${name}.${suite} ${program} --gtest_brief=1 "--gtest_filter=${suite}.*")
   set_tests_properties(${name}.${suite} PROPERTIES ${properties})
+  if(suite MATCHES "Benchmark$")
+    set_tests_properties(${name}.${suite} PROPERTIES LABELS benchmark RUN_SERIAL TRUE)
+  endif()
   list(FIND waiting ${suite} waits)
   if(NOT waits EQUAL -1)
     set_tests_properties(${name}.${suite} PROPERTIES ${waiting_properties})

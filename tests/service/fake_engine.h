@@ -21,7 +21,7 @@
 
 namespace thunderhead::testing {
 
-inline constexpr std::chrono::seconds kPatience{20};
+inline constexpr std::chrono::seconds kPatience{600};
 
 // A gate that blocks a fake's thread while it is closed; it starts open.
 class Gate {

@@ -1,0 +1,52 @@
+// The monotonic time that waiting code reads. Code that compares times or waits until one is given
+// a TimeSource, so that a test can move its time by hand (tests/support/manual_time.h) instead of
+// sleeping.
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace thunderhead::base {
+
+class TimeSource {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  virtual ~TimeSource() = default;
+
+  virtual Clock::time_point Now() const = 0;
+
+  // Returns the time of std::chrono::steady_clock at which a thread that waits until `deadline`
+  // must look at Now() again. It is never later than `deadline` on the real clock.
+  virtual Clock::time_point LookAgainAt(Clock::time_point deadline) const = 0;
+};
+
+// Returns the source that reads std::chrono::steady_clock. It lives as long as the process.
+inline const TimeSource& SteadyTime() {
+  class Steady : public TimeSource {
+   public:
+    Clock::time_point Now() const override { return Clock::now(); }
+    Clock::time_point LookAgainAt(Clock::time_point deadline) const override { return deadline; }
+  };
+  static const Steady steady;
+  return steady;
+}
+
+// Waits on the condition variable `changed` until `ready()` is true or `deadline` has passed by
+// `time`. Returns whether `ready()` is true. `lock` holds the mutex that guards what `ready` reads.
+template <typename ConditionVariable, typename Lock, typename Ready>
+bool WaitUntil(const TimeSource& time, ConditionVariable& changed, Lock& lock,
+               TimeSource::Clock::time_point deadline, Ready ready) {
+  while (!ready()) {
+    if (time.Now() >= deadline) return false;
+    changed.wait_until(lock, time.LookAgainAt(deadline));
+  }
+  return true;
+}
+
+// Blocks the calling thread until `deadline` has passed by `time`.
+inline void SleepUntil(const TimeSource& time, TimeSource::Clock::time_point deadline) {
+  while (time.Now() < deadline) std::this_thread::sleep_until(time.LookAgainAt(deadline));
+}
+
+}  // namespace thunderhead::base
