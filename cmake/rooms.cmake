@@ -61,7 +61,7 @@ function(thunderhead_test name)
   else()
     list(PREPEND TEST_PROPERTIES ${THUNDERHEAD_BUSY_TEST})
   endif()
-  thunderhead_register_suites(${name} WAITING ${TEST_WAITING} PROPERTIES LABELS ${TEST_LABEL} TIMEOUT 600 ${TEST_PROPERTIES})
+  thunderhead_register_suites(${name} WAITING ${TEST_WAITING} PROPERTIES LABELS ${TEST_LABEL} ${TEST_PROPERTIES})
 endfunction()
 
 # An error if a test file of the current folder is in none of its programs.

@@ -1,13 +1,15 @@
-# Places of a test among ctest's, of which `./dev test` has four a processor. One that computes takes three, a browser's or a window's
-# two, and one that mostly waits one; the longest come first, so that they do not wait one after another at the end.
-set(THUNDERHEAD_BUSY_TEST PROCESSORS 3)
-set(THUNDERHEAD_WINDOW_TEST PROCESSORS 2)
-set(THUNDERHEAD_WAITING_TEST PROCESSORS 1 COST 100)
-set(THUNDERHEAD_WAITING_LONG_TEST PROCESSORS 1 COST 2000)
+# How ctest runs the tests. `./dev test` gives it two places a processor (ctest -j). A test that keeps a processor busy takes both places of one,
+# so on two processors at most two such tests run at once; a test that mostly waits takes one place. The classes follow from measured
+# processor time (docs/testing.md). COST only sets the order: the longest begin first.
+#
+# TIMEOUT is a limit against hangs, in seconds. It says nothing about speed: the slowest test takes three minutes on an idle machine.
+set(THUNDERHEAD_HANG_LIMIT_S 1800)
+set(THUNDERHEAD_BUSY_TEST PROCESSORS 2 TIMEOUT ${THUNDERHEAD_HANG_LIMIT_S})
+set(THUNDERHEAD_WAITING_TEST PROCESSORS 1 TIMEOUT ${THUNDERHEAD_HANG_LIMIT_S} COST 100)
 
 # thunderhead_register_suites(TARGET [WAITING suites...] [PROPERTIES properties...]) registers each suite of a GoogleTest program with ctest, as
-# PROGRAM.SUITE; those that are WAITING leave a processor to others. Not each case, as GoogleTest's module does: a case that draws would open
-# a context and make its shaders for itself, which takes most of them longer than what they test.
+# PROGRAM.SUITE. Suites in WAITING mostly wait. Cases are not registered one by one, as GoogleTest's module for CMake does it, because
+# each process that draws opens a context and compiles its shaders, which takes longer than most cases.
 function(thunderhead_register_suites target)
   cmake_parse_arguments(SUITES "" "" "WAITING;PROPERTIES" ${ARGN})
   set(suites ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)
