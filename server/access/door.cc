@@ -52,9 +52,10 @@ absl::StatusOr<std::shared_ptr<const void>> Caller::TakeAnswer() const {
   return quotas_->TakeAnswer(identity_.name);
 }
 
-absl::Status Caller::StillKnown(std::chrono::steady_clock::time_point now) const {
+absl::Status Caller::StillKnown(std::optional<std::chrono::steady_clock::time_point> at) const {
   // Null for this process itself.
   if (authenticator_ == nullptr) return absl::OkStatus();
+  const auto now = at.value_or(time_->Now());
   if (now < known_at_.load() + kKnownFor) return absl::OkStatus();
   absl::Status identified = Identified();
   if (identified.ok()) {
@@ -73,19 +74,20 @@ absl::Status Caller::Identified() const {
 }
 
 Door::Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
-           const QuotaLimits& limits, base::TrustedProxies proxies)
+           const QuotaLimits& limits, base::TrustedProxies proxies, const base::TimeSource& time)
     : authenticator_(std::move(authenticator)),
       audit_(std::move(audit)),
       quotas_(limits),
       wrong_tokens_(limits.wrong_tokens_per_second),
       proxies_(std::move(proxies)),
+      time_(time),
       own_token_(RandomToken()) {}
 
 absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller) {
   const Identity& identity = caller.identity_;
   if (!MayCall(identity.role, method)) return NotForRole(method, identity);
   if (caller.authenticator_ == nullptr || identity.name.empty()) return absl::OkStatus();
-  THUNDERHEAD_RETURN_IF_ERROR(quotas_.TakeRequest(identity.name, std::chrono::steady_clock::now()));
+  THUNDERHEAD_RETURN_IF_ERROR(quotas_.TakeRequest(identity.name, time_.Now()));
   caller.quotas_ = &quotas_;
   if (kind == CallKind::kUnary) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(caller.place_, quotas_.TakeStream(identity.name));
@@ -93,7 +95,7 @@ absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller)
 }
 
 absl::StatusOr<Identity> Door::Identify(const Credentials& shown) {
-  const auto now = std::chrono::steady_clock::now();
+  const auto now = time_.Now();
   THUNDERHEAD_RETURN_IF_ERROR(wrong_tokens_.MayShow(shown, now));
   absl::StatusOr<Identity> identity = authenticator_->Identify(shown);
   if (identity.ok()) {
@@ -108,6 +110,7 @@ absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view metho
                                                           Credentials credentials) {
   auto caller = std::make_shared<Caller>();
   caller->audit_ = audit_.get();
+  caller->time_ = &time_;
   caller->credentials_ = std::move(credentials);
   caller->method_ = std::string(method);
   const Credentials& shown = caller->credentials_;

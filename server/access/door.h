@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,7 @@
 #include "access/authenticator.h"
 #include "access/quotas.h"
 #include "access/wrong_tokens.h"
+#include "base/time_source.h"
 #include "base/trusted_proxies.h"
 
 namespace thunderhead::access {
@@ -34,7 +36,7 @@ class Caller {
   // UNAUTHENTICATED, which is written to the audit, once the token has expired or was taken away;
   // looks once a second at most.
   absl::Status StillKnown(
-      std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now()) const;
+      std::optional<std::chrono::steady_clock::time_point> at = std::nullopt) const;
 
  private:
   friend class Door;
@@ -46,6 +48,7 @@ class Caller {
   std::string method_;  // the rpc
   Authenticator* authenticator_ = nullptr;
   Audit* audit_ = nullptr;
+  const base::TimeSource* time_ = &base::SteadyTime();
   Quotas* quotas_ = nullptr;  // null: they have none
   std::shared_ptr<const void> place_;
   mutable std::atomic<std::chrono::steady_clock::time_point> known_at_ = {};
@@ -56,8 +59,10 @@ enum class CallKind { kUnary, kStream };
 
 class Door {
  public:
+  // `time` must outlive the door; quotas and tokens that are looked at again go by it.
   Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
-       const QuotaLimits& limits, base::TrustedProxies proxies = {});
+       const QuotaLimits& limits, base::TrustedProxies proxies = {},
+       const base::TimeSource& time = base::SteadyTime());
 
   // UNAUTHENTICATED, PERMISSION_DENIED or RESOURCE_EXHAUSTED. The caller must not outlive this.
   absl::StatusOr<std::shared_ptr<const Caller>> Admit(std::string_view method, CallKind kind,
@@ -84,6 +89,7 @@ class Door {
   Quotas quotas_;
   WrongTokens wrong_tokens_;
   const base::TrustedProxies proxies_;
+  const base::TimeSource& time_;
   const std::string own_token_;
 };
 

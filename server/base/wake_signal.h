@@ -7,6 +7,8 @@
 #include <mutex>
 #include <optional>
 
+#include "base/time_source.h"
+
 namespace thunderhead::base {
 
 class WakeSignal {
@@ -19,11 +21,12 @@ class WakeSignal {
     changed_.notify_one();
   }
 
-  // Returns after a notification, or at `deadline` if there is one.
-  void Wait(const std::optional<std::chrono::steady_clock::time_point>& deadline) {
+  // Returns after a notification, or at `deadline` by `time` if there is one.
+  void Wait(const std::optional<std::chrono::steady_clock::time_point>& deadline,
+            const TimeSource& time = SteadyTime()) {
     std::unique_lock lock(mutex_);
     if (deadline.has_value()) {
-      changed_.wait_until(lock, *deadline, [this] { return notified_; });
+      WaitUntil(time, changed_, lock, *deadline, [this] { return notified_; });
     } else {
       changed_.wait(lock, [this] { return notified_; });
     }

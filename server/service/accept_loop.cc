@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
@@ -40,18 +41,24 @@ AcceptLoop::~AcceptLoop() {
   if (thread_.joinable()) thread_.join();
 }
 
+int AcceptLoop::DoChore() {
+  if (!chore_.has_value()) return -1;
+  const base::TimeSource& time = *chore_->time;
+  if (const auto now = time.Now(); now >= chore_due_) {
+    chore_due_ = now + chore_->pause;
+    chore_->run();
+  }
+  const auto wait = std::chrono::ceil<std::chrono::milliseconds>(time.LookAgainAt(chore_due_) -
+                                                                 base::TimeSource::Clock::now());
+  return std::max(0, static_cast<int>(wait.count()));
+}
+
 void AcceptLoop::Run() {
   std::vector<pollfd> waits = {{stop_.Get(), POLLIN, 0}};
   for (const base::FileDescriptor& socket : sockets_) waits.push_back({socket.Get(), POLLIN, 0});
-  const int wait_ms = chore_.has_value() ? static_cast<int>(chore_->pause.count()) : -1;
-  auto ran_at = std::chrono::steady_clock::now();
+  if (chore_.has_value()) chore_due_ = chore_->time->Now() + chore_->pause;
   while (true) {
-    if (poll(waits.data(), waits.size(), wait_ms) < 0 && errno != EINTR) return;
-    if (const auto now = std::chrono::steady_clock::now();
-        chore_.has_value() && now - ran_at >= chore_->pause) {
-      ran_at = now;
-      chore_->run();
-    }
+    if (poll(waits.data(), waits.size(), DoChore()) < 0 && errno != EINTR) return;
     if (waits.front().revents != 0) return;
     for (std::size_t i = 1; i < waits.size(); ++i) {
       if (waits[i].revents == 0) continue;

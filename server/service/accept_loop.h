@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/file_descriptor.h"
+#include "base/time_source.h"
 
 namespace thunderhead::service {
 
@@ -18,10 +19,12 @@ class AcceptLoop {
   // Takes over `connection`, which does not block; on the loop's thread.
   using Take = std::function<void(base::FileDescriptor connection)>;
 
-  // Another task of the loop's thread, run at least that often.
+  // Another task of the loop's thread, run at least that often by `time`, which must outlive the
+  // loop.
   struct Chore {
     std::chrono::milliseconds pause;
     std::function<void()> run;
+    const base::TimeSource* time = &base::SteadyTime();
   };
 
   // Accepts until it is destroyed. `sockets` listen and do not block.
@@ -39,12 +42,15 @@ class AcceptLoop {
         stop_(std::move(stop)),
         take_(std::move(take)),
         chore_(std::move(chore)) {}
+  // Runs the chore if it is due. Returns how long poll may wait, in milliseconds.
+  int DoChore();
   void Run();
 
   const std::vector<base::FileDescriptor> sockets_;
   const base::FileDescriptor stop_;  // an eventfd
   const Take take_;
   const std::optional<Chore> chore_;
+  base::TimeSource::Clock::time_point chore_due_{};
   std::thread thread_;
 };
 

@@ -7,11 +7,11 @@ std::shared_ptr<const void> ConnectionCalls::Begin(const std::string& peer) {
   std::shared_ptr<Use>& use = shared_->uses[peer];
   if (use == nullptr) use = std::make_shared<Use>();
   ++use->calls;
-  use->since = Clock::now();
+  use->since = shared_->time.Now();
   return {use.get(), [shared = shared_, use](const Use*) {
             const std::lock_guard ending(shared->mutex);
             --use->calls;
-            use->since = Clock::now();
+            use->since = shared->time.Now();
           }};
 }
 

@@ -11,11 +11,17 @@
 #include <optional>
 #include <string>
 
+#include "base/time_source.h"
+
 namespace thunderhead::service {
 
 class ConnectionCalls {
  public:
   using Clock = std::chrono::steady_clock;
+
+  // `time` must outlive it and the calls.
+  explicit ConnectionCalls(const base::TimeSource& time = base::SteadyTime())
+      : shared_(std::make_shared<Shared>(time)) {}
 
   struct Use {
     std::size_t calls = 0;      // now
@@ -32,11 +38,14 @@ class ConnectionCalls {
 
  private:
   struct Shared {
+    explicit Shared(const base::TimeSource& by) : time(by) {}
+
+    const base::TimeSource& time;
     std::mutex mutex;
     std::map<std::string, std::shared_ptr<Use>> uses;
   };
 
-  const std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+  const std::shared_ptr<Shared> shared_;
 };
 
 }  // namespace thunderhead::service

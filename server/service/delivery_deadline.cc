@@ -1,5 +1,7 @@
 #include "service/delivery_deadline.h"
 
+#include "service/alarm_time.h"
+
 namespace thunderhead::service {
 
 DeliveryDeadline::~DeliveryDeadline() {
@@ -9,7 +11,7 @@ DeliveryDeadline::~DeliveryDeadline() {
 }
 
 void DeliveryDeadline::Begin(std::size_t bytes) {
-  const Clock::time_point due = Clock::now() + DeliveryTime(limits_, bytes);
+  const Clock::time_point due = limits_.time->Now() + DeliveryTime(limits_, bytes);
   const std::lock_guard lock(call_->mutex);
   call_->due = due;
   if (!call_->alarm.has_value() || due < call_->rings_at) call_->SetAlarm(due);
@@ -23,18 +25,16 @@ void DeliveryDeadline::Taken() {
 void DeliveryDeadline::Call::SetAlarm(Clock::time_point at) {
   rings_at = at;
   alarm.emplace();
-  alarm->Set(std::chrono::system_clock::now() +
-                 std::chrono::ceil<std::chrono::system_clock::duration>(at - Clock::now()),
-             [self = shared_from_this()](bool rings) {
-               if (rings) self->Look();
-             });
+  alarm->Set(AlarmTime(time, at), [self = shared_from_this()](bool rings) {
+    if (rings) self->Look();
+  });
 }
 
 void DeliveryDeadline::Call::Look() {
   const std::lock_guard lock(mutex);
   if (context == nullptr) return;
   if (!due.has_value()) return alarm.reset();
-  if (*due > Clock::now()) return SetAlarm(*due);
+  if (*due > time.Now()) return SetAlarm(*due);
   context->TryCancel();
 }
 

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 
+#include "base/time_source.h"
 #include "service/limits.h"
 
 namespace thunderhead::service {
@@ -19,7 +20,7 @@ class DeliveryDeadline {
  public:
   // `limits` must outlive it.
   DeliveryDeadline(grpc::CallbackServerContext* context, const Limits& limits)
-      : limits_(limits), call_(std::make_shared<Call>(context)) {}
+      : limits_(limits), call_(std::make_shared<Call>(context, *limits.time)) {}
   DeliveryDeadline(const DeliveryDeadline&) = delete;
   DeliveryDeadline& operator=(const DeliveryDeadline&) = delete;
   // The call has ended: to be destroyed before OnDone returns.
@@ -36,13 +37,14 @@ class DeliveryDeadline {
   // State that the alarm may still use after the call has ended. The alarm is not set anew for each
   // message: when it rings, it looks when the one that is being written is due.
   struct Call : std::enable_shared_from_this<Call> {
-    explicit Call(grpc::CallbackServerContext* of) : context(of) {}
+    Call(grpc::CallbackServerContext* of, const base::TimeSource& by) : context(of), time(by) {}
     void SetAlarm(Clock::time_point at);
     void Look();
 
     // Recursive, as cancelling may end the call on the same thread.
     std::recursive_mutex mutex;
     grpc::CallbackServerContext* context;  // null: it has ended
+    const base::TimeSource& time;
     std::optional<Clock::time_point> due;  // nothing: no message is being written
     std::optional<grpc::Alarm> alarm;
     Clock::time_point rings_at;

@@ -14,6 +14,7 @@
 #include "access/rules.h"
 #include "base/error_details.h"
 #include "base/status.h"
+#include "service/alarm_time.h"
 #include "service/catalogue_follower.h"
 #include "service/delivery_deadline.h"
 #include "service/frame_messages.h"
@@ -86,11 +87,10 @@ class InteractCall : public InteractReactor,
     auto call =
         std::make_shared<InteractCall>(engine, context, std::move(caller), requests_per_second);
     call->held_by_grpc_ = call;
-    call->join_alarm_.Set(std::chrono::system_clock::now() + engine.limits.join_timeout,
-                          [weak = std::weak_ptr(call)](bool rang) {
-                            const auto self = weak.lock();
-                            if (rang && self != nullptr) self->JoinTooLate();
-                          });
+    {
+      const std::lock_guard lock(call->mutex_);
+      call->SetJoinAlarm();
+    }
     call->StartRead(&call->received_);
     return call.get();
   }
@@ -99,7 +99,8 @@ class InteractCall : public InteractReactor,
                std::shared_ptr<const access::Caller> caller, double requests_per_second)
       : engine_(engine),
         caller_(std::move(caller)),
-        budget_(requests_per_second, Clock::now()),
+        budget_(requests_per_second, engine.limits.time->Now()),
+        join_due_(engine.limits.time->Now() + engine.limits.join_timeout),
         delivery_(std::in_place, context, engine.limits) {}
 
   // Writes the next message, or ends the call, if there is a reason to and nothing is being
@@ -142,7 +143,7 @@ class InteractCall : public InteractReactor,
       if (!ok) end_ = grpc::Status(grpc::StatusCode::CANCELLED, "the client is gone");
     }
     if (ok && doubts.has_value()) {
-      session_->audience().Checked(person_id_, *doubts, Clock::now());
+      session_->audience().Checked(person_id_, *doubts, session_->Now());
     }
     ReadOn();
     Wake();
@@ -174,17 +175,28 @@ class InteractCall : public InteractReactor,
         const std::lock_guard lock(mutex_);
         Watch(nullptr);
       }
-      session_->audience().Leave(person_id_, Clock::now());
+      session_->audience().Leave(person_id_, session_->Now());
     }
     delivery_.reset();  // the session and updates may keep the call for longer
     held_by_grpc_.reset();
   }
 
  private:
-  void JoinTooLate() {
+  // Needs mutex_.
+  void SetJoinAlarm() {
+    join_alarm_.emplace().Set(AlarmTime(*engine_.limits.time, join_due_),
+                              [weak = weak_from_this()](bool rang) {
+                                const auto self = weak.lock();
+                                if (rang && self != nullptr) self->LookForJoin();
+                              });
+  }
+
+  // Ends the call if its client should have joined by now.
+  void LookForJoin() {
     {
       const std::lock_guard lock(mutex_);
-      if (session_ != nullptr) return;
+      if (session_ != nullptr || finished_) return;
+      if (engine_.limits.time->Now() < join_due_) return SetJoinAlarm();
     }
     const absl::Status status = JoinedTooLate(engine_.limits.join_timeout);
     caller_->Report("Interact/join", status);
@@ -308,7 +320,7 @@ class InteractCall : public InteractReactor,
     THUNDERHEAD_RETURN_IF_ERROR(caller_->StillKnown());
     session_->Touch();
     session_->audience().Heard(person_id_);
-    absl::Status status = budget_.Take(Clock::now());
+    absl::Status status = budget_.Take(engine_.limits.time->Now());
     if (status.ok()) status = CheckLimits(request);
     if (status.ok()) status = Obey(request);
     if (const char* act = PrivilegedAct(request); act != nullptr) {
@@ -334,8 +346,9 @@ class InteractCall : public InteractReactor,
     const session::Role role =
         access::MayPresent(caller_->identity().role) ? found.role : session::Role::kViewer;
     const std::size_t most = engine_.limits.max_viewers_per_session;
-    const std::optional<std::uint64_t> person_id = found.session->audience().Join(
-        role, name, shared_from_this(), Clock::now(), most, participant_key, join.answers_checks());
+    const std::optional<std::uint64_t> person_id =
+        found.session->audience().Join(role, name, shared_from_this(), found.session->Now(), most,
+                                       participant_key, join.answers_checks());
     if (!person_id.has_value()) return TooManyViewers(most);
     v1::InteractResponse response;
     v1::Joined& joined = *response.mutable_joined();
@@ -356,8 +369,8 @@ class InteractCall : public InteractReactor,
       session_ = found.session;
       requests_.emplace(engine_, caller_, session_, person_id_, std::move(participant_key));
       news_.emplace(person_id_, join.marks_by_changes(), engine_.catalogue.Changes());
+      join_alarm_.reset();
     }
-    join_alarm_.Cancel();
     if (join.window().hidden()) SetHidden(true);
     Wake();
     return absl::OkStatus();
@@ -422,7 +435,7 @@ class InteractCall : public InteractReactor,
           roster.SetHidden(person_id_, hidden);
           return absl::OkStatus();
         },
-        Clock::now());
+        session_->Now());
     {
       const std::lock_guard lock(mutex_);
       hidden_ = hidden;
@@ -434,13 +447,14 @@ class InteractCall : public InteractReactor,
   Engine& engine_;
   const std::shared_ptr<const access::Caller> caller_;
   access::RequestBudget budget_;  // used by the reading thread alone
-  grpc::Alarm join_alarm_;
+  const Clock::time_point join_due_;
   std::shared_ptr<InteractCall> held_by_grpc_;
   std::optional<DeliveryDeadline> delivery_;
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sent_;
 
   std::mutex mutex_;
+  std::optional<grpc::Alarm> join_alarm_;  // until the client has joined
   bool reading_ = true;
   bool writing_ = false;
   bool finished_ = false;

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "absl/status/status.h"
+#include "base/time_source.h"
 #include "thunderhead/v1/scene.pb.h"
 
 namespace thunderhead::service {
@@ -40,6 +41,9 @@ struct Limits {
   std::size_t grpc_memory_bytes = std::size_t{1} << 30;
   // Further calls of a connection wait in its client.
   int max_streams_per_connection = 1024;
+  // What delivery_time, join_timeout, unused_connection and max_handshakes_per_address are measured
+  // by; must outlive the server.
+  const base::TimeSource* time = &base::SteadyTime();
 };
 
 // How long a client may take for so many bytes of a picture.

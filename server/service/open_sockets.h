@@ -40,10 +40,10 @@ class OpenSockets {
   // shuts another down: of the peer's address, or of the one with most of them, the one that has
   // been without a call for longest, those that never had one first. False if all have calls. Looks
   // for those that others closed ten times a second at most.
-  bool Take(int socket, const std::string& peer, Clock::time_point now = Clock::now());
+  bool Take(int socket, const std::string& peer, Clock::time_point now);
 
   // Shuts those down that have been without a call for so long.
-  void CloseUnused(std::chrono::milliseconds unused, Clock::time_point now = Clock::now());
+  void CloseUnused(std::chrono::milliseconds unused, Clock::time_point now);
 
  private:
   struct Open {

@@ -71,7 +71,7 @@ std::shared_ptr<session::Session> PersonRequests::OwnView() {
 }
 
 absl::Status PersonRequests::ChangeRoster(Asker& asker, const v1::InteractRequest& request) {
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = session_->Now();
   absl::Status status = session_->audience().Change(
       [&](session::Roster& roster) {
         switch (request.message_case()) {
@@ -102,7 +102,7 @@ absl::Status PersonRequests::SetName(const std::string& text) {
         roster.Rename(person_id_, name);
         return absl::OkStatus();
       },
-      Clock::now());
+      session_->Now());
 }
 
 absl::Status PersonRequests::Update(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
@@ -167,7 +167,7 @@ absl::Status PersonRequests::DetachTo(Asker& asker, std::uint64_t look, std::uin
         THUNDERHEAD_ASSIGN_OR_RETURN(detached, roster.Detach(person_id_, returns));
         return absl::OkStatus();
       },
-      Clock::now()));
+      session_->Now()));
   if (!detached) return absl::OkStatus();
   around_.LookFrom(look, *camera, [this](const scene::Camera& first) {
     return engine_.sessions.OpenView(session_, first, caller_->identity().name);
@@ -196,7 +196,7 @@ absl::Status PersonRequests::Point(const v1::Point& point) {
   if (point.has_ray()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(ray, RayOf(point.ray(), "point.ray"));
   }
-  return session_->audience().Point(person_id_, ray, Clock::now());
+  return session_->audience().Point(person_id_, ray, session_->Now());
 }
 
 // Finds the places on the executor: they are many.
@@ -254,13 +254,13 @@ absl::Status PersonRequests::Draw(std::vector<glm::dvec3> positions_m,
         [&](session::Board& board) {
           return board.Add(person_id_, std::move(positions_m), color, participant_key_).status();
         },
-        Clock::now());
+        session_->Now());
   });
 }
 
 absl::Status PersonRequests::EraseMarks(const v1::EraseMarks& message) {
   return session_->audience().Erase(
-      person_id_, {message.mark_ids().begin(), message.mark_ids().end()}, Clock::now());
+      person_id_, {message.mark_ids().begin(), message.mark_ids().end()}, session_->Now());
 }
 
 }  // namespace thunderhead::service

@@ -110,15 +110,15 @@ absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, const Opti
   const auto sockets = std::make_shared<OpenSockets>(std::move(open));
   const auto handshakes = std::make_shared<base::Allowances>(options.handshakes_per_address);
   auto take = [acceptor = std::shared_ptr(std::move(acceptor)), sockets, handshakes,
-               proxies = options.proxies,
+               proxies = options.proxies, &time = *options.time,
                refused = std::move(refused)](base::FileDescriptor connection) {
     const auto peer = OpenSockets::PeerOf(connection.Get());
     if (!peer.has_value()) return;  // gone already
-    if (!proxies.Holds(*peer) &&
-        handshakes->Take(base::NetworkOf(*peer), std::chrono::steady_clock::now()).has_value()) {
+    if (!proxies.Holds(*peer) && handshakes->Take(base::NetworkOf(*peer), time.Now()).has_value()) {
       return refused(*peer, base::TooManyHandshakes());
     }
-    if (!sockets->Take(connection.Get(), *peer)) return refused(*peer, base::TooManyConnections());
+    if (!sockets->Take(connection.Get(), *peer, time.Now()))
+      return refused(*peer, base::TooManyConnections());
     grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters handed;
     handed.fd = connection.Release();
     acceptor->HandleNewConnection(&handed);
@@ -126,9 +126,11 @@ absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, const Opti
   THUNDERHEAD_ASSIGN_OR_RETURN(
       loop_, AcceptLoop::Start(
                  std::move(sockets_), std::move(take),
-                 AcceptLoop::Chore{options.unused / kLooks, [sockets, unused = options.unused] {
-                                     sockets->CloseUnused(unused);
-                                   }}));
+                 AcceptLoop::Chore{options.unused / kLooks,
+                                   [sockets, unused = options.unused, &time = *options.time] {
+                                     sockets->CloseUnused(unused, time.Now());
+                                   },
+                                   options.time}));
   return absl::OkStatus();
 }
 

@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/file_descriptor.h"
+#include "base/time_source.h"
 #include "base/trusted_proxies.h"
 #include "service/accept_loop.h"
 #include "service/open_sockets.h"
@@ -28,6 +29,7 @@ class PortListener {
     std::chrono::milliseconds unused;     // those without a call for so long are closed
     double handshakes_per_address = 0.0;  // as Limits has it; 0: no limit
     base::TrustedProxies proxies;         // which have none
+    const base::TimeSource* time = &base::SteadyTime();  // must outlive the listener
   };
 
   // Listens on "HOST:PORT", port 0 for a free one; connections wait until Start. 0.0.0.0 and [::]

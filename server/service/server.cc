@@ -65,9 +65,17 @@ std::shared_ptr<access::Door> OpenDoor() {
                                         access::QuotaLimits());
 }
 
-session::SessionsOptions WithFormat(session::SessionsOptions options) {
-  options.format = InteractFormat();
-  return options;
+session::SessionsOptions SessionsOf(const ServerOptions& options) {
+  session::SessionsOptions sessions = options.sessions;
+  sessions.format = InteractFormat();
+  sessions.time = options.time;
+  return sessions;
+}
+
+Limits LimitsOf(const ServerOptions& options) {
+  Limits limits = options.limits;
+  limits.time = options.time;
+  return limits;
 }
 
 class RunningServer final : public Server {
@@ -76,10 +84,10 @@ class RunningServer final : public Server {
       : store_(std::move(store)),
         session_store_(options.session_store),
         door_(options.door != nullptr ? options.door : OpenDoor()),
-        limits_(options.limits),
+        limits_(LimitsOf(options)),
         job_files_(options.job_files),
-        sessions_(WithFormat(options.sessions),
-                  {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
+        connection_calls_(std::make_shared<ConnectionCalls>(*options.time)),
+        sessions_(SessionsOf(options), {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
         executor_(options.executor),
         clouds_(options.clouds_folder, *store_, options.render_loop.memory) {}
 
@@ -155,7 +163,8 @@ class RunningServer final : public Server {
                        {.unused = limits_.unused_connection,
                         .handshakes_per_address =
                             tls.certificate.empty() ? 0.0 : limits_.max_handshakes_per_address,
-                        .proxies = door_->Proxies()},
+                        .proxies = door_->Proxies(),
+                        .time = limits_.time},
                        [this](const std::string& peer, const absl::Status& why) {
                          telemetry::Counted().refusals.Of(base::DetailsOf(why).reason).Add();
                          door_->ReportBeforeCall(peer, "Connect", why);
@@ -245,7 +254,7 @@ class RunningServer final : public Server {
   const std::shared_ptr<access::Door> door_;
   const Limits limits_;
   const JobFiles job_files_;
-  const std::shared_ptr<ConnectionCalls> connection_calls_ = std::make_shared<ConnectionCalls>();
+  const std::shared_ptr<ConnectionCalls> connection_calls_;
   mutable session::Sessions sessions_;
   Drain drain_;
   session::Upkeep upkeep_{sessions_, *store_, due_};

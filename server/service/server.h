@@ -12,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "access/door.h"
 #include "base/executor.h"
+#include "base/time_source.h"
 #include "jobs/jobs.h"
 #include "service/job_files.h"
 #include "service/limits.h"
@@ -33,6 +34,8 @@ struct TlsFiles {
 struct ServerOptions {
   std::string address;  // HOST:PORT, port 0 for a free one; empty: no port
   TlsFiles tls;         // of that port
+  // The time of sessions, their people and the limits; must outlive the server. A door has its own.
+  const base::TimeSource* time = &base::SteadyTime();
   // Decides who may call; null: everybody may do everything, and nothing is written down.
   std::shared_ptr<access::Door> door;
   Limits limits;

@@ -21,8 +21,9 @@ int Worth(const FrameForm& form) {
 
 }  // namespace
 
-FrameHub::FrameHub(std::function<void()> on_demand, std::function<void()> on_wait)
-    : on_demand_(std::move(on_demand)), on_wait_(std::move(on_wait)) {}
+FrameHub::FrameHub(std::function<void()> on_demand, std::function<void()> on_wait,
+                   const base::TimeSource& time)
+    : on_demand_(std::move(on_demand)), on_wait_(std::move(on_wait)), time_(time) {}
 
 absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
                                              const ViewerWants& wants) {
@@ -37,7 +38,7 @@ absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
     watches_[id].wants = wants;
     // JPEG as it is, then video in each tier.
     if (TakesVideo(watches_[id])) watches_[id].link = LinkEstimate(1 + kTiers);
-    SetLeastSteps(std::chrono::steady_clock::now());
+    SetLeastSteps(time_.Now());
   }
   on_demand_();
   return id;
@@ -50,7 +51,7 @@ void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
   Watch& watch = found->second;
   watch.wants = wants;
   watch.waits_until.reset();
-  SetLeastSteps(std::chrono::steady_clock::now());
+  SetLeastSteps(time_.Now());
   // The newest picture again if it is too small now.
   if (frame_ != nullptr && IsTooSmall(watch, *frame_)) watch.last_sequence = 0;
 }
@@ -72,7 +73,7 @@ void FrameHub::Leave(std::uint64_t viewer_id) {
   {
     const std::lock_guard lock(mutex_);
     watches_.erase(viewer_id);
-    SetLeastSteps(std::chrono::steady_clock::now());
+    SetLeastSteps(time_.Now());
   }
   on_demand_();
 }
@@ -177,7 +178,8 @@ bool FrameHub::HasFor(const Watch& watch, Time now) const {
          (problem_.has_value() && problem_count_ > watch.last_problem);
 }
 
-std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, Time now) {
+std::optional<FrameEvent> FrameHub::Take(std::uint64_t viewer_id, std::optional<Time> at) {
+  const Time now = at.value_or(time_.Now());
   std::shared_ptr<PublishedFrame> published;
   std::optional<Offer> offer;
   bool waits = false;
@@ -267,7 +269,9 @@ bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
   return true;
 }
 
-bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence, Time now) {
+bool FrameHub::Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence,
+                           std::optional<Time> at) {
+  const Time now = at.value_or(time_.Now());
   std::shared_ptr<Viewer> viewer;
   bool became_ready = false;
   {
@@ -315,14 +319,16 @@ std::optional<FrameHub::Time> FrameHub::WakeWaiting(Time now) {
   return next;
 }
 
-void FrameHub::LoseVideo(std::uint64_t viewer_id, Time now) {
+void FrameHub::LoseVideo(std::uint64_t viewer_id, std::optional<Time> at) {
+  const Time now = at.value_or(time_.Now());
   const std::lock_guard lock(mutex_);
   const auto found = watches_.find(viewer_id);
   if (found != watches_.end()) found->second.place.Lost(now);
 }
 
 std::vector<VideoOrder> FrameHub::OrderVideo(const EncodedFrame& described, bool still_follows,
-                                             Time now) {
+                                             std::optional<Time> at) {
+  const Time now = at.value_or(time_.Now());
   const std::lock_guard lock(mutex_);
   for (VideoStream& stream : streams_) stream.Begin();
   for (auto& [id, watch] : watches_) {
@@ -342,7 +348,9 @@ std::vector<VideoOrder> FrameHub::OrderVideo(const EncodedFrame& described, bool
 }
 
 std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
-                                std::vector<EncodedVideo> video, bool still_follows, Time now) {
+                                std::vector<EncodedVideo> video, bool still_follows,
+                                std::optional<Time> at) {
+  const Time now = at.value_or(time_.Now());
   const std::uint64_t scene_revision = described.scene_revision;
   std::shared_ptr<PublishedFrame> published;
   std::array<bool, kTiers> wanted{};
@@ -475,7 +483,7 @@ std::array<bool, kTiers> FrameHub::StillTiers(const PictureWidth& width) const {
 }
 
 bool FrameHub::HasReadyViewer() const {
-  const Time now = std::chrono::steady_clock::now();
+  const Time now = time_.Now();
   const std::lock_guard lock(mutex_);
   return std::any_of(watches_.begin(), watches_.end(),
                      [now](const auto& entry) { return IsReady(entry.second, now); });

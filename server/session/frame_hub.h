@@ -22,6 +22,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/time_source.h"
 #include "session/encoded_frame.h"
 #include "session/flight_window.h"
 #include "session/link_estimate.h"
@@ -76,8 +77,10 @@ class FrameHub {
 
   // `on_demand` is called, without the lock, whenever a viewer joins, leaves or becomes ready for
   // another frame. `on_wait` is called, without the lock, when WakeWaiting is to be called in time.
+  // `time` must outlive the hub; functions that are given no `at` read it.
   explicit FrameHub(
-      std::function<void()> on_demand, std::function<void()> on_wait = [] {});
+      std::function<void()> on_demand, std::function<void()> on_wait = [] {},
+      const base::TimeSource& time = base::SteadyTime());
 
   // Returns the viewer's id, or the reason given to Close. Does not call Wake.
   absl::StatusOr<std::uint64_t> Join(std::shared_ptr<Viewer> viewer, const ViewerWants& wants = {});
@@ -87,16 +90,15 @@ class FrameHub {
   // Takes the newest frame or problem that the viewer has not had, unless too many of its frames
   // are in flight, i.e. taken and not yet acknowledged, or it wants fewer a second. A frame that
   // cannot be encoded is not in flight.
-  std::optional<FrameEvent> Take(std::uint64_t viewer_id,
-                                 Time now = std::chrono::steady_clock::now());
+  std::optional<FrameEvent> Take(std::uint64_t viewer_id, std::optional<Time> at = std::nullopt);
 
   // Acknowledges every frame up to `sequence`. Wakes the viewer only if it may now take something,
   // and demands a frame only if it could take none before. False if there is no such viewer.
   bool Acknowledge(std::uint64_t viewer_id, std::uint64_t sequence,
-                   Time now = std::chrono::steady_clock::now());
+                   std::optional<Time> at = std::nullopt);
 
   // It cannot decode the video that it was sent, and goes on with JPEG until a key picture comes.
-  void LoseVideo(std::uint64_t viewer_id, Time now = std::chrono::steady_clock::now());
+  void LoseVideo(std::uint64_t viewer_id, std::optional<Time> at = std::nullopt);
 
   // Wakes those who have waited long enough for their next frame, as they want few a second.
   // Returns when the next has.
@@ -105,12 +107,12 @@ class FrameHub {
   // The pictures of video to encode of a frame before it is published. One at rest whose stills
   // follow is for those only who take them, and have none of its scene: others get it as JPEG.
   std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool still_follows,
-                                     Time now = std::chrono::steady_clock::now());
+                                     std::optional<Time> at = std::nullopt);
   // Replaces the newest frame, which has no picture yet, encoded in every tier that a viewer wants
   // now. Returns its sequence.
   std::uint64_t Publish(EncodedFrame described, EncodeFrame encode = nullptr,
                         std::vector<EncodedVideo> video = {}, bool still_follows = false,
-                        Time now = std::chrono::steady_clock::now());
+                        std::optional<Time> at = std::nullopt);
   // If the newest frame has that sequence: its still in a tier is there; there will be none; no
   // other has come for a while.
   void AddStill(std::uint64_t sequence, int tier, EncodedFrame still);
@@ -196,6 +198,7 @@ class FrameHub {
 
   const std::function<void()> on_demand_;
   const std::function<void()> on_wait_;
+  const base::TimeSource& time_;
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;

@@ -106,7 +106,9 @@ void SessionKeeper::Log(const absl::Status& outcome) {
 void SessionKeeper::Run() {
   std::unique_lock lock(mutex_);
   for (bool last = false; !last;) {
-    changed_.wait_for(lock, kPause, [this] { return stopping_ || !waiting_.empty(); });
+    const base::TimeSource& time = sessions_.time();
+    base::WaitUntil(time, changed_, lock, time.Now() + kPause,
+                    [this] { return stopping_ || !waiting_.empty(); });
     last = stopping_;
     const auto waiting = std::exchange(waiting_, {});
     lock.unlock();

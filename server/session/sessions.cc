@@ -46,13 +46,14 @@ absl::Status TooManySessions(const char* who, std::size_t max_sessions) {
 
 Session::Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
                  const AudienceFormat& format, const SessionSignals& signals,
-                 const RosterTimeouts& timeouts, std::string owner)
+                 const RosterTimeouts& timeouts, std::string owner, const base::TimeSource& time)
     : id_(std::move(id)),
       keys_(std::move(keys)),
       owner_(std::move(owner)),
       signals_(signals),
-      hub_(signals.on_work, signals.on_due),
-      audience_(format, rules, std::move(board), Clock::now(), signals.on_due, timeouts) {}
+      time_(time),
+      hub_(signals.on_work, signals.on_due, time),
+      audience_(format, rules, std::move(board), time.Now(), signals.on_due, timeouts) {}
 
 std::uint64_t Session::TakeRevision(IncompleteUpdate update) {
   const std::lock_guard lock(mutex_);
@@ -115,7 +116,7 @@ bool Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
     const std::lock_guard lock(mutex_);
     if (taken_.erase(revision) == 0) return false;
     if (newest_.has_value() && newest_->revision > revision) return true;
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = Now();
     newest_ = {.revision = revision,
                .scene = std::make_shared<const scene::Scene>(std::move(scene)),
                .changed_at = now,
@@ -128,18 +129,18 @@ bool Session::Show(std::uint64_t revision, scene::Scene scene, std::string seria
   for (const auto& view : views) {
     if (view != nullptr) view->Follow(newest);
   }
-  audience_.SceneChanged(newest.revision, domain, Clock::now());
+  audience_.SceneChanged(newest.revision, domain, Now());
   signals_.on_work();
   return true;
 }
 
 void Session::ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized,
                            const std::optional<std::string>& domain) {
-  audience_.RestoreControl(record.control, Clock::now());
+  audience_.RestoreControl(record.control, Now());
   {
     const std::lock_guard lock(mutex_);
     revision_count_ = record.scene_revision + kUnsavedRevisions - 1;
-    last_used_ = Clock::now();
+    last_used_ = Now();
   }
   Show(TakeRevision(), std::move(scene), std::move(serialized), domain);
 }
@@ -158,7 +159,7 @@ std::optional<NewestScene> Session::Newest() const {
 
 void Session::Touch() {
   const std::lock_guard lock(mutex_);
-  last_used_ = Clock::now();
+  last_used_ = Now();
 }
 
 Clock::time_point Session::last_used() const {
@@ -168,7 +169,7 @@ Clock::time_point Session::last_used() const {
 
 bool Session::IsWatched() const { return hub_.HasViewers() || !audience_.Empty(); }
 
-Clock::time_point Session::UsedUntil() const { return IsWatched() ? Clock::now() : last_used(); }
+Clock::time_point Session::UsedUntil() const { return IsWatched() ? Now() : last_used(); }
 
 SessionVersion Session::Version() const {
   const std::optional<NewestScene> newest = Newest();
@@ -189,15 +190,15 @@ SessionRecord Session::Record() const {
   record.marks = audience_.Drawn().marks();
   record.last_used =
       std::chrono::system_clock::now() -
-      std::chrono::duration_cast<std::chrono::system_clock::duration>(Clock::now() - UsedUntil());
+      std::chrono::duration_cast<std::chrono::system_clock::duration>(Now() - UsedUntil());
   return record;
 }
 
 std::shared_ptr<OwnView> OwnView::Of(const std::shared_ptr<Session>& session, std::string id,
                                      const scene::Camera& camera, std::string owner) {
-  auto drawn =
-      std::make_shared<Session>(std::move(id), SessionKeys{}, Rules{}, Board{}, AudienceFormat{},
-                                session->signals_, RosterTimeouts{}, std::move(owner));
+  auto drawn = std::make_shared<Session>(std::move(id), SessionKeys{}, Rules{}, Board{},
+                                         AudienceFormat{}, session->signals_, RosterTimeouts{},
+                                         std::move(owner), session->time_);
   std::shared_ptr<OwnView> view(new OwnView(std::move(drawn)));
   view->camera_ = camera;
   {
@@ -254,7 +255,7 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
   auto session = std::make_shared<Session>(
       base::RandomHex(kIdWords),
       SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)}, rules, Board{},
-      options_.format, signals_, options_.roster_timeouts, owner);
+      options_.format, signals_, options_.roster_timeouts, owner, time());
   Add(session);
   return session;
 }
@@ -262,9 +263,9 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
 std::shared_ptr<Session> Sessions::Restore(const SessionRecord& record, scene::Scene scene,
                                            std::string serialized,
                                            const std::optional<std::string>& domain) {
-  auto session =
-      std::make_shared<Session>(record.id, record.keys, record.rules, Board(record.marks),
-                                options_.format, signals_, options_.roster_timeouts, record.owner);
+  auto session = std::make_shared<Session>(record.id, record.keys, record.rules,
+                                           Board(record.marks), options_.format, signals_,
+                                           options_.roster_timeouts, record.owner, time());
   session->ShowRestored(record, std::move(scene), std::move(serialized), domain);
   const std::lock_guard lock(mutex_);
   Add(session);
@@ -375,7 +376,7 @@ std::vector<std::shared_ptr<Session>> Sessions::AllDrawn() {
 }
 
 void Sessions::DropExpired() {
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = time().Now();
   for (auto entry = sessions_.begin(); entry != sessions_.end();) {
     Session& session = *entry->second;
     const auto timeout =

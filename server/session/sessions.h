@@ -17,6 +17,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/time_source.h"
 #include "scene/scene.h"
 #include "session/audience.h"
 #include "session/change_rhythm.h"
@@ -70,10 +71,11 @@ struct SerializedScene {
 
 class Session {
  public:
-  // `signals` are called from any thread.
+  // `signals` are called from any thread. `time` must outlive it.
   Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
           const AudienceFormat& format, const SessionSignals& signals,
-          const RosterTimeouts& timeouts = {}, std::string owner = "");
+          const RosterTimeouts& timeouts = {}, std::string owner = "",
+          const base::TimeSource& time = base::SteadyTime());
 
   // Names it in this process; not a secret.
   const std::string& id() const { return id_; }
@@ -85,6 +87,8 @@ class Session {
   FrameHub& hub() { return hub_; }
   VideoEncoders& video() { return video_; }
   Audience& audience() { return audience_; }
+  // The time that the session, its hub and its audience go by.
+  Clock::time_point Now() const { return time_.Now(); }
 
   // A new revision, larger than all before. Taken when an update arrives, before its scene is
   // complete, so that the update that arrived last wins. Show or Drop comes after it.
@@ -132,6 +136,7 @@ class Session {
   const SessionKeys keys_;
   const std::string owner_;
   const SessionSignals signals_;
+  const base::TimeSource& time_;
   FrameHub hub_;
   VideoEncoders video_;
   Audience audience_;
@@ -140,7 +145,7 @@ class Session {
   std::map<std::uint64_t, IncompleteUpdate> taken_;  // by revision; neither shown nor dropped
   std::optional<NewestScene> newest_;
   ChangeRhythm rhythm_;
-  Clock::time_point last_used_ = Clock::now();
+  Clock::time_point last_used_ = time_.Now();
   std::vector<std::weak_ptr<OwnView>> own_views_;
 };
 
@@ -180,6 +185,7 @@ struct SessionsOptions {
   std::chrono::hours max_absence = std::chrono::hours(24 * 30);
   RosterTimeouts roster_timeouts;
   AudienceFormat format;
+  const base::TimeSource* time = &base::SteadyTime();  // must outlive the sessions
 };
 
 // A session, and the role of who came by the key.
@@ -226,6 +232,7 @@ class Sessions {
   std::vector<std::shared_ptr<Session>> AllDrawn();
 
   std::size_t max_sessions() const { return options_.max_sessions; }
+  const base::TimeSource& time() const { return *options_.time; }
 
  private:
   using Map = std::map<std::string, std::shared_ptr<Session>>;

@@ -37,9 +37,12 @@ Upkeep::~Upkeep() {
 }
 
 void Upkeep::Run() {
+  const base::TimeSource& time = sessions_.time();
   Clock::time_point looked_into_memory{};
   while (!stopping_) {
-    const Clock::time_point began = Clock::now();
+    const Clock::time_point began = time.Now();
+    // The shortest pause spares the processor, so it is by the real clock.
+    const Clock::time_point pauses_until = Clock::now() + kShortestPause;
     const bool looks_into_memory = began >= looked_into_memory + kHeldTimesPause;
     if (looks_into_memory) looked_into_memory = began;
     Clock::time_point next = began + kLongestPause;
@@ -47,14 +50,14 @@ void Upkeep::Run() {
       if (due.has_value()) next = std::min(next, *due);
     };
     for (const auto& session : sessions_.AllDrawn()) {
-      const Clock::time_point now = Clock::now();
+      const Clock::time_point now = time.Now();
       if (looks_into_memory) TellOfMemory(*session, store_, now);
       wait_for(session->audience().Tick(
           now, [&](const Ray& ray) { return PlaceSeen(*session, store_, ray); }));
       wait_for(session->hub().WakeWaiting(now));
     }
-    std::this_thread::sleep_until(began + kShortestPause);
-    if (next > Clock::now()) due_.Wait(next);
+    std::this_thread::sleep_until(pauses_until);
+    if (next > time.Now()) due_.Wait(next, time);
   }
 }
 

@@ -15,7 +15,7 @@ namespace thunderhead::session {
 
 class Upkeep {
  public:
-  // `sessions` must notify `due` in their on_due; all must outlive it.
+  // `sessions` must notify `due` in their on_due, and give the time; all must outlive it.
   Upkeep(Sessions& sessions, volume::StormStore& store, base::WakeSignal& due);
   ~Upkeep();
   Upkeep(const Upkeep&) = delete;
