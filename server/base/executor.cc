@@ -44,7 +44,8 @@ absl::Status WaitedTooLong(int hanging) {
 
 }  // namespace
 
-Executor::Executor(const Limits& limits) : shared_(std::make_shared<Shared>(limits)) {
+Executor::Executor(const Limits& limits, const TimeSource& time)
+    : shared_(std::make_shared<Shared>(limits, time)) {
   const std::lock_guard lock(shared_->mutex);
   for (int i = 0; i < limits.threads; ++i) AddWorker();
   watch_ = std::thread([this] { Watch(); });
@@ -55,7 +56,8 @@ Executor::~Executor() { Stop(); }
 void Executor::AddWorker() {
   const auto worker = shared_->workers.emplace_back(std::make_shared<Worker>());
   try {
-    threads_.emplace_back("a request", [shared = shared_, worker] { Work(shared, worker); });
+    threads_.emplace_back(
+        "a request", [shared = shared_, worker] { Work(shared, worker); }, shared_->time);
   } catch (...) {
     shared_->workers.remove(worker);
     throw;
@@ -78,7 +80,7 @@ void Executor::Submit(const std::string& owner, Task task) {
     } else {
       const auto queue = shared_->waiting.try_emplace(owner).first;
       try {
-        queue->second.push_back({std::move(task), Clock::now()});
+        queue->second.push_back({std::move(task), shared_->time.Now()});
       } catch (...) {
         if (queue->second.empty()) shared_->waiting.erase(queue);
         throw;
@@ -100,8 +102,10 @@ int Executor::Hanging() const {
 void Executor::Stop() {
   std::map<std::string, std::deque<Waiting>> refused;
   std::list<LooseThread> threads;
+  Clock::time_point deadline;
   {
     const std::lock_guard lock(shared_->mutex);
+    deadline = shared_->time.Now() + LooseThread::kPatience;
     shared_->stopping = true;
     refused.swap(shared_->waiting);
     shared_->waiting_count = 0;
@@ -112,12 +116,8 @@ void Executor::Stop() {
     for (const Waiting& waiting : tasks) waiting.task(ShuttingDown());
   }
   if (watch_.joinable()) watch_.join();
-  // Those that hang are waited for together, not one after another.
-  std::vector<std::thread> ending;
-  for (LooseThread& thread : threads) {
-    ending.emplace_back([ends = std::move(thread)] {});
-  }
-  for (std::thread& thread : ending) thread.join();
+  // One deadline for all: those that hang are not waited for one after another.
+  for (LooseThread& thread : threads) thread.LetGoBy(deadline);
 }
 
 std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
@@ -139,7 +139,7 @@ std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
   --shared.waiting_count;
   ++running;
   worker.owner = *std::move(owner);
-  worker.busy_since = Clock::now();
+  worker.busy_since = shared.time.Now();
   // Until it is known how long it takes.
   worker.charged_ms = shared.typical_ms;
   shared.shares.Used(worker.owner, worker.charged_ms);
@@ -152,7 +152,7 @@ void Executor::Leave(Shared& shared, const std::string& owner) {
 }
 
 void Executor::End(Shared& shared, Worker& worker) {
-  const std::chrono::duration<double, std::milli> took = Clock::now() - *worker.busy_since;
+  const std::chrono::duration<double, std::milli> took = shared.time.Now() - *worker.busy_since;
   worker.busy_since.reset();
   shared.shares.Used(worker.owner, took.count() - worker.charged_ms);
   if (worker.hangs) return;
@@ -203,9 +203,7 @@ void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr
 }
 
 void Executor::Replace(Clock::time_point now) {
-  std::erase_if(threads_, [](const LooseThread& thread) {
-    return thread.EndsWithin(std::chrono::milliseconds(0));
-  });
+  std::erase_if(threads_, [](const LooseThread& thread) { return thread.HasEnded(); });
   int hanging = static_cast<int>(std::ranges::count_if(
       shared_->workers, [](const std::shared_ptr<Worker>& worker) { return worker->hangs; }));
   const std::vector<std::shared_ptr<Worker>> workers(shared_->workers.begin(),
@@ -244,7 +242,7 @@ std::vector<Executor::Task> Executor::TakeLate(Shared& shared, Clock::time_point
 void Executor::Watch() {
   std::unique_lock lock(shared_->mutex);
   while (!shared_->stopping) {
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = shared_->time.Now();
     std::vector<Task> late;
     try {
       late = TakeLate(*shared_, now);
@@ -263,7 +261,8 @@ void Executor::Watch() {
     if (shared_->waiting.empty()) {
       shared_->changed.wait(lock);
     } else {
-      shared_->changed.wait_for(lock, shared_->limits.hangs_after / 10);
+      shared_->changed.wait_until(
+          lock, shared_->time.LookAgainAt(now + shared_->limits.hangs_after / 10));
     }
   }
 }

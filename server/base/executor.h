@@ -21,6 +21,7 @@
 #include "absl/status/status.h"
 #include "base/fair_share.h"
 #include "base/loose_thread.h"
+#include "base/time_source.h"
 
 namespace thunderhead::base {
 
@@ -43,7 +44,8 @@ class Executor {
     std::chrono::milliseconds max_wait = std::chrono::seconds(60);
   };
 
-  explicit Executor(const Limits& limits);
+  // `time` must outlive it.
+  explicit Executor(const Limits& limits, const TimeSource& time = SteadyTime());
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
@@ -54,12 +56,12 @@ class Executor {
   // Tasks that hang now.
   int Hanging() const;
 
-  // Waits for running tasks to end, but leaves behind those that hang; waiting and later tasks are
-  // refused.
+  // Waits for running tasks to end, for LooseThread::kPatience in all, and leaves behind those that
+  // do not; waiting and later tasks are refused.
   void Stop();
 
  private:
-  using Clock = std::chrono::steady_clock;
+  using Clock = TimeSource::Clock;
 
   struct Waiting {
     Task task;
@@ -74,9 +76,10 @@ class Executor {
   };
   // All that threads use, which may be left behind.
   struct Shared {
-    explicit Shared(const Limits& of) : limits(of) {}
+    Shared(const Limits& of, const TimeSource& by) : limits(of), time(by) {}
 
     const Limits limits;
+    const TimeSource& time;
     std::mutex mutex;
     std::condition_variable changed;
     std::map<std::string, std::deque<Waiting>> waiting;  // by owner; no queue is empty

@@ -17,11 +17,12 @@ std::int64_t Nanoseconds(const statx_timestamp& time) {
 
 std::chrono::steady_clock::time_point UnchangedSince(std::int64_t changed_ns,
                                                      std::chrono::steady_clock::time_point earliest,
-                                                     std::chrono::steady_clock::time_point now) {
+                                                     std::chrono::steady_clock::time_point now,
+                                                     std::chrono::system_clock::time_point wall) {
   using std::chrono::nanoseconds;
   constexpr nanoseconds kLongest = std::chrono::hours(24 * 365);
-  const nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
-  const nanoseconds age = std::clamp(wall - nanoseconds(changed_ns), nanoseconds(0), kLongest);
+  const nanoseconds age = std::clamp(nanoseconds(wall.time_since_epoch()) - nanoseconds(changed_ns),
+                                     nanoseconds(0), kLongest);
   return std::max(earliest, now - age);
 }
 

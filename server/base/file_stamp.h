@@ -26,10 +26,11 @@ struct FileStamp {
 // (since 1970). That is by the wall clock, which may be set back, be another machine's or be a
 // copy's: it counts only from `earliest` on, before which the file was not there or was another,
 // and never into the future. Counted on by the steady clock, a complete file is waited for no
-// longer than it rests.
-std::chrono::steady_clock::time_point UnchangedSince(std::int64_t changed_ns,
-                                                     std::chrono::steady_clock::time_point earliest,
-                                                     std::chrono::steady_clock::time_point now);
+// longer than it rests. `wall` is the wall clock's time at `now`.
+std::chrono::steady_clock::time_point UnchangedSince(
+    std::int64_t changed_ns, std::chrono::steady_clock::time_point earliest,
+    std::chrono::steady_clock::time_point now,
+    std::chrono::system_clock::time_point wall = std::chrono::system_clock::now());
 
 // None if the file cannot be found.
 std::optional<FileStamp> StampOf(const std::string& path);

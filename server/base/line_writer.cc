@@ -6,9 +6,10 @@
 
 namespace thunderhead::base {
 
-LineWriter::LineWriter(std::size_t max_waiting, WriteLine write)
-    : shared_(std::make_shared<Shared>(max_waiting, std::move(write))),
-      thread_("writing lines", [shared = shared_] { Run(*shared); }) {}
+LineWriter::LineWriter(std::size_t max_waiting, WriteLine write, const TimeSource& time)
+    : shared_(std::make_shared<Shared>(max_waiting, std::move(write), time)),
+      thread_(
+          "writing lines", [shared = shared_] { Run(*shared); }, time) {}
 
 LineWriter::~LineWriter() {
   {
@@ -38,8 +39,8 @@ void LineWriter::Write(std::string line) {
 
 bool LineWriter::Flush(std::chrono::milliseconds time) {
   std::unique_lock lock(shared_->mutex);
-  return shared_->changed.wait_for(lock, time,
-                                   [&] { return shared_->waiting.empty() && !shared_->writing; });
+  return WaitUntil(shared_->time, shared_->changed, lock, shared_->time.Now() + time,
+                   [&] { return shared_->waiting.empty() && !shared_->writing; });
 }
 
 bool LineWriter::TryWrite(const Shared& shared, const Line& line) {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/loose_thread.h"
+#include "base/time_source.h"
 
 namespace thunderhead::base {
 
@@ -24,8 +25,8 @@ class LineWriter {
   // dropped. May hang, so it must own everything it uses.
   using WriteLine = std::function<void(const std::string& line, std::uint64_t left_out)>;
 
-  // Beyond `max_waiting` waiting lines, new ones are dropped.
-  LineWriter(std::size_t max_waiting, WriteLine write);
+  // Beyond `max_waiting` waiting lines, new ones are dropped. `time` must outlive this.
+  LineWriter(std::size_t max_waiting, WriteLine write, const TimeSource& time = SteadyTime());
   // Writes the waiting lines, unless writing hangs.
   ~LineWriter();
   LineWriter(const LineWriter&) = delete;
@@ -42,10 +43,12 @@ class LineWriter {
     std::uint64_t left_out = 0;  // before it
   };
   struct Shared {
-    Shared(std::size_t most, WriteLine by) : max_waiting(most), write(std::move(by)) {}
+    Shared(std::size_t most, WriteLine by, const TimeSource& at)
+        : max_waiting(most), write(std::move(by)), time(at) {}
 
     const std::size_t max_waiting;
     const WriteLine write;
+    const TimeSource& time;
     std::mutex mutex;
     std::condition_variable changed;
     std::deque<Line> waiting;

@@ -9,10 +9,12 @@
 namespace thunderhead::base {
 
 Looks::Looks(const std::string& path, std::function<void()> look,
-             std::chrono::milliseconds patience, std::optional<std::chrono::milliseconds> pause)
+             std::chrono::milliseconds patience, std::optional<std::chrono::milliseconds> pause,
+             const TimeSource& time)
     : patience_(patience),
-      shared_(new Shared{.look = std::move(look), .path = path, .pause = pause}),
-      thread_(absl::StrCat("a look at ", path), [shared = shared_] { Run(shared); }) {}
+      shared_(new Shared{.look = std::move(look), .path = path, .pause = pause, .time = time}),
+      thread_(
+          absl::StrCat("a look at ", path), [shared = shared_] { Run(shared); }, time) {}
 
 Looks::~Looks() {
   bool hangs = false;
@@ -30,9 +32,10 @@ void Looks::LookAgain() {
   if (shared_->hangs) return;
   const std::uint64_t asked = ++shared_->asked;
   shared_->changed.notify_all();
-  if (!shared_->changed.wait_for(lock, patience_, [&] { return shared_->done >= asked; })) {
-    shared_->hangs = true;
-  }
+  const TimeSource& time = shared_->time;
+  const bool done = WaitUntil(time, shared_->changed, lock, time.Now() + patience_,
+                              [&] { return shared_->done >= asked; });
+  if (!done) shared_->hangs = true;
 }
 
 void Looks::Run(const std::shared_ptr<Shared>& shared) {
@@ -40,7 +43,7 @@ void Looks::Run(const std::shared_ptr<Shared>& shared) {
   while (true) {
     const auto is_due = [&] { return shared->stopping || shared->asked > shared->done; };
     if (shared->pause.has_value()) {
-      shared->changed.wait_for(lock, *shared->pause, is_due);
+      WaitUntil(shared->time, shared->changed, lock, shared->time.Now() + *shared->pause, is_due);
     } else {
       shared->changed.wait(lock, is_due);
     }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/loose_thread.h"
+#include "base/time_source.h"
 
 namespace thunderhead::base {
 
@@ -21,14 +22,15 @@ class Looks {
   static constexpr std::chrono::seconds kPatience{1};
 
   // `look` must own all that it uses, as it may outlive this. `path` is what it looks at, for the
-  // log.
+  // log. `time` must outlive this.
   Looks(const std::string& path, std::function<void()> look,
-        std::chrono::milliseconds patience = kPatience)
-      : Looks(path, std::move(look), patience, std::nullopt) {}
+        std::chrono::milliseconds patience = kPatience, const TimeSource& time = SteadyTime())
+      : Looks(path, std::move(look), patience, std::nullopt, time) {}
   // Looks by itself, too, after each such pause.
   static std::unique_ptr<Looks> Every(std::chrono::milliseconds pause, const std::string& path,
-                                      std::function<void()> look) {
-    return std::unique_ptr<Looks>(new Looks(path, std::move(look), kPatience, pause));
+                                      std::function<void()> look,
+                                      const TimeSource& time = SteadyTime()) {
+    return std::unique_ptr<Looks>(new Looks(path, std::move(look), kPatience, pause, time));
   }
   ~Looks();
   Looks(const Looks&) = delete;
@@ -43,6 +45,7 @@ class Looks {
     const std::function<void()> look;
     const std::string path;
     const std::optional<std::chrono::milliseconds> pause;
+    const TimeSource& time;
     std::mutex mutex;
     std::condition_variable changed;
     std::uint64_t asked = 0;
@@ -51,7 +54,7 @@ class Looks {
     bool stopping = false;
   };
   Looks(const std::string& path, std::function<void()> look, std::chrono::milliseconds patience,
-        std::optional<std::chrono::milliseconds> pause);
+        std::optional<std::chrono::milliseconds> pause, const TimeSource& time);
   static void Run(const std::shared_ptr<Shared>& shared);
 
   const std::chrono::milliseconds patience_;

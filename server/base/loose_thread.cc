@@ -12,17 +12,20 @@ std::atomic<bool> any_left_behind{false};
 
 }  // namespace
 
-LooseThread::LooseThread(std::string name, std::function<void()> run) : name_(std::move(name)) {
+LooseThread::LooseThread(std::string name, std::function<void()> run, const TimeSource& time)
+    : time_(&time), name_(std::move(name)) {
   std::packaged_task<void()> task(std::move(run));
   ended_ = task.get_future();
   thread_ = std::thread(std::move(task));
 }
 
-LooseThread::~LooseThread() { LetGoAfter(kPatience); }
+LooseThread::~LooseThread() {
+  if (thread_.joinable()) LetGoBy(time_->Now() + kPatience);
+}
 
-void LooseThread::LetGoAfter(std::chrono::seconds patience) {
+void LooseThread::LetGoBy(Time deadline) {
   if (!thread_.joinable()) return;
-  if (ended_.wait_for(patience) == std::future_status::ready) {
+  if (EndsBy(deadline)) {
     thread_.join();
     return;
   }
@@ -31,8 +34,16 @@ void LooseThread::LetGoAfter(std::chrono::seconds patience) {
   thread_.detach();
 }
 
-bool LooseThread::EndsWithin(std::chrono::milliseconds time) const {
-  return ended_.wait_for(time) == std::future_status::ready;
+bool LooseThread::EndsBy(Time deadline) const {
+  while (!HasEnded()) {
+    if (time_->Now() >= deadline) return false;
+    ended_.wait_until(time_->LookAgainAt(deadline));
+  }
+  return true;
+}
+
+bool LooseThread::HasEnded() const {
+  return ended_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 bool LooseThread::AnyLeftBehind() { return any_left_behind; }

@@ -8,35 +8,43 @@
 #include <string>
 #include <thread>
 
+#include "base/time_source.h"
+
 namespace thunderhead::base {
 
 class LooseThread {
  public:
+  using Time = TimeSource::Clock::time_point;
+
+  // How long an owner waits for the end of a thread that it has told to end.
+  static constexpr std::chrono::seconds kPatience{5};
+
   LooseThread() = default;
-  LooseThread(std::string name, std::function<void()> run);
-  // Waits for its end, for a few seconds; its owner must have told it to end before.
+  // The thread's end is waited for by `time`, which must outlive this.
+  LooseThread(std::string name, std::function<void()> run, const TimeSource& time = SteadyTime());
+  // Waits kPatience for its end; its owner must have told it to end before.
   ~LooseThread();
   LooseThread(LooseThread&&) noexcept = default;
   LooseThread& operator=(LooseThread&&) = delete;
 
-  // Waits at most that long for it to end; true if it has.
-  bool EndsWithin(std::chrono::milliseconds time) const;
+  // Waits until it ends or until `deadline`; true if it has ended.
+  bool EndsBy(Time deadline) const;
+  bool HasEnded() const;
 
   // Throws what it threw, once it has ended.
   void Rethrow() const { ended_.get(); }
 
   // It has been waited for already: it is joined if it has ended, and left behind if not.
-  void LetGo() { LetGoAfter(std::chrono::seconds(0)); }
+  void LetGo() { LetGoBy(Time::min()); }
+  // Waits for its end until `deadline`, after which it is left behind.
+  void LetGoBy(Time deadline);
 
   // True if one was left behind in this process: it must end by _exit, as the thread may wake up
   // while what it uses is being destroyed.
   static bool AnyLeftBehind();
 
  private:
-  static constexpr std::chrono::seconds kPatience{5};
-
-  void LetGoAfter(std::chrono::seconds patience);
-
+  const TimeSource* time_ = &SteadyTime();
   std::string name_;
   std::shared_future<void> ended_;
   std::thread thread_;

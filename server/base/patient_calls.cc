@@ -28,9 +28,10 @@ absl::Status PatientCalls::Run(const std::string& storage, const std::function<v
     const std::lock_guard lock(mutex_);
     if (Hangs(storage)) return NoAnswer(storage);
   }
-  const Stopwatch since;
-  LooseThread thread(absl::StrCat("a call to ", storage), call);
-  if (thread.EndsWithin(patience_)) {
+  // From before the call begins.
+  const auto since = time_.Now();
+  LooseThread thread(absl::StrCat("a call to ", storage), call, time_);
+  if (thread.EndsBy(since + patience_)) {
     thread.Rethrow();
     return absl::OkStatus();
   }
@@ -41,18 +42,18 @@ absl::Status PatientCalls::Run(const std::string& storage, const std::function<v
 
 double PatientCalls::HangingSeconds() {
   const std::lock_guard lock(mutex_);
-  double longest_ms = 0.0;
+  const auto now = time_.Now();
+  TimeSource::Clock::duration longest{};
   for (const auto& [storage, call] : hanging_) {
-    if (call.thread.EndsWithin(std::chrono::milliseconds(0))) continue;
-    longest_ms = std::max(longest_ms, call.since.ElapsedMs());
+    if (!call.thread.HasEnded()) longest = std::max(longest, now - call.since);
   }
-  return 1e-3 * longest_ms;
+  return std::chrono::duration<double>(longest).count();
 }
 
 bool PatientCalls::Hangs(const std::string& storage) {
   const auto [begin, end] = hanging_.equal_range(storage);
   for (auto call = begin; call != end;) {
-    if (!call->second.thread.EndsWithin(std::chrono::milliseconds(0))) return true;
+    if (!call->second.thread.HasEnded()) return true;
     call = hanging_.erase(call);
   }
   return false;

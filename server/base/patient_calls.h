@@ -15,7 +15,7 @@
 #include "absl/status/status.h"
 #include "base/loose_thread.h"
 #include "base/status.h"
-#include "base/stopwatch.h"
+#include "base/time_source.h"
 
 namespace thunderhead::base {
 
@@ -24,7 +24,9 @@ inline constexpr char kStorageHangs[] = "STORAGE_HANGS";
 
 class PatientCalls {
  public:
-  explicit PatientCalls(std::chrono::milliseconds patience) : patience_(patience) {}
+  // `time` must outlive this.
+  explicit PatientCalls(std::chrono::milliseconds patience, const TimeSource& time = SteadyTime())
+      : patience_(patience), time_(time) {}
   // Leaves behind what hangs.
   ~PatientCalls();
   PatientCalls(const PatientCalls&) = delete;
@@ -52,13 +54,14 @@ class PatientCalls {
   // A call that did not return in time.
   struct Hanging {
     LooseThread thread;
-    Stopwatch since;
+    TimeSource::Clock::time_point since;
   };
 
   // With the mutex held; lets go of the calls that have returned.
   bool Hangs(const std::string& storage);
 
   const std::chrono::milliseconds patience_;
+  const TimeSource& time_;
   std::mutex mutex_;
   std::multimap<std::string, Hanging> hanging_;  // by storage
 };

@@ -18,8 +18,8 @@ double Seconds(SlowCalls::Clock::duration time) {
 }  // namespace
 
 SlowCalls::SlowCalls(std::chrono::milliseconds patience,
-                     std::function<void(const std::string&)> say)
-    : patience_(patience), say_(std::move(say)) {
+                     std::function<void(const std::string&)> say, const TimeSource& time)
+    : patience_(patience), say_(std::move(say)), time_(time) {
   // Signals are for the threads that wait for them.
   sigset_t all;
   sigset_t before;
@@ -38,28 +38,29 @@ SlowCalls& SlowCalls::OfProcess() {
 
 std::list<SlowCalls::Begun>::iterator SlowCalls::Begin(std::string path) {
   const std::lock_guard lock(mutex_);
-  return calls_.insert(calls_.end(), {std::move(path), Clock::now(), patience_});
+  return calls_.insert(calls_.end(), {std::move(path), time_.Now(), patience_});
 }
 
 void SlowCalls::End(std::list<Begun>::iterator call) {
   const std::lock_guard lock(mutex_);
   if (call->say_after > patience_) {
-    say_(
-        absl::StrFormat("%s: answered after %.1f s", call->path, Seconds(Clock::now() - call->at)));
+    say_(absl::StrFormat("%s: answered after %.1f s", call->path, Seconds(time_.Now() - call->at)));
   }
   calls_.erase(call);
 }
 
 void SlowCalls::Watch(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (!stopped_.wait_for(lock, stop, patience_ / 4, [&] { return stop.stop_requested(); })) {
-    const auto now = Clock::now();
+  while (!stop.stop_requested()) {
+    const auto now = time_.Now();
     for (Begun& call : calls_) {
       if (now - call.at < call.say_after) continue;
       say_(absl::StrFormat("%s: has not answered for %.1f s; its storage is slow or hangs",
                            call.path, Seconds(now - call.at)));
       call.say_after *= 2;
     }
+    stopped_.wait_until(lock, stop, time_.LookAgainAt(now + patience_ / 4),
+                        [&] { return stop.stop_requested(); });
   }
 }
 

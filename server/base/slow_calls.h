@@ -12,15 +12,18 @@
 #include <string>
 #include <thread>
 
+#include "base/time_source.h"
+
 namespace thunderhead::base {
 
 class SlowCalls {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = TimeSource::Clock;
 
   // Says, from a thread of its own, of each call that takes longer than `patience`, again each time
-  // that it has taken twice as long, and once it returns.
-  SlowCalls(std::chrono::milliseconds patience, std::function<void(const std::string&)> say);
+  // that it has taken twice as long, and once it returns. `time` must outlive this.
+  SlowCalls(std::chrono::milliseconds patience, std::function<void(const std::string&)> say,
+            const TimeSource& time = SteadyTime());
   // Must outlive its calls.
   ~SlowCalls() = default;
   SlowCalls(const SlowCalls&) = delete;
@@ -44,6 +47,7 @@ class SlowCalls {
 
   const std::chrono::milliseconds patience_;
   const std::function<void(const std::string&)> say_;
+  const TimeSource& time_;
   std::mutex mutex_;
   std::condition_variable_any stopped_;
   std::list<Begun> calls_;

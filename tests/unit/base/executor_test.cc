@@ -10,60 +10,78 @@
 #include <vector>
 
 #include "base/error_details.h"
-#include "base/stopwatch.h"
 #include "gtest/gtest.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::base {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::ManualTime;
+using testing::WaitFor;
 
 // Tasks that hang until they are let go, with what they own.
 class Hang {
  public:
   Executor::Task Task() {
-    return [gate = gate_](const absl::Status& status) {
-      if (status.ok()) gate.wait();
+    return [gate = gate_, begun = begun_](const absl::Status& status) {
+      if (!status.ok()) return;
+      ++*begun;
+      gate.wait();
     };
+  }
+  // Waits until so many of them run.
+  bool AwaitBegun(int count) const {
+    return WaitFor([&] { return *begun_ == count; });
   }
   void LetGo() { promise_.set_value(); }
 
  private:
+  const std::shared_ptr<std::atomic<int>> begun_ = std::make_shared<std::atomic<int>>(0);
   std::promise<void> promise_;
   std::shared_future<void> gate_ = promise_.get_future().share();
 };
 
 TEST(ExecutorTest, OthersGoOnBesideTasksThatHang) {
-  Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(50)});
+  ManualTime time;
+  Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(50)}, time);
   Hang hang;
   for (int i = 0; i < 5; ++i) executor.Submit("", hang.Task());
   std::promise<absl::Status> ran;
   executor.Submit("", [&ran](const absl::Status& status) { ran.set_value(status); });
-  auto done = ran.get_future();
-  ASSERT_EQ(done.wait_for(std::chrono::seconds(10)), std::future_status::ready);
-  EXPECT_TRUE(done.get().ok());
-  EXPECT_GE(executor.Hanging(), 4);
-  hang.LetGo();
-  for (int i = 0; i < 1000 && executor.Hanging() > 0; ++i) {
-    std::this_thread::sleep_for(milliseconds(5));
+  for (const int begun : {2, 4}) {
+    ASSERT_TRUE(hang.AwaitBegun(begun));
+    EXPECT_EQ(executor.Hanging(), begun - 2) << "no more than have run for long";
+    time.Advance(milliseconds(50));
   }
-  EXPECT_EQ(executor.Hanging(), 0) << "those that return leave the place to others";
+  EXPECT_TRUE(ran.get_future().get().ok());
+  EXPECT_EQ(executor.Hanging(), 4);
+  hang.LetGo();
+  EXPECT_TRUE(WaitFor([&] { return executor.Hanging() == 0; }))
+      << "those that return leave the place to others";
   executor.Stop();
 }
 
 TEST(ExecutorTest, WhereTooManyHangWhoWaitsIsRefusedInTime) {
+  ManualTime time;
   Executor executor({.threads = 1,
                      .max_waiting = 100,
                      .hangs_after = milliseconds(20),
                      .max_hanging = 2,
-                     .max_wait = milliseconds(300)});
+                     .max_wait = milliseconds(300)},
+                    time);
   Hang hang;
   for (int i = 0; i < 3; ++i) executor.Submit("", hang.Task());
   std::promise<absl::Status> ran;
   executor.Submit("", [&ran](const absl::Status& status) { ran.set_value(status); });
-  auto done = ran.get_future();
-  ASSERT_EQ(done.wait_for(std::chrono::seconds(10)), std::future_status::ready);
-  const absl::Status refused = done.get();
+  for (const int begun : {1, 2}) {
+    ASSERT_TRUE(hang.AwaitBegun(begun));
+    time.Advance(milliseconds(20));
+  }
+  ASSERT_TRUE(hang.AwaitBegun(3));
+  time.Advance(milliseconds(260));
+  const absl::Status refused = ran.get_future().get();
   EXPECT_TRUE(absl::IsDeadlineExceeded(refused)) << refused;
   EXPECT_EQ(DetailsOf(refused).reason, "REQUESTS_HANG");
   EXPECT_TRUE(DetailsOf(refused).retry_after.has_value());
@@ -71,16 +89,28 @@ TEST(ExecutorTest, WhereTooManyHangWhoWaitsIsRefusedInTime) {
 }
 
 TEST(ExecutorTest, StopWaitsForAllThatHangTogether) {
-  Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(20)});
+  static ManualTime time;  // threads that are left behind outlive the test
+  Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(20)}, time);
   Hang hang;
   for (int i = 0; i < 8; ++i) executor.Submit("", hang.Task());
-  for (int i = 0; i < 1000 && executor.Hanging() < 6; ++i) {
-    std::this_thread::sleep_for(milliseconds(5));
+  for (const int begun : {2, 4, 6}) {
+    ASSERT_TRUE(hang.AwaitBegun(begun));
+    time.Advance(milliseconds(20));
   }
-  EXPECT_GE(executor.Hanging(), 6);
-  const Stopwatch stopwatch;
-  executor.Stop();
-  EXPECT_LT(stopwatch.ElapsedMs(), 15'000.0) << "each has five seconds";
+  ASSERT_TRUE(hang.AwaitBegun(8));
+  EXPECT_EQ(executor.Hanging(), 6);
+  auto stopped = std::async(std::launch::async, [&] { executor.Stop(); });
+  // It stops when it refuses.
+  ASSERT_TRUE(WaitFor([&] {
+    const auto refused = std::make_shared<std::atomic<bool>>(false);
+    executor.Submit("", [refused](const absl::Status& status) {
+      *refused = DetailsOf(status).reason == "SHUTTING_DOWN";
+    });
+    return refused->load();
+  }));
+  time.Advance(LooseThread::kPatience);
+  EXPECT_EQ(stopped.wait_for(testing::kHangLimit), std::future_status::ready)
+      << "they have five seconds together";
   hang.LetGo();
 }
 
@@ -88,13 +118,14 @@ TEST(ExecutorTest, OwnersTakeTurns) {
   std::mutex mutex;
   std::vector<std::string> order;
   std::promise<void> last;
+  ManualTime time;
   {
-    Executor executor({.threads = 1, .max_waiting = 100, .max_waiting_each = 100});
+    Executor executor({.threads = 1, .max_waiting = 100, .max_waiting_each = 100}, time);
     Hang hang;
     executor.Submit("", hang.Task());
     const auto submit = [&](const std::string& owner) {
       executor.Submit(owner, [&, owner](const absl::Status&) {
-        std::this_thread::sleep_for(milliseconds(2));
+        time.Advance(milliseconds(2));
         const std::lock_guard lock(mutex);
         order.push_back(owner);
         if (order.size() == 42) last.set_value();
@@ -111,12 +142,12 @@ TEST(ExecutorTest, OwnersTakeTurns) {
 
 TEST(ExecutorTest, LongTasksOfOneOwnerLeaveAThreadToOthers) {
   std::promise<absl::Status> ran;
-  Executor executor({.threads = 3});
+  ManualTime time;
+  Executor executor({.threads = 3}, time);
   Hang hang;
   for (int i = 0; i < 10; ++i) executor.Submit("hog", hang.Task());
   executor.Submit("other", [&ran](const absl::Status& status) { ran.set_value(status); });
-  auto done = ran.get_future();
-  EXPECT_EQ(done.wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  EXPECT_EQ(ran.get_future().wait_for(testing::kHangLimit), std::future_status::ready);
   hang.LetGo();
 }
 
@@ -134,7 +165,8 @@ TEST(ExecutorTest, OneOwnerDoesNotFillTheQueue) {
 
 TEST(ExecutorTest, ATaskWithoutMemoryFailsAlone) {
   std::promise<absl::Status> ran;
-  Executor executor({.threads = 1});
+  ManualTime time;
+  Executor executor({.threads = 1}, time);
   executor.Submit("", [](const absl::Status&) { throw std::bad_alloc(); });
   executor.Submit("", [&ran](const absl::Status& status) { ran.set_value(status); });
   EXPECT_TRUE(ran.get_future().get().ok());
@@ -142,8 +174,9 @@ TEST(ExecutorTest, ATaskWithoutMemoryFailsAlone) {
 
 TEST(ExecutorTest, ManyTasksRunEachOnce) {
   std::atomic<int> runs{0};
+  ManualTime time;
   {
-    Executor executor({.threads = 4, .max_waiting = 10'000});
+    Executor executor({.threads = 4, .max_waiting = 10'000}, time);
     std::vector<std::jthread> threads;
     for (int i = 0; i < 4; ++i) {
       threads.emplace_back([&] {

@@ -5,38 +5,44 @@
 #include <future>
 #include <new>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::base {
 namespace {
 
 using ::testing::ElementsAre;
+using testing::kHangLimit;
+using testing::ManualTime;
 
 TEST(LineWriterTest, ADiskThatHangsHoldsUpNobody) {
   std::promise<void> begun;
   std::promise<void> answers;
   std::vector<std::string> written;
+  const ManualTime time;
   {
-    LineWriter writer(3, [&, answered = answers.get_future().share()](const std::string& line,
-                                                                      std::uint64_t left_out) {
-      if (line == "0") begun.set_value();
-      answered.wait();
-      written.push_back(absl::StrCat(line, left_out > 0 ? " after " : "",
-                                     left_out > 0 ? absl::StrCat(left_out) : ""));
-    });
+    LineWriter writer(
+        3,
+        [&, answered = answers.get_future().share()](const std::string& line,
+                                                     std::uint64_t left_out) {
+          if (line == "0") begun.set_value();
+          answered.wait();
+          written.push_back(absl::StrCat(line, left_out > 0 ? " after " : "",
+                                         left_out > 0 ? absl::StrCat(left_out) : ""));
+        },
+        time);
     writer.Write("0");
     begun.get_future().wait();
-    const auto start = std::chrono::steady_clock::now();
+    // The disk answers only after all of them.
     for (int i = 1; i < 100; ++i) writer.Write(absl::StrCat(i));
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
     answers.set_value();
     // Until there is room.
-    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    EXPECT_TRUE(writer.Flush(kHangLimit));
     writer.Write("last");
   }
   EXPECT_THAT(written, ElementsAre("0", "1", "2", "3", "last after 96"));
@@ -44,13 +50,17 @@ TEST(LineWriterTest, ADiskThatHangsHoldsUpNobody) {
 
 TEST(LineWriterTest, ALineThatCannotBeWrittenIsCountedAndTheNextIsWritten) {
   std::vector<std::string> written;
+  const ManualTime time;
   {
-    LineWriter writer(10, [&](const std::string& line, std::uint64_t left_out) {
-      if (line.starts_with("bad")) throw std::bad_alloc();
-      written.push_back(absl::StrCat(line, " after ", left_out));
-    });
+    LineWriter writer(
+        10,
+        [&](const std::string& line, std::uint64_t left_out) {
+          if (line.starts_with("bad")) throw std::bad_alloc();
+          written.push_back(absl::StrCat(line, " after ", left_out));
+        },
+        time);
     for (const char* line : {"bad", "bad", "good", "fine", "bad at last"}) writer.Write(line);
-    EXPECT_TRUE(writer.Flush(std::chrono::seconds(10)));
+    EXPECT_TRUE(writer.Flush(kHangLimit));
     EXPECT_EQ(written.size(), 2U);
   }
   EXPECT_THAT(written, ElementsAre("good after 2", "fine after 0", " after 1"));
@@ -58,12 +68,24 @@ TEST(LineWriterTest, ALineThatCannotBeWrittenIsCountedAndTheNextIsWritten) {
 
 TEST(LineWriterTest, FlushWaitsNoLongerThanItIsTold) {
   std::promise<void> answers;
-  LineWriter writer(10, [answered = answers.get_future().share()](
-                            const std::string&, std::uint64_t) { answered.wait(); });
+  ManualTime time;
+  LineWriter writer(
+      10,
+      [answered = answers.get_future().share()](const std::string&, std::uint64_t) {
+        answered.wait();
+      },
+      time);
   writer.Write("hangs");
-  EXPECT_FALSE(writer.Flush(std::chrono::milliseconds(20)));
+  auto flushed =
+      std::async(std::launch::async, [&] { return writer.Flush(std::chrono::milliseconds(20)); });
+  // It may begin to wait only now.
+  EXPECT_TRUE(testing::WaitFor([&] {
+    time.Advance(std::chrono::milliseconds(20));
+    return flushed.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }));
+  EXPECT_FALSE(flushed.get());
   answers.set_value();
-  EXPECT_TRUE(writer.Flush(std::chrono::seconds(10)));
+  EXPECT_TRUE(writer.Flush(kHangLimit));
 }
 
 }  // namespace

@@ -1,32 +1,51 @@
 #include "base/looks.h"
 
 #include <atomic>
+#include <future>
 #include <memory>
 #include <thread>
 #include <vector>
 
-#include "base/stopwatch.h"
 #include "gtest/gtest.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::base {
 namespace {
 
+using std::chrono::milliseconds;
+using testing::ManualTime;
+using testing::WaitFor;
+
 // What is looked at, and may hang.
 struct File {
+  std::atomic<int> begun{0};
   std::atomic<int> looks{0};
   std::atomic<bool> hangs{false};
 };
 
 std::function<void()> LookAt(const std::shared_ptr<File>& file) {
   return [file] {
+    ++file->begun;
     file->hangs.wait(true);
     ++file->looks;
   };
 }
 
+// Looks again while the file hangs, for as long as there is patience.
+void LookInVain(Looks& looks, const File& file, ManualTime& time, milliseconds patience) {
+  const int begun = file.begun;
+  auto waiting = std::async(std::launch::async, [&] { looks.LookAgain(); });
+  EXPECT_TRUE(WaitFor([&] { return file.begun > begun; }));
+  time.Advance(patience - milliseconds(1));
+  EXPECT_EQ(waiting.wait_for(milliseconds(0)), std::future_status::timeout);
+  time.Advance(milliseconds(1));
+  waiting.get();
+}
+
 TEST(LooksTest, WhoAsksGetsALookOfItsOwnOrALaterOne) {
   const auto file = std::make_shared<File>();
-  Looks looks("/file", LookAt(file), std::chrono::seconds(60));
+  Looks looks("/file", LookAt(file), testing::kHangLimit);
   for (int i = 1; i <= 100; ++i) {
     looks.LookAgain();
     EXPECT_EQ(file->looks, i);
@@ -45,32 +64,32 @@ TEST(LooksTest, WhoAsksGetsALookOfItsOwnOrALaterOne) {
 
 TEST(LooksTest, OneThatHangsHoldsUpOnce) {
   const auto file = std::make_shared<File>();
-  Looks looks("/file", LookAt(file), std::chrono::milliseconds(200));
+  ManualTime time;
+  Looks looks("/file", LookAt(file), milliseconds(200), time);
   looks.LookAgain();
   file->hangs = true;
-  const Stopwatch waiting;
+  LookInVain(looks, *file, time, milliseconds(200));
+  // Others do not wait: time stands still.
   for (int i = 0; i < 100; ++i) looks.LookAgain();
-  EXPECT_GE(waiting.ElapsedMs(), 200.0);
-  EXPECT_LT(waiting.ElapsedMs(), 2000.0);
   EXPECT_EQ(file->looks, 1);
   file->hangs = false;
   file->hangs.notify_all();
-  for (int i = 0; i < 1000 && file->looks < 3; ++i) {
+  EXPECT_TRUE(WaitFor([&] {
     looks.LookAgain();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_GE(file->looks, 3) << "it is looked at again";
+    return file->looks >= 3;
+  })) << "it is looked at again";
 }
 
 TEST(LooksTest, OneThatHangsIsLeftBehindAtTheEnd) {
   const auto file = std::make_shared<File>();
   file->hangs = true;
-  const Stopwatch ending;
+  // The look outlives the test.
+  static ManualTime time;
   {
-    Looks looks("/file", LookAt(file), std::chrono::milliseconds(100));
-    looks.LookAgain();
+    Looks looks("/file", LookAt(file), milliseconds(100), time);
+    LookInVain(looks, *file, time, milliseconds(100));
+    // It ends while time stands still: it has been waited for.
   }
-  EXPECT_LT(ending.ElapsedMs(), 3000.0);
   file->hangs = false;
   file->hangs.notify_all();
 }

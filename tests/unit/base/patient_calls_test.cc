@@ -1,47 +1,83 @@
 #include "base/patient_calls.h"
 
+#include <atomic>
+#include <chrono>
 #include <future>
 #include <memory>
 #include <new>
-#include <thread>
 
 #include "absl/status/statusor.h"
 #include "base/error_details.h"
-#include "base/stopwatch.h"
 #include "gtest/gtest.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::base {
 namespace {
 
+using std::chrono::milliseconds;
+using testing::ManualTime;
+using testing::WaitFor;
+
+constexpr milliseconds kPatience{100};
+
+// A storage that hangs until it answers.
+class Storage {
+ public:
+  std::function<void()> Call() {
+    return [begun = begun_, answers = answers_] {
+      ++*begun;
+      answers.wait();
+    };
+  }
+  int Begun() const { return *begun_; }
+  void Answer() { storage_.set_value(); }
+
+ private:
+  const std::shared_ptr<std::atomic<int>> begun_ = std::make_shared<std::atomic<int>>(0);
+  std::promise<void> storage_;
+  const std::shared_future<void> answers_ = storage_.get_future().share();
+};
+
+// Calls the storage while time passes until there is no more patience.
+absl::Status CallInVain(PatientCalls& calls, Storage& storage, ManualTime& time) {
+  const int begun = storage.Begun();
+  auto hangs =
+      std::async(std::launch::async, [&] { return calls.Run("/mnt/gone", storage.Call()); });
+  EXPECT_TRUE(WaitFor([&] { return storage.Begun() > begun; }));
+  time.Advance(kPatience - milliseconds(1));
+  EXPECT_EQ(hangs.wait_for(milliseconds(0)), std::future_status::timeout);
+  time.Advance(milliseconds(1));
+  return hangs.get();
+}
+
 TEST(PatientCallsTest, WaitsForACallThatReturns) {
-  PatientCalls calls(std::chrono::seconds(20));
+  const ManualTime time;
+  PatientCalls calls(kPatience, time);
   const auto ran = std::make_shared<bool>(false);
   EXPECT_TRUE(calls.Run("/data", [ran] { *ran = true; }).ok());
   EXPECT_TRUE(*ran);
 }
 
 TEST(PatientCallsTest, AStorageThatHangsHoldsUpOnceAndNoOtherStorage) {
-  PatientCalls calls(std::chrono::milliseconds(100));
-  std::promise<void> storage;
-  const std::shared_future<void> answers = storage.get_future().share();
-  const auto hang = [answers] { answers.wait(); };
-  const absl::Status hangs = calls.Run("/mnt/gone", hang);
+  ManualTime time;
+  PatientCalls calls(kPatience, time);
+  Storage storage;
+  const absl::Status hangs = CallInVain(calls, storage, time);
   EXPECT_TRUE(absl::IsDeadlineExceeded(hangs)) << hangs;
   EXPECT_EQ(DetailsOf(hangs).reason, "STORAGE_HANGS");
   EXPECT_TRUE(DetailsOf(hangs).retry_after.has_value());
-  const Stopwatch stopwatch;
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(calls.Run("/mnt/gone", hang).ok());
-  EXPECT_LT(stopwatch.ElapsedMs(), 1000.0) << "that it hangs is known";
+  // That it hangs is known: these end while time stands still.
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(calls.Run("/mnt/gone", storage.Call()).ok());
+  EXPECT_EQ(storage.Begun(), 1);
   EXPECT_TRUE(calls.Run("/data", [] {}).ok());
-  storage.set_value();
-  for (int i = 0; i < 100 && !calls.Run("/mnt/gone", [] {}).ok(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_TRUE(calls.Run("/mnt/gone", [] {}).ok()) << "it answers again";
+  storage.Answer();
+  EXPECT_TRUE(WaitFor([&] { return calls.Run("/mnt/gone", [] {}).ok(); })) << "it answers again";
 }
 
 TEST(PatientCallsTest, GivesWhatTheCallGaveOrThrew) {
-  PatientCalls calls(std::chrono::seconds(20));
+  const ManualTime time;
+  PatientCalls calls(kPatience, time);
   const auto given = calls.Ask("/data", []() -> absl::StatusOr<int> { return 7; });
   ASSERT_TRUE(given.ok()) << given.status();
   EXPECT_EQ(*given, 7);
@@ -51,30 +87,29 @@ TEST(PatientCallsTest, GivesWhatTheCallGaveOrThrew) {
 }
 
 TEST(PatientCallsTest, TellsForHowLongAStorageHasHung) {
-  PatientCalls calls(std::chrono::milliseconds(100));
-  std::promise<void> storage;
+  ManualTime time;
+  PatientCalls calls(kPatience, time);
+  Storage storage;
   EXPECT_TRUE(calls.Run("/data", [] {}).ok());
   EXPECT_EQ(calls.HangingSeconds(), 0.0);
-  const auto hang = [answers = storage.get_future().share()] { answers.wait(); };
-  EXPECT_FALSE(calls.Run("/mnt/gone", hang).ok());
-  EXPECT_GE(calls.HangingSeconds(), 0.1);
-  storage.set_value();
-  for (int i = 0; i < 1000 && calls.HangingSeconds() > 0.0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_EQ(calls.HangingSeconds(), 0.0) << "it answers again";
+  EXPECT_FALSE(CallInVain(calls, storage, time).ok());
+  EXPECT_DOUBLE_EQ(calls.HangingSeconds(), 0.1);
+  time.Advance(std::chrono::seconds(2));
+  EXPECT_DOUBLE_EQ(calls.HangingSeconds(), 2.1);
+  storage.Answer();
+  EXPECT_TRUE(WaitFor([&] { return calls.HangingSeconds() == 0.0; })) << "it answers again";
 }
 
 TEST(PatientCallsTest, WhatHangsIsLeftBehindAtTheEnd) {
-  const auto storage = std::make_shared<std::promise<void>>();
-  const Stopwatch ending;
+  // The call outlives the test.
+  static ManualTime time;
+  Storage storage;
   {
-    PatientCalls calls(std::chrono::milliseconds(100));
-    const auto hang = [storage, answers = storage->get_future().share()] { answers.wait(); };
-    EXPECT_FALSE(calls.Run("/mnt/gone", hang).ok());
+    PatientCalls calls(kPatience, time);
+    EXPECT_FALSE(CallInVain(calls, storage, time).ok());
+    // It ends while time stands still: it has been waited for.
   }
-  EXPECT_LT(ending.ElapsedMs(), 3000.0) << "it had its time";
-  storage->set_value();
+  storage.Answer();
 }
 
 }  // namespace

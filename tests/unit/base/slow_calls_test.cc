@@ -1,21 +1,25 @@
 #include "base/slow_calls.h"
 
+#include <algorithm>
 #include <mutex>
-#include <thread>
+#include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::base {
 namespace {
 
 using std::chrono::milliseconds;
+using std::chrono::seconds;
 using ::testing::AllOf;
-using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::SizeIs;
 using ::testing::StartsWith;
 
 class SlowCallsTest : public ::testing::Test {
@@ -25,10 +29,7 @@ class SlowCallsTest : public ::testing::Test {
     return said_;
   }
   bool AwaitSaid(std::size_t count) {
-    for (int i = 0; i < 2000 && Said().size() < count; ++i) {
-      std::this_thread::sleep_for(milliseconds(5));
-    }
-    return Said().size() >= count;
+    return testing::WaitFor([&] { return Said().size() >= count; });
   }
   std::function<void(const std::string&)> Say() {
     return [this](const std::string& what) {
@@ -37,34 +38,54 @@ class SlowCallsTest : public ::testing::Test {
     };
   }
 
+  testing::ManualTime time_;
+
  private:
   std::mutex mutex_;
   std::vector<std::string> said_;
 };
 
 TEST_F(SlowCallsTest, SaysWhatDoesNotAnswerWhileItDoesNot) {
-  SlowCalls watch(milliseconds(40), Say());
+  SlowCalls watch(seconds(10), Say(), time_);
   {
     const SlowCall hangs("/mnt/gone/storm.nc", watch);
+    time_.Advance(seconds(9));
     const SlowCall quick("/data/storm.nc", watch);
+    time_.Advance(seconds(1));
     ASSERT_TRUE(AwaitSaid(1));
-    EXPECT_THAT(Said(), Contains(AllOf(StartsWith("/mnt/gone/storm.nc: has not answered for 0."),
-                                       HasSubstr("its storage is slow or hangs"))));
+    time_.Advance(seconds(2));
   }
-  EXPECT_THAT(Said(), Contains(StartsWith("/mnt/gone/storm.nc: answered after")));
+  EXPECT_THAT(Said(),
+              ElementsAre(AllOf(StartsWith("/mnt/gone/storm.nc: has not answered for 10.0 s"),
+                                HasSubstr("its storage is slow or hangs")),
+                          StartsWith("/mnt/gone/storm.nc: answered after 12.0 s")));
 }
 
 TEST_F(SlowCallsTest, SaysItMoreAndMoreSeldom) {
-  SlowCalls watch(milliseconds(20), Say());
+  SlowCalls watch(seconds(10), Say(), time_);
   const SlowCall hangs("/mnt/gone", watch);
-  std::this_thread::sleep_for(milliseconds(1000));
-  // After 20, 40, 80, 160, 320 and 640 ms, give or take those of a slow machine.
-  EXPECT_THAT(Said(), SizeIs(::testing::AllOf(::testing::Ge(2U), ::testing::Le(7U))));
+  // Every ten seconds something is said of another call, which tells that the watch has looked.
+  std::vector<std::string> said;
+  for (int i = 1; i <= 8; ++i) {
+    const std::string marker = absl::StrCat("/marker/", i);
+    const SlowCall other(marker, watch);
+    time_.Advance(seconds(10));
+    const auto is_marker = [&](const std::string& what) { return what.starts_with(marker); };
+    ASSERT_TRUE(testing::WaitFor([&] { return std::ranges::any_of(Said(), is_marker); }));
+  }
+  for (const std::string& what : Said()) {
+    if (what.starts_with("/mnt/gone")) said.push_back(what);
+  }
+  EXPECT_THAT(said, ElementsAre(HasSubstr("for 10.0 s"), HasSubstr("for 20.0 s"),
+                                HasSubstr("for 40.0 s"), HasSubstr("for 80.0 s")));
 }
 
 TEST_F(SlowCallsTest, SaysNothingOfCallsThatAnswer) {
-  SlowCalls watch(milliseconds(10'000), Say());
-  for (int i = 0; i < 1000; ++i) const SlowCall call("/data", watch);
+  SlowCalls watch(seconds(10), Say(), time_);
+  for (int i = 0; i < 1000; ++i) {
+    const SlowCall call("/data", watch);
+    time_.Advance(milliseconds(9));
+  }
   EXPECT_THAT(Said(), IsEmpty());
 }
 
