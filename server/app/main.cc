@@ -16,6 +16,7 @@
 #include "app/commands.h"
 #include "app/exit_codes.h"
 #include "app/library_log.h"
+#include "app/log_format.h"
 #include "base/loose_thread.h"
 #include "base/version.h"
 #include "sandbox/reader_main.h"
@@ -45,6 +46,7 @@ int Main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   // Standard output is for results, so the log goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));
+  spdlog::default_logger()->set_formatter(TextFormatter());
   TakeLibraryLogs();
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
   app.set_version_flag("--version", "thunderhead " + base::Version());

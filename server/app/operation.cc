@@ -16,7 +16,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "app/address.h"
-#include "app/json_log.h"
+#include "app/log_format.h"
 #include "base/status.h"
 #include "gateway/http_policy.h"
 #include "spdlog/sinks/sink.h"

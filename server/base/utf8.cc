@@ -1,6 +1,19 @@
 #include "base/utf8.h"
 
 namespace thunderhead::base {
+namespace {
+
+// Returns whether one valid UTF-8 character must not stand in a line of text; Printable lists
+// which.
+bool IsUnprintable(std::string_view character) {
+  const unsigned char lead = character[0];
+  if (character.size() == 1) return lead < 0x20 || lead == 0x7f;
+  if (character.size() == 2) return lead == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0;
+  return (character >= "\u2028" && character <= "\u202e") ||
+         (character >= "\u2066" && character <= "\u2069");
+}
+
+}  // namespace
 
 std::size_t Utf8CharacterBytes(std::string_view text) {
   const auto byte = [text](std::size_t i) {
@@ -19,14 +32,15 @@ std::size_t Utf8CharacterBytes(std::string_view text) {
   return wrong ? 0 : bytes;
 }
 
-std::string ValidUtf8(std::string_view text) {
-  std::string valid;
+std::string Printable(std::string_view text) {
+  std::string printable;
   while (!text.empty()) {
     const std::size_t size = Utf8CharacterBytes(text);
-    valid += size == 0 ? "?" : text.substr(0, size);
+    const std::string_view character = text.substr(0, size);
+    printable += size == 0 || IsUnprintable(character) ? "?" : character;
     text.remove_prefix(size == 0 ? 1 : size);
   }
-  return valid;
+  return printable;
 }
 
 }  // namespace thunderhead::base

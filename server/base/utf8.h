@@ -1,5 +1,6 @@
-// Text from outside as valid UTF-8, which protobuf's strings must be: names and attributes of files
-// may be in any encoding.
+// Text from outside (names and attributes of files, marks, titles, what clients send) before it
+// leaves the process: in messages, whose strings must be valid UTF-8, in logs, in the audit, in
+// headers and in file names.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +9,14 @@
 
 namespace thunderhead::base {
 
-// Length in bytes of the UTF-8 character at the start of `text`; 0 if it is invalid.
+// Returns the length in bytes of the UTF-8 character at the start of `text`, or 0 if it is invalid.
 std::size_t Utf8CharacterBytes(std::string_view text);
 
-// `text` with a question mark for each byte that belongs to no UTF-8 character.
-std::string ValidUtf8(std::string_view text);
+// Returns `text` as one line of valid UTF-8. A question mark replaces each byte that belongs to no
+// UTF-8 character, each control character (U+0000 to U+001F, U+007F to U+009F), each line or
+// paragraph separator (U+2028, U+2029), and each character that changes the direction of text
+// (U+202A to U+202E, U+2066 to U+2069), because these can make a log line or a file name look like
+// another.
+std::string Printable(std::string_view text);
 
 }  // namespace thunderhead::base

@@ -9,6 +9,7 @@
 #include "base/error_details.h"
 #include "base/out_of_memory.h"
 #include "base/status.h"
+#include "base/utf8.h"
 #include "google/protobuf/util/field_mask_util.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/prepare_scene.h"
@@ -19,29 +20,44 @@ namespace {
 
 using google::protobuf::util::FieldMaskUtil;
 
-absl::Status CheckMask(const google::protobuf::FieldMask& mask) {
-  for (const std::string& path : mask.paths()) {
-    if (FieldMaskUtil::IsValidPath<v1::Scene>(path)) continue;
-    return base::InvalidField("update_mask",
-                              absl::StrCat("names '", path, "', which a scene does not have"),
-                              "FIELD_UNKNOWN");
+using google::protobuf::FieldDescriptor;
+
+// Returns the fields that a path of an update mask names, from the scene's own down to the last.
+// INVALID_ARGUMENT for a path with an empty component, for a name that the message before it does
+// not have, and for a path that goes on after a field that is no single message. Every step that
+// follows a path takes it from here, so reflection never gets an unchecked name.
+absl::StatusOr<std::vector<const FieldDescriptor*>> FieldsOf(const std::string& path) {
+  std::vector<const FieldDescriptor*> fields;
+  const google::protobuf::Descriptor* message = v1::Scene::descriptor();
+  for (const absl::string_view name : absl::StrSplit(path, '.')) {
+    const FieldDescriptor* const field =
+        message == nullptr ? nullptr : message->FindFieldByName(std::string(name));
+    if (field == nullptr) {
+      return base::InvalidField("update_mask",
+                                absl::StrCat("names '", base::Printable(path),
+                                             "', which a scene does not have; name fields as in "
+                                             "'camera.orbit.azimuth_deg'"),
+                                "FIELD_UNKNOWN");
+    }
+    fields.push_back(field);
+    message = field->is_repeated() ? nullptr : field->message_type();
   }
-  return absl::OkStatus();
+  return fields;
 }
 
-// INVALID_ARGUMENT for a path into another kind of camera or technique than the scene has, which
-// would throw the scene's away.
-absl::Status CheckKinds(const v1::Scene& scene, const std::string& path) {
+// INVALID_ARGUMENT for a path into another kind of camera or technique than the scene has, because
+// it would replace the scene's own kind.
+absl::Status CheckKinds(const v1::Scene& scene, const std::string& path,
+                        const std::vector<const FieldDescriptor*>& fields) {
   const google::protobuf::Message* message = &scene;
-  const std::vector<std::string> names = absl::StrSplit(path, '.');
-  for (std::size_t i = 0; i + 1 < names.size(); ++i) {
-    const auto* const field = message->GetDescriptor()->FindFieldByName(names[i]);
+  for (std::size_t i = 0; i + 1 < fields.size(); ++i) {
+    const FieldDescriptor* const field = fields[i];
     const auto& reflection = *message->GetReflection();
     if (field->real_containing_oneof() != nullptr && !reflection.HasField(*message, field)) {
       return base::InvalidField("update_mask",
                                 absl::StrCat("names '", path, "', but the scene's ",
                                              field->real_containing_oneof()->name(), " is not ",
-                                             names[i], "; name the whole of it"),
+                                             field->name(), "; name the whole of it"),
                                 "KIND_DIFFERS");
     }
     message = &reflection.GetMessage(*message, field);
@@ -52,7 +68,8 @@ absl::Status CheckKinds(const v1::Scene& scene, const std::string& path) {
 // The session's newest scene with the fields that the mask names.
 absl::StatusOr<v1::Scene> Merged(v1::Scene scene, const SceneChange& change) {
   for (const std::string& path : change.update_mask.paths()) {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckKinds(scene, path));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, FieldsOf(path));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckKinds(scene, path, fields));
   }
   FieldMaskUtil::MergeOptions options;
   options.set_replace_message_fields(true);
@@ -86,7 +103,6 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   Changed changed{0, std::make_shared<v1::Scene>(change.scene)};
   std::optional<std::uint64_t> expected = change.expected_revision;
   if (change.update_mask.paths_size() > 0) {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckMask(change.update_mask));
     // The fields that are not named must not be older than the newest.
     THUNDERHEAD_ASSIGN_OR_RETURN(ReadScene newest, NewestTakenOf(session));
     if (!expected.has_value()) expected = newest.revision;

@@ -64,22 +64,19 @@ const Row& RowOf(absl::StatusCode code) {
   return kOther;
 }
 
-// Makes the text valid UTF-8, as protobuf strings must be (file names need not be), and truncates
-// it to `max_bytes` in the encoding of grpc-message, where all but printable ASCII takes three
-// bytes for one.
+// Returns the text printable, as protobuf strings and log lines must be, and truncated to
+// `max_bytes` in the encoding of grpc-message, which writes three bytes for each byte outside
+// ASCII.
 std::string Sendable(std::string_view text, std::size_t max_bytes) {
-  std::string sendable;
+  const std::string printable = base::Printable(text);
   std::size_t bytes = 0;
-  while (!text.empty()) {
-    const std::size_t size = base::Utf8CharacterBytes(text);
-    const std::string_view character = size == 0 ? "?" : text.substr(0, size);
-    const bool printable = character[0] >= 0x20 && character[0] < 0x7f;
-    bytes += printable ? 1 : 3 * character.size();
-    if (bytes > max_bytes) return sendable + "...";
-    sendable += character;
-    text.remove_prefix(size == 0 ? 1 : size);
+  for (std::size_t end = 0; end < printable.size();) {
+    const std::size_t size = base::Utf8CharacterBytes(std::string_view(printable).substr(end));
+    bytes += size == 1 ? 1 : 3 * size;
+    if (bytes > max_bytes) return printable.substr(0, end) + "...";
+    end += size;
   }
-  return sendable;
+  return printable;
 }
 
 google::rpc::ErrorInfo ErrorInfoOf(const base::ErrorDetails& details, const Row& row) {

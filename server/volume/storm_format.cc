@@ -35,7 +35,7 @@ absl::Status CheckDescribed(StormFile& file) {
         absl::StrCat(file.path, ": has a time outside the years 0 to 9999 (",
                      absl::FormatTime(time, absl::UTCTimeZone()), "); check its units"));
   }
-  file.about = base::ValidUtf8(file.about);
+  file.about = base::Printable(file.about);
   return absl::OkStatus();
 }
 
