@@ -1,6 +1,6 @@
 # Thunderhead's server. Installs and builds by ./dev, the same script as on a developer's machine.
 #   docker build -t thunderhead .
-#   docker run --rm -p 8080:8080 -v /path/to/storms:/data:ro thunderhead
+#   docker run --rm -p 127.0.0.1:8080:8080 -v /path/to/storms:/data:ro thunderhead
 # Draws in software; with the NVIDIA container runtime (--gpus all) on the GPU, by the driver's own EGL.
 FROM debian:bookworm-slim AS build
 WORKDIR /src

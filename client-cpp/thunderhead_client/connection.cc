@@ -1,5 +1,8 @@
 #include "thunderhead_client/connection.h"
 
+#include <arpa/inet.h>
+
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -52,6 +55,28 @@ absl::Status CheckAddress(const std::string& address) {
   return absl::OkStatus();
 }
 
+// Returns whether HOST:PORT is of this machine.
+bool IsLoopback(const std::string& address) {
+  std::string host = address.substr(0, address.rfind(':'));
+  if (host.size() > 1 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  }
+  if (host == "localhost" || host == "::1") return true;
+  in_addr v4{};
+  constexpr std::uint32_t kLoopbackNetwork = 127;
+  return inet_pton(AF_INET, host.c_str(), &v4) == 1 && ntohl(v4.s_addr) >> 24U == kLoopbackNetwork;
+}
+
+absl::Status CheckTokenIsSafe(const ServerAccess& access) {
+  if (access.token_file.empty() || !access.tls_ca_file.empty() || access.allow_plaintext_token ||
+      IsLoopback(access.address)) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      "the token is not sent to ", access.address, " without encryption, because anybody on the ",
+      "way could read it; give --tls-ca, or --allow-plaintext-token if you trust the network"));
+}
+
 std::string Unreachable(const std::string& address) {
   return absl::StrCat("The server at ", address, " cannot be reached");
 }
@@ -79,6 +104,7 @@ Canceller::Running::~Running() {
 
 absl::StatusOr<std::shared_ptr<Connection>> Connection::Open(ServerAccess access) {
   if (const absl::Status status = CheckAddress(access.address); !status.ok()) return status;
+  if (const absl::Status status = CheckTokenIsSafe(access); !status.ok()) return status;
   auto credentials = grpc::InsecureChannelCredentials();
   if (!access.tls_ca_file.empty()) {
     absl::StatusOr<std::string> roots =

@@ -20,6 +20,9 @@ struct ServerAccess {
   std::string address;      // HOST:PORT of the server's gRPC port
   std::string tls_ca_file;  // PEM of who vouches for its certificate; empty: no encryption
   std::string token_file;   // a bearer token, read again for each call; empty: none
+  // Sends the token without encryption to other machines, too, where anybody on the way can read
+  // it.
+  bool allow_plaintext_token = false;
 };
 
 // Ends unary calls from another thread: whoever makes calls can be destroyed without waiting for a

@@ -317,6 +317,16 @@ class AccessTest(unittest.TestCase):
             with Client(address, token="a" * 64, timeout_s=5) as client, self.assertRaises(ThunderheadError):
                 client.storms()
 
+    def test_a_token_is_not_sent_in_the_clear_to_another_machine(self) -> None:
+        for address in ("storms.example.org:50051", "192.0.2.7:50051", "[2001:db8::1]:50051", "localhost.example.org:50051"):
+            with self.assertRaisesRegex(ThunderheadError, "without encryption"):
+                Client(address, token="secret")
+            Client(address, token="secret", allow_plaintext_token=True).close()
+            Client(address, token="secret", tls_ca=True).close()
+            Client(address, token="").close()
+        for address in ("localhost:50051", "127.0.0.1:50051", "127.1.2.3:50051", "[::1]:50051", "unix:/run/thunderhead"):
+            Client(address, token="secret").close()
+
 
 if __name__ == "__main__":
     unittest.main()

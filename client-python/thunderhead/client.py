@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import dataclasses
+import ipaddress
 import os
 import pathlib
 import time
@@ -39,8 +40,10 @@ class Client:
 
     address: "host:port" of its gRPC port (--grpc of `thunderhead serve`).
     token: for a server with --auth; by default $THUNDERHEAD_TOKEN.
-    tls_ca: PEM file, or its bytes, of who vouches for the server's certificate; True for the system's own. Without it
-        the connection is not encrypted, and a token is sent in the clear.
+    tls_ca: PEM file, or its bytes, of the authority that signed the server's certificate; True for the system's own.
+        Without it the connection is not encrypted, and a token is only sent to this machine.
+    allow_plaintext_token: sends the token without encryption to other machines, too, where anybody on the way can
+        read it.
     timeout_s: how long a call may take; pictures have `render_timeout_s`.
 
     Every call raises ThunderheadError. A client may be used by several threads at once.
@@ -52,10 +55,16 @@ class Client:
         *,
         token: Optional[str] = None,
         tls_ca: Union[str, "os.PathLike[str]", bytes, bool, None] = None,
+        allow_plaintext_token: bool = False,
         timeout_s: float = 30.0,
         render_timeout_s: float = 900.0,
     ) -> None:
         token = os.environ.get("THUNDERHEAD_TOKEN", "") if token is None else token
+        if token and not tls_ca and not allow_plaintext_token and not _is_loopback(address):
+            raise ThunderheadError(
+                f"the token is not sent to {address} without encryption, because anybody on the way could read it; "
+                "give tls_ca, or allow_plaintext_token=True if you trust the network"
+            )
         self._metadata: Tuple[Tuple[str, str], ...] = (("authorization", f"Bearer {token.strip()}"),) if token else ()
         self._timeout_s = timeout_s
         self._render_timeout_s = render_timeout_s
@@ -223,6 +232,19 @@ class Client:
         """Opens a session: a scene that stays, is changed bit by bit, and shows its pictures; see Session."""
         message: scene_pb2.Scene = scene_of(scene, storm, None, size)
         return Session(self._stub, self._metadata, message, self._timeout_s)
+
+
+def _is_loopback(address: str) -> bool:
+    """Whether "host:port", or a gRPC target such as "unix:/run/socket", is of this machine."""
+    if address.startswith(("unix:", "unix-abstract:")):
+        return True
+    host = address.rpartition(":")[0].rpartition("/")[2].strip("[]")
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
 
 
 def _roots(tls_ca: Union[str, "os.PathLike[str]", bytes, bool]) -> Optional[bytes]:

@@ -13,6 +13,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "nlohmann/json.hpp"
 
 namespace thunderhead::access {
 namespace {
@@ -64,14 +65,17 @@ Time TimeClaim(jwt_t* token, const char* name) {
       std::clamp(jwt_get_grant_int(token, name), 0L, kLast_s));
 }
 
-// A JWT's audience is a text or a list of texts.
+// Returns whether the token's audience, which is a text or a list of texts (RFC 7519, 4.1.3),
+// contains `audience`.
 bool IsFor(jwt_t* token, const std::string& audience) {
   if (TextClaim(token, "aud") == audience) return true;
-  const std::unique_ptr<char, decltype(&std::free)> list(jwt_get_grants_json(token, "aud"),
+  const std::unique_ptr<char, decltype(&std::free)> json(jwt_get_grants_json(token, "aud"),
                                                          &std::free);
-  // Compact JSON; names of services need no escapes.
-  return list != nullptr && list.get()[0] == '[' &&
-         absl::StrContains(list.get(), absl::StrCat("\"", audience, "\""));
+  if (json == nullptr) return false;
+  constexpr bool kThrows = false;
+  const auto list = nlohmann::json::parse(json.get(), nullptr, kThrows);
+  return list.is_array() &&
+         std::ranges::any_of(list, [&](const nlohmann::json& each) { return each == audience; });
 }
 
 absl::Status CheckTimes(jwt_t* token, Time now) {

@@ -78,14 +78,12 @@ class Root:
         subprocess.run(
             ["mmdebstrap", "--quiet", "--variant=minbase", "--include=ca-certificates", "bookworm", str(folder)], check=True
         )
-        npmrc = pathlib.Path.home() / ".npmrc"
-        if npmrc.exists():
-            shutil.copy(npmrc, folder / "root/.npmrc")
-        # Who vouches for the package registry, where this machine trusts others than Debian does.
-        authorities = os.environ.get("NODE_EXTRA_CA_CERTS", "")
-        if os.path.isfile(authorities):
+        # Files of this machine that the package registry needs. They may hold credentials, so they are mounted while a command
+        # of the build runs, and the root itself never contains them.
+        self.mounted = {"root/.npmrc": pathlib.Path.home() / ".npmrc"}
+        if authorities := os.environ.get("NODE_EXTRA_CA_CERTS", ""):
             self.environment["NODE_EXTRA_CA_CERTS"] = "/root/authorities.pem"
-            shutil.copy(authorities, folder / "root/authorities.pem")
+            self.mounted["root/authorities.pem"] = pathlib.Path(authorities)
 
     def inside(self, path):
         return self.folder / str(pathlib.PurePosixPath(self.directory, path)).lstrip("/")
@@ -98,6 +96,11 @@ class Root:
             (self.folder / "ccache").mkdir(exist_ok=True)
             mounts += f" && mount --bind {shlex.quote(self.ccache)} {shlex.quote(str(self.folder))}/ccache"
             environment |= {"CCACHE_DIR": "/ccache"}
+        if self.user == "root":
+            for inner, source in self.mounted.items():
+                if source.is_file():
+                    (self.folder / inner).touch()
+                    mounts += f" && mount --bind -o ro {shlex.quote(str(source))} {shlex.quote(str(self.folder / inner))}"
         assigned = " ".join(f"{name}={shlex.quote(value)}" for name, value in environment.items())
         inner = f"cd {shlex.quote(self.directory)} && exec env -i {assigned} {words}"
         line = f"{mounts} && exec chroot --userspec={self.user} {shlex.quote(str(self.folder))} /bin/sh -c {shlex.quote(inner)}"
@@ -202,6 +205,8 @@ def build(arguments):
         return SKIPPED
     with tempfile.TemporaryDirectory(prefix="thunderhead-image-", dir=arguments.work) as work:
         root, command = build_in_roots(pathlib.Path(work), arguments.ccache)
+        leaked = [path for path in root.mounted if (root.folder / path).exists() and (root.folder / path).stat().st_size > 0]
+        assert not leaked, f"the image contains {leaked}"
         port = str(arguments.port)
         words = [word.replace("0.0.0.0:8080", f"127.0.0.1:{port}").replace("0.0.0.0:50051", "127.0.0.1:0") for word in command]
         start(root.command(shlex.join(words)), arguments.port)
