@@ -32,6 +32,11 @@ inline const TimeSource& SteadyTime() {
   return steady;
 }
 
+// Returns the milliseconds that have passed since `start` by `time`.
+inline double MsSince(const TimeSource& time, TimeSource::Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(time.Now() - start).count();
+}
+
 // Waits on the condition variable `changed` until `ready()` is true or `deadline` has passed by
 // `time`. Returns whether `ready()` is true. `lock` holds the mutex that guards what `ready` reads.
 template <typename ConditionVariable, typename Lock, typename Ready>

@@ -31,7 +31,8 @@ std::string ExtensionOf(v1::ImageFormat format) {
 // hangs holds it up for a while once, and others' pictures no more after that.
 class StormFiles {
  public:
-  explicit StormFiles(const JobFiles& files) : stamp_(files.stamp), calls_(files.patience) {}
+  StormFiles(const JobFiles& files, const base::TimeSource& time)
+      : stamp_(files.stamp), calls_(files.patience, time) {}
 
   absl::StatusOr<std::optional<base::FileStamp>> StampOf(const std::string& path) {
     const std::string folder = std::filesystem::path(path).parent_path();
@@ -132,8 +133,8 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
 }  // namespace
 
 jobs::BeginPicture JobPictures(Engine& engine, const JobFiles& files) {
-  return [&engine, looks = std::make_shared<StormFiles>(files)](const jobs::PictureOrder& order,
-                                                                std::function<void()> done) {
+  return [&engine, looks = std::make_shared<StormFiles>(files, engine.sessions.time())](
+             const jobs::PictureOrder& order, std::function<void()> done) {
     auto picture = std::make_unique<JobPicture>(engine, looks, std::move(done));
     picture->Begin(order);
     return picture;

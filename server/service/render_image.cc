@@ -2,7 +2,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/stopwatch.h"
+#include "base/time_source.h"
 #include "service/delivery_deadline.h"
 #include "service/handlers.h"
 #include "service/limits.h"
@@ -48,6 +48,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
                 const v1::RenderImageRequest& request)
       : caller_(std::move(caller)),
         in_chunks_(request.in_chunks()),
+        time_(engine.sessions.time()),
         delivery_(context, engine.limits),
         job_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall,
              caller_->identity().name) {}
@@ -76,10 +77,10 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     {
       const std::lock_guard lock(mutex_);
       const bool too_soon =
-          since_progress_.has_value() && since_progress_->ElapsedMs() < kMinInterval_ms;
+          told_at_.has_value() && base::MsSince(time_, *told_at_) < kMinInterval_ms;
       if (writing_ || too_soon) return;
       writing_ = true;
-      since_progress_.emplace();
+      told_at_ = time_.Now();
     }
     v1::RenderImageProgress& message = *progress_.mutable_progress();
     message.set_share(static_cast<float>(progress.share));
@@ -123,12 +124,13 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
 
   const CallerRef caller_;
   const bool in_chunks_;
+  const base::TimeSource& time_;
   v1::RenderImageEvent image_;
   v1::RenderImageEvent progress_;  // or a chunk; gRPC reads it while `writing_`
   std::size_t sent_bytes_ = 0;     // in chunks
   std::mutex mutex_;
   bool writing_ = false;
-  std::optional<base::Stopwatch> since_progress_;
+  std::optional<base::TimeSource::Clock::time_point> told_at_;  // the last progress
   std::optional<grpc::Status> end_;
   DeliveryDeadline delivery_;
   PictureJob job_;

@@ -26,7 +26,7 @@ RenderJobService::RenderJobService(Engine& engine, access::Door& door, Connectio
       reading_({.threads = kReadingThreads,
                 .max_waiting = door.limits().max_streams,
                 .max_waiting_each = door.limits().max_streams_per_identity}),
-      calls_(patience) {}
+      calls_(patience, engine.sessions.time()) {}
 
 grpc::ServerUnaryReactor* RenderJobService::CreateRenderJob(
     grpc::CallbackServerContext* context, const v1::CreateRenderJobRequest* request,

@@ -33,7 +33,7 @@ void Count(const EncodedFrame& described, const scene::Scene& scene) {
 }
 
 // The frame without a picture.
-EncodedFrame Described(DrawnFrame& drawn) {
+EncodedFrame Described(DrawnFrame& drawn, Clock::time_point now) {
   EncodedFrame frame;
   frame.scene_revision = drawn.scene_revision;
   frame.width_px = drawn.picture.width_px;
@@ -45,7 +45,7 @@ EncodedFrame Described(DrawnFrame& drawn) {
   frame.stages = std::move(drawn.picture.stages);
   frame.modelled = std::move(drawn.picture.modelled);
   frame.refined = drawn.refined;
-  frame.at_rest = drawn.refined && Clock::now() >= drawn.rests_at;
+  frame.at_rest = drawn.refined && now >= drawn.rests_at;
   frame.refinement = drawn.refinement;
   frame.accuracy = std::move(drawn.picture.accuracy);
   frame.memory = std::move(drawn.picture.memory);
@@ -134,9 +134,9 @@ EncodeFrame JpegEncoder(const std::shared_ptr<Session>& session,
 }
 
 void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, base::MemoryBudget& memory,
-                      StillMaker& stills) {
+                      StillMaker& stills, Clock::time_point now) {
   const std::shared_ptr<Session>& session = drawn.session;
-  const EncodedFrame described = Described(drawn);
+  const EncodedFrame described = Described(drawn, now);
   Count(described, drawn.scene);
   const auto pictures = std::make_shared<Pictures>(frame::RgbImage{
       drawn.picture.width_px, drawn.picture.height_px, std::move(drawn.picture.rgb)});
@@ -161,11 +161,12 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, base::M
 
 FrameEncoder::FrameEncoder(int threads, SerializeFrame serialize,
                            std::shared_ptr<base::MemoryBudget> memory,
-                           std::function<void()> on_encoded)
+                           std::function<void()> on_encoded, const base::TimeSource& time)
     : serialize_(std::move(serialize)),
       memory_(std::move(memory)),
       on_encoded_(std::move(on_encoded)),
-      stills_(serialize_) {
+      time_(time),
+      stills_(serialize_, time) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Run(); });
 }
 
@@ -214,7 +215,7 @@ void FrameEncoder::Run() {
     lock.unlock();
     const std::uint64_t revision = drawn.scene_revision;
     const absl::Status encoded = base::OrOutOfMemory([&] {
-      EncodeAndPublish(std::move(drawn), serialize_, *memory_, stills_);
+      EncodeAndPublish(std::move(drawn), serialize_, *memory_, stills_, time_.Now());
       return absl::OkStatus();
     });
     if (!encoded.ok()) session->hub().Publish(ProblemOf(revision, encoded));

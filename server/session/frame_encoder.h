@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "base/time_source.h"
 #include "scene/view.h"
 #include "session/frame_source.h"
 #include "session/sessions.h"
@@ -40,7 +41,7 @@ class FrameEncoder {
   // `on_encoded` is called on an encoding thread when a frame has been published. Encoders of video
   // take their room in `memory`.
   FrameEncoder(int threads, SerializeFrame serialize, std::shared_ptr<base::MemoryBudget> memory,
-               std::function<void()> on_encoded);
+               std::function<void()> on_encoded, const base::TimeSource& time = base::SteadyTime());
   // Waits for the frames being encoded and drops the queued ones.
   ~FrameEncoder();
   FrameEncoder(const FrameEncoder&) = delete;
@@ -57,6 +58,7 @@ class FrameEncoder {
   const SerializeFrame serialize_;
   const std::shared_ptr<base::MemoryBudget> memory_;
   const std::function<void()> on_encoded_;
+  const base::TimeSource& time_;
   StillMaker stills_;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -44,13 +44,14 @@ absl::Status TooCostly(double predicted_s, double max_s) {
 
 ImageDrawer::ImageDrawer(const ImageLimits& limits, ImageQueue& queue, MeasuredSource& source,
                          std::shared_ptr<Preparation> preparation, LightTracer& tracer,
-                         const Lanes& lanes)
+                         const Lanes& lanes, const base::TimeSource& time)
     : limits_(limits),
       queue_(queue),
       source_(source),
       preparation_(std::move(preparation)),
       tracer_(tracer),
-      lanes_(lanes) {}
+      lanes_(lanes),
+      time_(time) {}
 
 void ImageDrawer::Attend() {
   queue_.DropCancelled();
@@ -91,6 +92,7 @@ void ImageDrawer::Begin(Lane& lane) {
   image.job = *std::move(job);
   image.name = absl::StrCat("picture ", ++count_);
   image.quick = quick;
+  image.begun_at = time_.Now();
   WorkIn(lane, image);
 }
 
@@ -239,7 +241,7 @@ bool ImageDrawer::IsRefuted(Begun& image) {
 bool ImageDrawer::EndsTracing(Begun& image) {
   absl::Status failed;
   if (*image.job.cancelled) failed = absl::CancelledError("the call was cancelled");
-  if (image.since_begun.ElapsedMs() > image.job.max_work_ms) failed = image.job.too_long;
+  if (base::MsSince(time_, image.begun_at) > image.job.max_work_ms) failed = image.job.too_long;
   if (const auto news = tracer_.TakeNews(image.name); failed.ok() && news.has_value()) {
     failed = news->status();
     if (failed.ok()) TakeStep(image, **news);

@@ -15,7 +15,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "accuracy/measured_errors.h"
-#include "base/stopwatch.h"
+#include "base/time_source.h"
 #include "session/image_queue.h"
 #include "session/lane.h"
 #include "session/light_tracer.h"
@@ -39,7 +39,8 @@ class ImageDrawer {
   // All references must outlive it; the lanes' work must have ended before this does. `preparation`
   // is null if no scene needs any.
   ImageDrawer(const ImageLimits& limits, ImageQueue& queue, MeasuredSource& source,
-              std::shared_ptr<Preparation> preparation, LightTracer& tracer, const Lanes& lanes);
+              std::shared_ptr<Preparation> preparation, LightTracer& tracer, const Lanes& lanes,
+              const base::TimeSource& time = base::SteadyTime());
 
   // Ends what is drawn or cancelled, admits what has come, and begins what can be begun.
   void Attend();
@@ -63,7 +64,7 @@ class ImageDrawer {
     accuracy::MeasuredErrors measured;
     int refuted = 0;   // settings
     int attempts = 0;  // to draw it
-    base::Stopwatch since_begun;
+    base::TimeSource::Clock::time_point begun_at{};
     // By the lane.
     absl::Status status;
     std::optional<DisplayFrame> frame;
@@ -97,6 +98,7 @@ class ImageDrawer {
   const std::shared_ptr<Preparation> preparation_;
   LightTracer& tracer_;
   const Lanes lanes_;
+  const base::TimeSource& time_;
   std::list<Begun> begun_;
   std::uint64_t count_ = 0;  // of those begun
 };

@@ -7,16 +7,17 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
-#include "base/stopwatch.h"
 #include "base/thread_priority.h"
 #include "gl/device_faults.h"
 
 namespace thunderhead::session {
 
-Lane::Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change)
+Lane::Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
+           const base::TimeSource& time)
     : make_source_(std::move(make_source)),
       niceness_(niceness),
       on_change_(std::move(on_change)),
+      time_(time),
       thread_([this] { Run(); }) {}
 
 Lane::~Lane() {
@@ -42,8 +43,8 @@ void Lane::Begin(Work work, Limits limits) {
     limits_ = std::move(limits);
     used_ms_ = 0.0;
     waited_ms_ = 0.0;
-    since_begun_.Restart();
-    since_progress_.Restart();
+    begun_at_ = time_.Now();
+    progress_at_ = begun_at_;
   }
   changed_.notify_all();
 }
@@ -74,16 +75,16 @@ bool Lane::WantsTurn() {
 }
 
 double Lane::GiveTurn() {
-  const base::Stopwatch stopwatch;
+  const Time given_at = time_.Now();
   std::unique_lock lock(mutex_);
   if (device_ != Device::kWanted || !Ended().ok()) return 0.0;
   device_ = Device::kHeld;
-  waited_ms_ += since_wanted_.ElapsedMs();
-  since_progress_.Restart();
+  waited_ms_ += base::MsSince(time_, wanted_at_);
+  progress_at_ = time_.Now();
   changed_.notify_all();
   changed_.wait(lock, [this] { return device_ != Device::kHeld; });
-  since_progress_.Restart();
-  const double took_ms = stopwatch.ElapsedMs();
+  progress_at_ = time_.Now();
+  const double took_ms = base::MsSince(time_, given_at);
   used_ms_ += took_ms;
   longest_ms_ = std::max(longest_ms_, took_ms);
   return took_ms;
@@ -92,7 +93,7 @@ double Lane::GiveTurn() {
 double Lane::StalledSeconds() const {
   const std::lock_guard lock(mutex_);
   if (!busy_ || device_ == Device::kWanted) return 0.0;
-  return 1e-3 * since_progress_.ElapsedMs();
+  return 1e-3 * base::MsSince(time_, progress_at_);
 }
 
 double Lane::LongestPieceMs() const {
@@ -118,15 +119,15 @@ absl::Status Lane::Ended() const {
 }
 
 double Lane::WorkedMs() const {
-  const double waiting_ms = device_ == Device::kWanted ? since_wanted_.ElapsedMs() : 0.0;
-  return since_begun_.ElapsedMs() - waited_ms_ - waiting_ms;
+  const double waiting_ms = device_ == Device::kWanted ? base::MsSince(time_, wanted_at_) : 0.0;
+  return base::MsSince(time_, begun_at_) - waited_ms_ - waiting_ms;
 }
 
 absl::Status Lane::Take() {
   std::unique_lock lock(mutex_);
   THUNDERHEAD_RETURN_IF_ERROR(Ended());
   device_ = Device::kWanted;
-  since_wanted_.Restart();
+  wanted_at_ = time_.Now();
   lock.unlock();
   on_change_();
   lock.lock();

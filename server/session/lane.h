@@ -15,7 +15,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/device_turn.h"
-#include "base/stopwatch.h"
+#include "base/time_source.h"
 #include "session/frame_source.h"
 
 namespace thunderhead::session {
@@ -39,7 +39,8 @@ class Lane {
   };
 
   // `on_change` is called on the lane's thread when it wants a turn or has done its work.
-  Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change);
+  Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
+       const base::TimeSource& time = base::SteadyTime());
   // Ends the work at its next piece.
   ~Lane();
   Lane(const Lane&) = delete;
@@ -82,6 +83,7 @@ class Lane {
   };
 
   enum class Device { kUnused, kWanted, kHeld };
+  using Time = base::TimeSource::Clock::time_point;
 
   absl::Status Take();
   void GiveBack();
@@ -95,6 +97,7 @@ class Lane {
   const FrameSourceFactory make_source_;
   const int niceness_;
   const std::function<void()> on_change_;
+  const base::TimeSource& time_;
   Turn turn_{*this};
 
   mutable std::mutex mutex_;
@@ -108,9 +111,9 @@ class Lane {
   Device device_ = Device::kUnused;
   double used_ms_ = 0.0;    // by this work
   double waited_ms_ = 0.0;  // by this work, for turns
-  base::Stopwatch since_begun_;
-  base::Stopwatch since_wanted_;
-  base::Stopwatch since_progress_;
+  Time begun_at_;
+  Time wanted_at_;    // the turn
+  Time progress_at_;  // last
   double longest_ms_ = 0.0;
   std::thread thread_;
 };

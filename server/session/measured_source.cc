@@ -4,7 +4,6 @@
 
 #include "base/out_of_memory.h"
 #include "base/status.h"
-#include "base/stopwatch.h"
 
 namespace thunderhead::session {
 namespace {
@@ -17,20 +16,21 @@ double TotalMs(const DisplayFrame& frame) {
 
 }  // namespace
 
-MeasuredSource::MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables)
-    : source_(std::move(source)), tables_(std::move(tables)) {}
+MeasuredSource::MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables,
+                               const base::TimeSource& time)
+    : source_(std::move(source)), tables_(std::move(tables)), time_(time) {}
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Draw(const std::string& view,
                                                   const scene::Scene& scene, const Fields& fields,
                                                   const FrameQuality& quality,
                                                   const accuracy::Evidence& evidence) {
   last_drawn_.reset();
-  const base::Stopwatch stopwatch;
+  const auto begun_at = time_.Now();
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::OrOutOfMemory([&] {
                                  return source_->Draw(scene, fields, quality);
                                }));
   last_drawn_ = LastDrawn{scene, quality, fields};
-  Report(view, {scene, quality, stopwatch.ElapsedMs(), frame.stages}, evidence, &frame);
+  Report(view, {scene, quality, base::MsSince(time_, begun_at), frame.stages}, evidence, &frame);
   return frame;
 }
 

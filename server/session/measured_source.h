@@ -10,6 +10,7 @@
 #include "accuracy/estimator.h"
 #include "accuracy/machine_costs.h"
 #include "accuracy/offers.h"
+#include "base/time_source.h"
 #include "session/frame_planner.h"
 #include "session/frame_source.h"
 
@@ -19,7 +20,8 @@ class MeasuredSource {
  public:
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
 
-  MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables);
+  MeasuredSource(std::unique_ptr<FrameSource> source, accuracy::OfferTables tables,
+                 const base::TimeSource& time = base::SteadyTime());
   MeasuredSource(const MeasuredSource&) = delete;
   MeasuredSource& operator=(const MeasuredSource&) = delete;
 
@@ -57,6 +59,7 @@ class MeasuredSource {
 
   std::unique_ptr<FrameSource> source_;
   const accuracy::OfferTables tables_;
+  const base::TimeSource& time_;
   accuracy::MachineCosts costs_{tables_};
   const accuracy::Offers offers_{tables_, costs_};
   const accuracy::Estimator estimator_{tables_, costs_};

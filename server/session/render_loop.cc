@@ -10,7 +10,6 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
-#include "base/stopwatch.h"
 #include "base/thread_priority.h"
 #include "gl/device_faults.h"
 #include "session/guarded_source.h"
@@ -41,11 +40,12 @@ class Lanes {
     Lane& lane;
   };
 
-  Lanes(const FrameSourceFactory& make_source, bool yield, const std::function<void()>& wake)
-      : sessions(make_source, yield ? kSessionNiceness : 0, wake),
-        tracing(make_source, yield ? base::kLowestPriority : 0, wake),
-        quick_images(make_source, yield ? kImageNiceness : 0, wake),
-        images(make_source, yield ? kImageNiceness : 0, wake),
+  Lanes(const FrameSourceFactory& make_source, bool yield, const std::function<void()>& wake,
+        const base::TimeSource& time)
+      : sessions(make_source, yield ? kSessionNiceness : 0, wake, time),
+        tracing(make_source, yield ? base::kLowestPriority : 0, wake, time),
+        quick_images(make_source, yield ? kImageNiceness : 0, wake, time),
+        images(make_source, yield ? kImageNiceness : 0, wake, time),
         all_{{"/tracing", TurnClass::kRefining, tracing},
              {"/quick images", TurnClass::kBatch, quick_images},
              {"/images", TurnClass::kBatch, images}} {}
@@ -77,8 +77,8 @@ class MemoryPressure {
  public:
   using Budgets = std::vector<std::shared_ptr<base::MemoryBudget>>;
 
-  MemoryPressure(const Budgets& budgets, base::WakeSignal& wake)
-      : budgets_(budgets), seen_(budgets.size()) {
+  MemoryPressure(const Budgets& budgets, base::WakeSignal& wake, const base::TimeSource& time)
+      : budgets_(budgets), time_(time), seen_(budgets.size()) {
     for (const auto& budget : budgets_) budget->OnPressure([&wake] { wake.Notify(); });
   }
   ~MemoryPressure() {
@@ -95,15 +95,16 @@ class MemoryPressure {
       has_grown = has_grown || std::exchange(seen_[i], refusals) != refusals;
     }
     if (!has_grown) return;
-    if (Clock::now() >= next_) {
+    if (time_.Now() >= next_) {
       free_unused();
-      next_ = Clock::now() + kBetweenAnswers;
+      next_ = time_.Now() + kBetweenAnswers;
     }
     for (std::size_t i = 0; i < budgets_.size(); ++i) budgets_[i]->Answer(seen_[i]);
   }
 
  private:
   const Budgets& budgets_;
+  const base::TimeSource& time_;
   std::vector<std::uint64_t> seen_;
   Clock::time_point next_{};
 };
@@ -137,20 +138,23 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, volume::StormStore& sto
       store_(store),
       sessions_(sessions),
       wake_(wake),
+      time_(sessions.time()),
       losses_(options.losses),
       images_(options.max_waiting_images, options.max_waiting_images_each),
       reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
-      encoder_(std::make_unique<FrameEncoder>(options.encoder_threads, options.serialize_frame,
-                                              options_.memory, [&wake] { wake.Notify(); })),
-      tracer_(std::make_unique<TruthTracer>(options.make_truth_source, options.max_traced_sessions,
-                                            options_.memory, [&wake] { wake.Notify(); })) {}
+      encoder_(std::make_unique<FrameEncoder>(
+          options.encoder_threads, options.serialize_frame, options_.memory,
+          [&wake] { wake.Notify(); }, time_)),
+      tracer_(std::make_unique<TruthTracer>(
+          options.make_truth_source, options.max_traced_sessions, options_.memory,
+          [&wake] { wake.Notify(); }, time_)) {}
 
 RenderLoop::~RenderLoop() { Stop(); }
 
 double RenderLoop::TurnSeconds() const {
   const Clock::rep began = turn_began_;
   if (began == 0) return 0.0;
-  const Clock::duration took = Clock::now().time_since_epoch() - Clock::duration(began);
+  const Clock::duration took = time_.Now().time_since_epoch() - Clock::duration(began);
   return std::chrono::duration<double>(took).count();
 }
 
@@ -206,9 +210,9 @@ void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl
 
 void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
                           const FrameSourceFactory& make_source) {
-  MeasuredSource measured(std::move(source), options_.offer_tables());
+  MeasuredSource measured(std::move(source), options_.offer_tables(), time_);
   const auto wake = [this] { wake_.Notify(); };
-  auto lanes = std::make_unique<Lanes>(make_source, options_.lanes_yield, wake);
+  auto lanes = std::make_unique<Lanes>(make_source, options_.lanes_yield, wake, time_);
   LightTracer light_tracer(lanes->tracing);
   SessionLane session_lane(lanes->sessions, [this](std::uint64_t bytes) {
     return std::ranges::all_of(options_.device_memory,
@@ -217,11 +221,12 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
                        *tracer_, light_tracer, session_lane,
                        {.picture_bytes = options_.memory->Bytes() / 2,
-                        .references = std::max<std::size_t>(1, options_.max_traced_sessions / 2)});
+                        .references = std::max<std::size_t>(1, options_.max_traced_sessions / 2)},
+                       time_);
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
-                           {lanes->quick_images, lanes->images});
+                           {lanes->quick_images, lanes->images}, time_);
   Turns turns;
-  MemoryPressure pressure(options_.device_memory, wake_);
+  MemoryPressure pressure(options_.device_memory, wake_, time_);
   const std::vector<Lane*> all_lanes{&lanes->sessions, &lanes->tracing, &lanes->quick_images,
                                      &lanes->images};
   NoteLanes({all_lanes.begin(), all_lanes.end()});
@@ -247,7 +252,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     const std::vector<std::shared_ptr<Session>> sessions = sessions_.AllDrawn();
     drawer.ReleaseUnwatched(sessions);
     drawer.TakeDrawn(sessions);
-    light_tracer.TakeOutcome(Clock::now());
+    light_tracer.TakeOutcome(time_.Now());
     image_drawer.Attend();
     std::optional<Clock::time_point> look_again_at;
     std::vector<Contender> contenders;
@@ -258,7 +263,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       look_again_at = Earlier(look_again_at, wish.look_again_at);
     }
     // After the sessions, some of whom may just have asked for light.
-    look_again_at = Earlier(look_again_at, light_tracer.Begin(Clock::now()));
+    look_again_at = Earlier(look_again_at, light_tracer.Begin(time_.Now()));
     for (const Lanes::Entry& entry : lanes->All()) {
       contenders.push_back({entry.name, false, std::nullopt});
       if (entry.lane.WantsTurn()) contenders.back().work = entry.turn_class;
@@ -266,16 +271,18 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     const std::optional<std::size_t> next = turns.Next(contenders);
     if (!next.has_value()) {
       turn_began_ = 0;
-      if (!look_again_at.has_value() || *look_again_at > Clock::now()) wake_.Wait(look_again_at);
+      if (!look_again_at.has_value() || *look_again_at > time_.Now()) {
+        wake_.Wait(look_again_at, time_);
+      }
       continue;
     }
-    const base::Stopwatch stopwatch;
+    const Clock::time_point given_at = time_.Now();
     if (*next < sessions.size()) {
       drawer.TakeTurn(sessions[*next]);
     } else {
       lanes->All()[*next - sessions.size()].lane.GiveTurn();
     }
-    turns.Used(contenders[*next], stopwatch.ElapsedMs());
+    turns.Used(contenders[*next], base::MsSince(time_, given_at));
     turn_began_ = 0;
   }
   NoteLanes({});
@@ -289,7 +296,7 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
   absl::Status why = gl::DeviceLost();
   while (!stopping_) {
     telemetry::Counted().device_losses.Add();
-    const std::optional<Clock::time_point> at = losses_.Lost(Clock::now());
+    const std::optional<Clock::time_point> at = losses_.Lost(time_.Now());
     if (!at.has_value()) {
       why = absl::UnavailableError(
           absl::StrCat("the device was lost too often and is given up: ", why.message()));
@@ -301,10 +308,10 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
     ++device_generation_;
     for (Lane* lane : lanes) lane->RenewSource();
     source.Replace(nullptr);
-    const double pause_s = std::chrono::duration<double>(*at - Clock::now()).count();
+    const double pause_s = std::chrono::duration<double>(*at - time_.Now()).count();
     spdlog::error("the device was lost; opening it again in {:.1f} s", std::max(pause_s, 0.0));
     turn_began_ = 0;
-    while (!stopping_ && Clock::now() < *at) wake_.Wait(*at);
+    while (!stopping_ && time_.Now() < *at) wake_.Wait(*at, time_);
     if (stopping_) return false;
     // A driver may hang here as well as in a picture.
     BeginTurn();

@@ -18,6 +18,7 @@
 #include "absl/status/statusor.h"
 #include "accuracy/offer_tables.h"
 #include "base/memory_budget.h"
+#include "base/time_source.h"
 #include "base/wake_signal.h"
 #include "session/device_losses.h"
 #include "session/fields_reader.h"
@@ -102,7 +103,7 @@ class RenderLoop {
   void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
   void NoteLanes(std::vector<const Lane*> lanes);
   // From now on TurnSeconds counts.
-  void BeginTurn() { turn_began_ = Clock::now().time_since_epoch().count(); }
+  void BeginTurn() { turn_began_ = time_.Now().time_since_epoch().count(); }
   // After a loss of the device: returns when there is one again, false if it is given up.
   bool Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
                MeasuredSource& source);
@@ -111,7 +112,8 @@ class RenderLoop {
   volume::StormStore& store_;
   Sessions& sessions_;
   base::WakeSignal& wake_;
-  DeviceInfo device_;  // like the next two, constant after Start
+  const base::TimeSource& time_;  // the sessions'
+  DeviceInfo device_;             // like the next two, constant after Start
   std::vector<scene::TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};

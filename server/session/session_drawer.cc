@@ -74,17 +74,18 @@ absl::Status ReferencesBeyondShare(std::size_t references) {
 }
 
 // The time at which to try again, if the failure is temporary.
-std::optional<Clock::time_point> TryAgainAt(const absl::Status& why) {
+std::optional<Clock::time_point> TryAgainAt(const absl::Status& why, Clock::time_point now) {
   const auto after = base::DetailsOf(why).retry_after;
   if (!after.has_value()) return std::nullopt;
-  return Clock::now() + *after;
+  return now + *after;
 }
 
 }  // namespace
 
 SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
                              MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer,
-                             LightTracer& light_tracer, SessionLane& lane, const Share& share)
+                             LightTracer& light_tracer, SessionLane& lane, const Share& share,
+                             const base::TimeSource& time)
     : targets_(targets),
       fields_(fields),
       source_(source),
@@ -92,7 +93,8 @@ SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& 
       tracer_(tracer),
       light_tracer_(light_tracer),
       lane_(lane),
-      share_(share) {}
+      share_(share),
+      time_(time) {}
 
 SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<Session>& session) {
   const std::optional<NewestScene> newest = session->Newest();
@@ -241,7 +243,7 @@ void SessionDrawer::YieldMemory(const std::vector<std::shared_ptr<Session>>& ses
     // Whoever comes back has it drawn again.
     if (session->hub().DropUnwatched()) kept_.erase(session->id());
   }
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = time_.Now();
   const bool lack_pictures =
       std::ranges::any_of(kept_, [](const auto& entry) { return entry.second.refused; });
   for (auto& [id, kept] : kept_) {
@@ -256,11 +258,11 @@ void SessionDrawer::TakeRead(const Turn& turn) {
   const auto unreadable = turn.kept.fields.TakeRead();
   if (!unreadable.has_value()) return;
   if (absl::IsResourceExhausted(unreadable->why) &&
-      turn.kept.view.StaysYielded(unreadable->revision, Clock::now())) {
+      turn.kept.view.StaysYielded(unreadable->revision, time_.Now())) {
     turn.kept.fields.TryAgain();
     return;
   }
-  const auto try_again_at = TryAgainAt(unreadable->why);
+  const auto try_again_at = TryAgainAt(unreadable->why, time_.Now());
   turn.kept.refused = absl::IsResourceExhausted(unreadable->why) && try_again_at.has_value();
   turn.kept.view.Failed(unreadable->revision, try_again_at);
   turn.session->hub().Publish(UnreadableStorm(unreadable->revision, unreadable->why));
@@ -270,7 +272,7 @@ SessionWork SessionDrawer::NextWork(const Turn& turn, const NewestScene& newest)
   const auto decided = turn.kept.view.Decide(newest);
   if (!decided.ok()) turn.session->hub().Publish(ProblemOf(newest.revision, decided.status()));
   if (!decided.ok() || !decided->has_value()) return WaitUntil{};
-  const Clock::time_point now = Clock::now();
+  const Clock::time_point now = time_.Now();
   if (turn.kept.view.TriesAgain(now)) turn.kept.fields.TryAgain();
   if (const auto rests = turn.kept.view.Resting(**decided, now)) return *rests;
   const auto drawable = turn.kept.fields.Drawable(**decided, turn.kept.view.shown_revision());
@@ -303,7 +305,7 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const NewestScene& newest,
   }
   turn.kept.in_lane = true;
   if (draw == nullptr) return work;
-  return turn.kept.view.Next(newest, drawable, Clock::now(),
+  return turn.kept.view.Next(newest, drawable, time_.Now(),
                              IfDrawnFrom(turn.kept.fields.Fields(), lane_.Last()));
 }
 
@@ -352,7 +354,7 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work
   const auto news = light_tracer_.TakeNews(id);
   if (!news.has_value()) return {};
   if (news->ok()) {
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = time_.Now();
     const TracedStep& step = **news;
     const bool lit = step.light.has_value() && turn.kept.view.LightTraced(*step.light, now);
     const bool told = step.error.has_value() && turn.kept.view.ErrorMeasured(*step.error, now);
@@ -431,7 +433,7 @@ void SessionDrawer::SendLight(const Turn& turn, const NewestScene& shown, Displa
                               std::optional<frame::FineImage> fine) {
   const auto not_shown = std::exchange(turn.kept.not_shown, std::nullopt);
   if (not_shown.has_value()) picture.modelled.content.not_shown.push_back(*not_shown);
-  turn.kept.view.LightShown(Clock::now());
+  turn.kept.view.LightShown(time_.Now());
   Send(turn, shown, true, std::move(picture), std::move(fine));
 }
 
@@ -520,7 +522,7 @@ void SessionDrawer::Fail(const Turn& turn, std::uint64_t revision, const absl::S
   // Not a failure yet: the same work is due again once the device has been reopened.
   const bool lost = gl::IsDeviceLost(why);
   if (lost && ++turn.kept.losses <= kMaxLosses) return;
-  turn.kept.view.Failed(revision, lost ? std::nullopt : TryAgainAt(why));
+  turn.kept.view.Failed(revision, lost ? std::nullopt : TryAgainAt(why, time_.Now()));
   turn.session->hub().Publish(ProblemOf(revision, why));
 }
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/time_source.h"
 #include "session/frame_encoder.h"
 #include "session/light_tracer.h"
 #include "session/measured_source.h"
@@ -34,7 +35,8 @@ class SessionDrawer {
   // All references must outlive it.
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
                 FrameEncoder& encoder, TruthTracer& tracer, LightTracer& light_tracer,
-                SessionLane& lane, const Share& share);
+                SessionLane& lane, const Share& share,
+                const base::TimeSource& time = base::SteadyTime());
 
   struct Wish {
     std::optional<TurnClass> work;  // to be done in a turn
@@ -147,6 +149,7 @@ class SessionDrawer {
   LightTracer& light_tracer_;
   SessionLane& lane_;
   const Share share_;
+  const base::TimeSource& time_;
   bool alone_ = true;                 // at most one session is watched
   std::optional<InLane> in_lane_;     // the lane's, until its outcome was taken
   std::map<std::string, Kept> kept_;  // by session id

@@ -17,8 +17,8 @@ constexpr int kNiceness = 10;
 
 }  // namespace
 
-StillMaker::StillMaker(SerializeFrame serialize)
-    : serialize_(std::move(serialize)), thread_([this] { Run(); }) {}
+StillMaker::StillMaker(SerializeFrame serialize, const base::TimeSource& time)
+    : serialize_(std::move(serialize)), time_(time), thread_([this] { Run(); }) {}
 
 StillMaker::~StillMaker() {
   {
@@ -32,7 +32,7 @@ StillMaker::~StillMaker() {
 void StillMaker::Make(StillToMake still) {
   const auto session = still.session.lock();
   if (session == nullptr) return;
-  const Time now = Clock::now();
+  const Time now = time_.Now();
   Time due = still.described.at_rest ? now : std::max(now + kRestsAfter, still.rests_at);
   {
     const std::lock_guard lock(mutex_);
@@ -55,8 +55,8 @@ void StillMaker::Run() {
                          [](const auto& a, const auto& b) { return a.second.due < b.second.due; });
     if (next == waiting_.end()) {
       changed_.wait(lock);
-    } else if (const Time due = next->second.due; Clock::now() < due) {
-      changed_.wait_until(lock, due);
+    } else if (const Time due = next->second.due; time_.Now() < due) {
+      changed_.wait_until(lock, time_.LookAgainAt(due));
     } else {
       const StillToMake still = std::move(next->second.still);
       waiting_.erase(next);

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/time_source.h"
 #include "frame/fine_image.h"
 #include "session/encoded_frame.h"
 #include "session/picture_sizes.h"
@@ -36,7 +37,7 @@ class StillMaker {
   // A frame that was drawn in motion rests after so long without a newer one, or later.
   static constexpr std::chrono::milliseconds kRestsAfter{150};
 
-  explicit StillMaker(SerializeFrame serialize);
+  explicit StillMaker(SerializeFrame serialize, const base::TimeSource& time = base::SteadyTime());
   // Waits for the still being made and drops the others.
   ~StillMaker();
   StillMaker(const StillMaker&) = delete;
@@ -56,6 +57,7 @@ class StillMaker {
   void MakeNow(const StillToMake& still) const;
 
   const SerializeFrame serialize_;
+  const base::TimeSource& time_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;

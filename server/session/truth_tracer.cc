@@ -31,13 +31,16 @@ std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& 
 // A picture being traced. Used by the tracing thread, except for `stop`.
 struct TruthTracer::Job {
   Job(std::string of_owner, std::shared_ptr<const scene::Scene> of_scene,
-      std::shared_ptr<const volume::HydrometeorFields> of_fields, const Owned& of)
+      std::shared_ptr<const volume::HydrometeorFields> of_fields, const Owned& of,
+      const base::TimeSource& by_time)
       : owner(std::move(of_owner)),
         scene(std::move(of_scene)),
         fields(std::move(of_fields)),
         source(of.source),
         reserved(of.reserved),
-        schedule({scene->output.width_px, scene->output.height_px}) {}
+        time(by_time),
+        schedule({scene->output.width_px, scene->output.height_px}),
+        shown_at(by_time.Now()) {}
 
   // A picture if one is due, and whether it is the last.
   struct Turn {
@@ -52,11 +55,12 @@ struct TruthTracer::Job {
   const std::shared_ptr<const volume::HydrometeorFields> fields;
   const std::shared_ptr<TruthSource> source;
   const std::shared_ptr<base::MemoryReservation> reserved;
+  const base::TimeSource& time;
   std::stop_source stop;
   TruthSchedule schedule;
   bool begun = false;
   double trace_ms = 0.0;
-  base::Stopwatch since_shown;
+  base::TimeSource::Clock::time_point shown_at;
 };
 
 absl::StatusOr<TruthTracer::Job::Turn> TruthTracer::Job::Refine(base::MemoryBudget& memory) {
@@ -72,10 +76,10 @@ absl::StatusOr<TruthTracer::Job::Turn> TruthTracer::Job::Refine(base::MemoryBudg
   if (stop.stop_requested()) return Turn{std::nullopt, true};
   Found found;
   const bool full_size = schedule.IsFull();
-  if (schedule.ShowNow(refinement, since_shown.ElapsedMs() * 1e-3)) {
+  if (schedule.ShowNow(refinement, base::MsSince(time, shown_at) * 1e-3)) {
     found = std::make_shared<const TruthPicture>(
         TruthPicture{source->Snapshot(), refinement, trace_ms, full_size});
-    since_shown.Restart();
+    shown_at = time.Now();
   }
   if (schedule.GrowAt(refinement)) begun = false;
   return Turn{std::move(found), full_size && schedule.Finished(refinement)};
@@ -83,11 +87,12 @@ absl::StatusOr<TruthTracer::Job::Turn> TruthTracer::Job::Refine(base::MemoryBudg
 
 TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
                          std::shared_ptr<base::MemoryBudget> memory,
-                         std::function<void()> on_picture)
+                         std::function<void()> on_picture, const base::TimeSource& time)
     : make_source_(std::move(make_source)),
       max_owners_(max_owners),
       memory_(std::move(memory)),
       on_picture_(std::move(on_picture)),
+      time_(time),
       thread_([this] { Run(); }) {}
 
 TruthTracer::~TruthTracer() {
@@ -118,7 +123,7 @@ absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const 
       owned.reserved = std::make_shared<base::MemoryReservation>(
           *memory_->Reserve(base::MemoryUse::kTracing, 0, "a picture by the reference"));
     }
-    owned.job = std::make_shared<Job>(owner, std::move(scene), std::move(fields), owned);
+    owned.job = std::make_shared<Job>(owner, std::move(scene), std::move(fields), owned, time_);
   }
   changed_.notify_one();
   return absl::OkStatus();

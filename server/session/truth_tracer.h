@@ -17,6 +17,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/memory_budget.h"
+#include "base/time_source.h"
 #include "scene/scene.h"
 #include "session/frame_source.h"
 #include "session/truth_source.h"
@@ -38,7 +39,8 @@ class TruthTracer {
   // are at most `max_owners`.
   // `on_picture` is called on the tracing thread when a picture can be taken.
   TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
-              std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture);
+              std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture,
+              const base::TimeSource& time = base::SteadyTime());
   // Ends tracing at once.
   ~TruthTracer();
   TruthTracer(const TruthTracer&) = delete;
@@ -73,6 +75,7 @@ class TruthTracer {
   const std::size_t max_owners_;
   const std::shared_ptr<base::MemoryBudget> memory_;
   const std::function<void()> on_picture_;
+  const base::TimeSource& time_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;
