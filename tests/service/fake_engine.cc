@@ -12,6 +12,7 @@
 #include "base/status.h"
 #include "gl/device_faults.h"
 #include "tests/support/techniques.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -132,11 +133,12 @@ class FakeFrameSource final : public session::FrameSource {
       if (left_ms == ms) {
         // Of the calling thread.
         const int niceness = ::getpriority(PRIO_PROCESS, 0);
-        machine_->Add({scene, quality, std::chrono::steady_clock::now(), niceness});
+        machine_->Add({scene, quality, niceness});
         machine_->drawing.Pass();
       }
+      if (turn_ != nullptr) machine_->next_piece.Pass();
       const double piece_ms = turn_ != nullptr ? std::min(left_ms, kFakePiece_ms) : left_ms;
-      std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(piece_ms));
+      Spend(piece_ms);
       left_ms -= piece_ms;
       if (turn_ != nullptr) {
         ++machine_->pieces;
@@ -168,13 +170,16 @@ class FakeFrameSource final : public session::FrameSource {
     if (!Traces(scene)) return accuracy::LightProgress{};
     const double waits = machine_->waits_to_trace_azimuth_deg;
     if (machine_->traces_enough || scene.sun.azimuth_deg == waits) {
+      ++machine_->trace_refusals;
       return absl::ResourceExhaustedError("it traces enough already");
     }
     if (scene.sun.azimuth_deg == machine_->cannot_trace_azimuth_deg) {
+      ++machine_->trace_failures;
       return absl::InternalError("the fake machine cannot trace that");
     }
     if (claim != nullptr) *claim = machine_->light;
     machine_->tracing.Pass();
+    machine_->AddTraced(scene);
     return accuracy::LightProgress{machine_->traced_paths += machine_->paths_per_step,
                                    ++machine_->traced_steps};
   }
@@ -212,6 +217,15 @@ class FakeFrameSource final : public session::FrameSource {
   }
 
  private:
+  void Spend(double ms) const {
+    const std::chrono::duration<double, std::milli> duration(ms);
+    if (machine_->time != nullptr) {
+      machine_->time->Advance(std::chrono::duration_cast<ManualTime::Clock::duration>(duration));
+    } else {
+      std::this_thread::sleep_for(duration);
+    }
+  }
+
   session::DisplayFrame Paint(const scene::Scene& scene, const session::FrameQuality& quality,
                               double ms) const {
     session::DisplayFrame frame;
@@ -249,7 +263,7 @@ class FakeTruthSource final : public session::TruthSource {
                      const std::shared_ptr<const volume::HydrometeorFields>& fields,
                      const glm::ivec2& size_px) override {
     THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
-    truth_->Add({scene, size_px});
+    truth_->Add({scene, size_px, truth_->samples});
     size_px_ = size_px;
     samples_ = 0;
     if (scene.display.exposure_ev > truth_->fails_above_exposure_ev) {
@@ -260,11 +274,13 @@ class FakeTruthSource final : public session::TruthSource {
 
   session::Refinement Refine(int until_samples, double seconds,
                              const std::stop_token& stop) override {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (samples_ < until_samples && std::chrono::steady_clock::now() < end) {
+    double left_ms = 1e3 * seconds;
+    while (samples_ < until_samples && left_ms > 0.0) {
       if (stop.stop_requested()) break;
-      std::this_thread::sleep_for(
-          std::chrono::duration<double, std::milli>(truth_->ms_per_sample.load()));
+      truth_->sampling.Pass();
+      const double ms = truth_->ms_per_sample;
+      std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms));
+      left_ms -= ms;
       ++samples_;
       ++truth_->samples;
     }
@@ -304,6 +320,7 @@ session::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth) {
 void Gate::Close() {
   const std::lock_guard lock(mutex_);
   open_ = false;
+  may_pass_ = 0;
 }
 
 void Gate::Open() {
@@ -314,10 +331,10 @@ void Gate::Open() {
   changed_.notify_all();
 }
 
-void Gate::LetOnePass() {
+void Gate::LetPass(int count) {
   {
     const std::lock_guard lock(mutex_);
-    ++may_pass_;
+    may_pass_ += count;
   }
   changed_.notify_all();
 }
@@ -333,7 +350,12 @@ void Gate::Pass() {
 
 bool Gate::AwaitWaiting(int count) {
   std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, kPatience, [&] { return waiting_ >= count; });
+  return changed_.wait_for(lock, kPatience, [&] { return waiting_ - may_pass_ >= count; });
+}
+
+int Gate::Waiting() {
+  const std::lock_guard lock(mutex_);
+  return open_ ? 0 : std::max(waiting_ - may_pass_, 0);
 }
 
 FakeStormStore::FakeStormStore() : storms_{Storm("anvil", 4), Storm("clear", 1)} {}
@@ -434,6 +456,30 @@ std::vector<FakeMachine::Drawn> FakeMachine::Log() {
   return log_;
 }
 
+int FakeMachine::PiecesUntil(const std::function<bool(const Drawn&)>& is) {
+  int passed = 0;
+  const bool drawn = WaitFor([&] {
+    // In this order: what was drawn before a piece waited is in the log.
+    const bool waits = next_piece.Waiting() > 0;
+    if (std::ranges::any_of(Log(), is)) return true;
+    if (!waits) return false;
+    next_piece.LetOnePass();
+    ++passed;
+    return false;
+  });
+  return drawn ? passed : -1;
+}
+
+std::vector<scene::Scene> FakeMachine::Traced() {
+  const std::lock_guard lock(mutex_);
+  return traced_;
+}
+
+void FakeMachine::AddTraced(const scene::Scene& scene) {
+  const std::lock_guard lock(mutex_);
+  traced_.push_back(scene);
+}
+
 bool FakeMachine::IsPrepared(const scene::Scene& scene) {
   const std::lock_guard lock(mutex_);
   return prepared_.contains(KeyOf(scene));
@@ -460,7 +506,7 @@ void FakeMachine::Add(Drawn drawn) {
 session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
   return
       [machine](base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
-        std::this_thread::sleep_for(std::chrono::milliseconds(machine->opening_ms));
+        machine->opening.Pass();
         if (TakeOne(machine->cannot_open)) return absl::UnavailableError("there is no device");
         ++machine->opened;
         return std::make_unique<FakeFrameSource>(machine, turn);

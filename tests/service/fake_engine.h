@@ -1,5 +1,5 @@
 // Fakes for the render loop instead of files and GL: storms in memory, and a frame source that
-// paints scene values as colours and takes a given time.
+// paints scene values as colours and takes a given time, by the real clock or by a ManualTime.
 #pragma once
 
 #include <atomic>
@@ -17,6 +17,7 @@
 
 #include "session/frame_source.h"
 #include "session/truth_source.h"
+#include "tests/support/manual_time.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::testing {
@@ -28,12 +29,15 @@ class Gate {
  public:
   void Close();
   void Open();
-  // Lets one waiting, or the next, thread pass the closed gate.
-  void LetOnePass();
+  // Lets so many threads pass the closed gate: those that wait, and the next.
+  void LetPass(int count);
+  void LetOnePass() { LetPass(1); }
   // Called by the fake: waits until the gate is open.
   void Pass();
   // Called by the test: waits until `count` threads wait at the closed gate.
   bool AwaitWaiting(int count);
+  // The number of threads that wait at the closed gate.
+  int Waiting();
 
  private:
   std::mutex mutex_;
@@ -92,18 +96,20 @@ struct FakeMachine {
   struct Drawn {
     scene::Scene scene;
     session::FrameQuality quality;
-    std::chrono::steady_clock::time_point at;
     int niceness = 0;  // of the thread that drew it
   };
 
   Gate drawing;
+  Gate next_piece;  // of what is drawn in turns
+  // Drawing moves this time instead of sleeping, if it is set; it is set before anything is drawn.
+  ManualTime* time = nullptr;
   std::atomic<double> ms_per_mega_sample{0.0};
   std::atomic<double> fails_above_exposure_ev{1e9};
   std::atomic<int> losses{0};  // of the device, with the next pictures drawn
   std::atomic<double> loses_above_exposure_ev{1e9};
   std::atomic<int> cannot_open{0};  // the next sources
   std::atomic<int> opened{0};       // sources
-  std::atomic<int> opening_ms{0};   // of each source
+  Gate opening;                     // of each source
   Gate preparing;                   // of scenes of metaballs; each number of them once a time
   std::atomic<int> cannot_prepare{-1};
   std::atomic<int> pieces{0};   // drawn in turns
@@ -111,6 +117,8 @@ struct FakeMachine {
   std::atomic<std::int64_t> paths_per_step{100'000};
   std::atomic<std::int64_t> traced_paths{0};
   std::atomic<std::int64_t> traced_steps{0};
+  std::atomic<int> trace_refusals{0};  // as it traces enough, or others have their turn
+  std::atomic<int> trace_failures{0};
   std::atomic<double> cannot_trace_azimuth_deg{-1.0};
   std::atomic<bool> traces_enough{false};                // for others
   std::atomic<double> waits_to_trace_azimuth_deg{-1.0};  // as others have their turn
@@ -125,6 +133,12 @@ struct FakeMachine {
 
   std::vector<Drawn> Log();
   void Add(Drawn drawn);
+  // Lets pieces pass the closed gate, one after another, until a frame is drawn that `is`. Returns
+  // their number; -1 if there is none for kPatience.
+  int PiecesUntil(const std::function<bool(const Drawn&)>& is);
+  // The scenes whose light was traced, one for each step.
+  std::vector<scene::Scene> Traced();
+  void AddTraced(const scene::Scene& scene);
   bool IsPrepared(const scene::Scene& scene);
   // Waits until it is, for at most kPatience.
   bool AwaitPrepared(const scene::Scene& scene);
@@ -134,6 +148,7 @@ struct FakeMachine {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Drawn> log_;
+  std::vector<scene::Scene> traced_;
   std::set<std::pair<int, int>> prepared_;  // numbers of balls, times
 };
 
@@ -148,8 +163,10 @@ struct FakeTruth {
   struct Begun {
     scene::Scene scene;
     glm::ivec2 size_px{0};
+    int samples_before = 0;  // of all pictures
   };
 
+  Gate sampling;
   std::atomic<double> ms_per_sample{0.5};
   std::atomic<double> fails_above_exposure_ev{1e9};
   std::atomic<int> samples{0};  // of all pictures

@@ -14,6 +14,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::session {
 namespace {
@@ -21,8 +22,6 @@ namespace {
 using ::testing::Pair;
 using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
-
-constexpr std::chrono::seconds kPatience{20};
 
 class SilentViewer : public Viewer {
  public:
@@ -41,7 +40,7 @@ class FrameEncoderTest : public ::testing::Test {
     drawn.picture.height_px = 36;
     drawn.picture.rgb.assign(std::size_t{64} * 36 * 3, 100);
     encoder_.Encode(std::move(drawn));
-    ASSERT_TRUE(encoded_.try_acquire_for(kPatience));
+    ASSERT_TRUE(encoded_.try_acquire_for(testing::kHangLimit));
   }
 
   // Adds `count` viewers, who take every frame.
