@@ -66,8 +66,9 @@ class Jwts final : public Authenticator {
 
 std::unique_ptr<Authenticator> TrustEverybody() { return std::make_unique<Everybody>(); }
 
-absl::StatusOr<std::unique_ptr<Authenticator>> TrustTokens(const std::string& path) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(auto file, KeptFile<TokenList>::Open(path, &TokenList::Parse));
+absl::StatusOr<std::unique_ptr<Authenticator>> TrustTokens(const std::string& path,
+                                                           const base::TimeSource& time) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto file, KeptFile<TokenList>::Open(path, &TokenList::Parse, time));
   return std::make_unique<Tokens>(std::move(file));
 }
 

@@ -12,6 +12,7 @@
 #include "absl/status/statusor.h"
 #include "base/file_stamp.h"
 #include "base/looks.h"
+#include "base/time_source.h"
 
 namespace thunderhead::access {
 
@@ -27,7 +28,9 @@ class KeptFile {
  public:
   using Parse = std::function<absl::StatusOr<Value>(const std::string& text)>;
 
-  static absl::StatusOr<std::unique_ptr<KeptFile>> Open(const std::string& path, Parse parse);
+  // `time`, by which the file's storage is waited for, must outlive this.
+  static absl::StatusOr<std::unique_ptr<KeptFile>> Open(
+      const std::string& path, Parse parse, const base::TimeSource& time = base::SteadyTime());
 
   std::shared_ptr<const Value> Current();
 
@@ -44,8 +47,10 @@ class KeptFile {
     std::shared_ptr<const Value> value;
   };
 
-  explicit KeptFile(const std::shared_ptr<State>& state)
-      : state_(state), looks_(state->path, [state] { state->Look(); }) {}
+  KeptFile(const std::shared_ptr<State>& state, const base::TimeSource& time)
+      : state_(state),
+        looks_(
+            state->path, [state] { state->Look(); }, base::Looks::kPatience, time) {}
 
   const std::shared_ptr<State> state_;
   base::Looks looks_;
@@ -55,11 +60,11 @@ class KeptFile {
 void TellOfReload(const std::string& path, const absl::Status& status);
 
 template <typename Value>
-absl::StatusOr<std::unique_ptr<KeptFile<Value>>> KeptFile<Value>::Open(const std::string& path,
-                                                                       Parse parse) {
+absl::StatusOr<std::unique_ptr<KeptFile<Value>>> KeptFile<Value>::Open(
+    const std::string& path, Parse parse, const base::TimeSource& time) {
   std::shared_ptr<State> state(new State{.path = path, .parse = std::move(parse)});
   if (absl::Status status = state->Read(); !status.ok()) return status;
-  return std::unique_ptr<KeptFile>(new KeptFile(state));
+  return std::unique_ptr<KeptFile>(new KeptFile(state, time));
 }
 
 template <typename Value>

@@ -25,8 +25,6 @@ constexpr std::chrono::seconds kUnwritablePause{60};
 // The clock may be set in between.
 constexpr std::chrono::seconds kLongestSleep{60};
 
-Time Now() { return std::chrono::system_clock::now(); }
-
 void Count(const char* outcome, std::size_t pictures = 1) {
   telemetry::Counted().job_pictures.Of(outcome).Add(pictures);
 }
@@ -45,7 +43,7 @@ Problem EndedServer() {
 
 absl::StatusOr<std::unique_ptr<Jobs>> Jobs::Open(const JobsOptions& options) {
   THUNDERHEAD_ASSIGN_OR_RETURN(ResultFolder results,
-                               ResultFolder::Open(options.folder, options.patience));
+                               ResultFolder::Open(options.folder, options.patience, *options.time));
   std::unique_ptr<Jobs> jobs(new Jobs(options, std::move(results)));
   THUNDERHEAD_RETURN_IF_ERROR(jobs->Restore());
   jobs->thread_ = std::thread([raw = jobs.get()] { raw->Run(); });
@@ -56,6 +54,7 @@ Jobs::Jobs(const JobsOptions& options, ResultFolder results)
     : store_(options.store),
       results_(std::move(results)),
       limits_(options.limits),
+      time_(*options.time),
       board_(options.limits) {}
 
 Jobs::~Jobs() { Stop(); }
@@ -233,13 +232,14 @@ void Jobs::FetchedByKey(const std::string& result_key, std::size_t place) {
 JobsLoad Jobs::Load() const {
   const std::lock_guard lock(mutex_);
   const PictureCounts counts = board_.Counts();
+  const std::chrono::duration<double> busy =
+      busy_since_.has_value() ? time_.Now() - *busy_since_ : base::TimeSource::Clock::duration(0);
   return {.running = board_.Running(),
           .waiting = counts[static_cast<std::size_t>(PictureState::kWaiting)],
           .paused = board_.Paused(),
           .drawing = counts[static_cast<std::size_t>(PictureState::kDrawing)],
           .result_bytes = board_.ResultBytes(),
-          .stalled_s = std::max(busy_since_.has_value() ? 1e-3 * busy_since_->ElapsedMs() : 0.0,
-                                results_.HangingSeconds()),
+          .stalled_s = std::max(busy.count(), results_.HangingSeconds()),
           .watchers = watchers_.size()};
 }
 
@@ -265,13 +265,19 @@ void Jobs::Stop() {
   thread_.join();
 }
 
-Time Jobs::WakeTime() const {
-  Time wake = Now() + kLongestSleep;
-  for (const std::optional<Time>& at : {board_.NextRetry(Now()), board_.NextExpiry()}) {
+Time Jobs::Now() const {
+  return std::chrono::system_clock::now() + (time_.Now() - base::SteadyTime().Now());
+}
+
+base::TimeSource::Clock::time_point Jobs::WakeTime() const {
+  const Time now = Now();
+  Time wake = now + kLongestSleep;
+  for (const std::optional<Time>& at : {board_.NextRetry(now), board_.NextExpiry()}) {
     if (at.has_value()) wake = std::min(wake, *at);
   }
   // Those that wait to be written are due when the pause is over, which it may be by now.
-  return paused_until_ > Now() || !unwritten_.empty() ? std::min(wake, paused_until_) : wake;
+  if (paused_until_ > now || !unwritten_.empty()) wake = std::min(wake, paused_until_);
+  return time_.Now() + (wake - now);
 }
 
 void Jobs::Run() {
@@ -285,15 +291,15 @@ void Jobs::Run() {
     const bool ends = stopping_ && in_hand_.empty() && tasks_.empty();
     if (ends && unwritten_.empty()) break;
     busy_since_.reset();
-    if (tasks_.empty() && !ends) changed_.wait_until(lock, WakeTime());
-    busy_since_.emplace();
+    if (tasks_.empty() && !ends) changed_.wait_until(lock, time_.LookAgainAt(WakeTime()));
+    busy_since_ = time_.Now();
     while (!tasks_.empty()) {
       const Task task = std::move(tasks_.front());
       tasks_.pop_front();
       lock.unlock();
       task();
       lock.lock();
-      busy_since_.emplace();
+      busy_since_ = time_.Now();
     }
   }
   stopped_ = true;
@@ -343,6 +349,7 @@ void Jobs::BeginOne(const PicturePlace& picture, Lock& lock) {
   if (!board_.IsDrawing(picture)) return;
   const PictureOrder order = board_.OrderOf(picture);
   const auto hand = std::make_shared<InHand>();
+  hand->begun_at = time_.Now();
   in_hand_[picture] = hand;
   lock.unlock();
   const auto ends = [this, picture] { Post([this, picture] { EndPicture(picture); }); };
@@ -373,7 +380,7 @@ void Jobs::EndPicture(const PicturePlace& picture) {
     THUNDERHEAD_RETURN_IF_ERROR(hand->begun);
     THUNDERHEAD_ASSIGN_OR_RETURN(DrawnPicture drawn, hand->picture->Take());
     Keep({picture, std::make_shared<const DrawnPicture>(std::move(drawn)),
-          hand->since_begun.ElapsedMs()});
+          std::chrono::duration<double, std::milli>(time_.Now() - hand->begun_at).count()});
     return absl::OkStatus();
   });
   if (!kept.ok()) Refuse(picture, kept);

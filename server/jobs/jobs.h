@@ -23,7 +23,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "base/stopwatch.h"
+#include "base/time_source.h"
 #include "jobs/job_board.h"
 #include "jobs/job_limits.h"
 #include "jobs/job_record.h"
@@ -39,6 +39,9 @@ struct JobsOptions {
   // How long a call to that folder may take; then its storage hangs.
   std::chrono::milliseconds patience = std::chrono::seconds(10);
   JobLimits limits;
+  // The time that pauses, retries and calls to the folder are measured by; it must outlive the
+  // jobs.
+  const base::TimeSource* time = &base::SteadyTime();
 };
 
 // Told that a job has changed or is gone, or that the server stops.
@@ -121,7 +124,7 @@ class Jobs {
 
   // A picture that was begun.
   struct InHand {
-    base::Stopwatch since_begun;
+    base::TimeSource::Clock::time_point begun_at;
     std::unique_ptr<PictureInHand> picture;  // null until it has been begun
     absl::Status begun;                      // or why it could not be
     bool cancelled = false;
@@ -138,7 +141,9 @@ class Jobs {
   absl::Status Restore();
   void Run();
   void Post(Task task);
-  Time WakeTime() const;
+  // The wall clock. It is ahead by as much as time_ is ahead of the real steady clock.
+  Time Now() const;
+  base::TimeSource::Clock::time_point WakeTime() const;
 
   // On the thread of its own. Those that take the lock hold it when called and when they return.
   void Expire(Lock& lock);
@@ -162,6 +167,7 @@ class Jobs {
   const std::shared_ptr<JobStore> store_;
   ResultFolder results_;
   const JobLimits limits_;
+  const base::TimeSource& time_;
   BeginPicture begin_;
 
   mutable std::mutex mutex_;
@@ -170,10 +176,11 @@ class Jobs {
   std::map<PicturePlace, std::shared_ptr<InHand>> in_hand_;
   std::multimap<std::string, std::weak_ptr<JobWatcher>> watchers_;
   std::deque<Task> tasks_;
-  std::optional<base::Stopwatch> busy_since_;  // while the thread works
-  Time paused_until_ = {};                     // as nothing can be written
-  bool cannot_write_ = false;                  // the last of them
-  std::vector<Unwritten> unwritten_;           // at most one more than may be in hand
+  // While the thread works.
+  std::optional<base::TimeSource::Clock::time_point> busy_since_;
+  Time paused_until_ = {};            // as nothing can be written
+  bool cannot_write_ = false;         // the last of them
+  std::vector<Unwritten> unwritten_;  // at most one more than may be in hand
   bool started_ = false;
   bool draining_ = false;
   bool stopping_ = false;

@@ -35,7 +35,8 @@ bool IsJobId(const std::string& name) {
 }  // namespace
 
 absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
-                                                std::chrono::milliseconds patience) {
+                                                std::chrono::milliseconds patience,
+                                                const base::TimeSource& time) {
   const base::SlowCall slow(path);
   std::error_code error;
   const bool is_there = fs::is_directory(path, error);
@@ -43,7 +44,7 @@ absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
     fs::create_directories(path, error);
     if (!error) fs::permissions(path, fs::perms::owner_all, error);
   }
-  if (!error) return ResultFolder(path, patience);
+  if (!error) return ResultFolder(path, patience, time);
   return absl::InvalidArgumentError(absl::StrCat(
       "'", path,
       "' for results of render jobs is not a folder and cannot be created: ", error.message()));

@@ -14,6 +14,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/patient_calls.h"
+#include "base/time_source.h"
 #include "jobs/picture_source.h"
 
 namespace thunderhead::jobs {
@@ -22,7 +23,8 @@ class ResultFolder {
  public:
   // Creates the folder, for this user only. INVALID_ARGUMENT if that cannot be.
   static absl::StatusOr<ResultFolder> Open(const std::string& path,
-                                           std::chrono::milliseconds patience);
+                                           std::chrono::milliseconds patience,
+                                           const base::TimeSource& time);
 
   // The picture at `place` of a job, and what is told of it. Errors as base::WriteWholeFile; and
   // DEADLINE_EXCEEDED while the storage hangs, after which it may have been written all the same.
@@ -46,8 +48,8 @@ class ResultFolder {
   void Clean(const std::set<std::string>& known) const;
 
  private:
-  ResultFolder(std::string path, std::chrono::milliseconds patience)
-      : path_(std::move(path)), calls_(std::make_unique<base::PatientCalls>(patience)) {}
+  ResultFolder(std::string path, std::chrono::milliseconds patience, const base::TimeSource& time)
+      : path_(std::move(path)), calls_(std::make_unique<base::PatientCalls>(patience, time)) {}
   void RemoveAll(const std::vector<std::string>& paths);
 
   std::string path_;

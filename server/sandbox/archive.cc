@@ -37,13 +37,13 @@ bool Receiver::Read(void* bytes, std::size_t count) {
 
 bool Receiver::AwaitBytes() {
   using std::chrono::milliseconds;
-  using std::chrono::steady_clock;
   while (true) {
-    const auto start = steady_clock::now();
+    const auto start = time_.Now();
     pollfd ready{pipe_, POLLIN, 0};
-    const auto wait = std::chrono::ceil<milliseconds>(patience_).count();
+    const auto look_again_after = time_.LookAgainAt(start + patience_) - base::SteadyTime().Now();
+    const auto wait = std::chrono::ceil<milliseconds>(look_again_after).count();
     const int found = poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(wait, 0, 60'000)));
-    patience_ -= steady_clock::now() - start;
+    patience_ -= time_.Now() - start;
     if (found > 0) return true;
     if (found < 0 && errno != EINTR) {
       failure_ = Failure::kEnded;

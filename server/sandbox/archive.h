@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/time_source.h"
+
 namespace thunderhead::sandbox {
 
 // True for what travels as its bytes.
@@ -47,9 +49,10 @@ class Receiver {
  public:
   enum class Failure { kNone, kEnded, kTooLarge, kTooLate };
 
-  // Waits for `patience` in all; takes arrays of `allowance` bytes in all.
-  Receiver(int pipe, std::chrono::milliseconds patience, std::uint64_t allowance)
-      : pipe_(pipe), patience_(patience), allowance_(allowance) {}
+  // Waits for `patience` in all, by `time`; takes arrays of `allowance` bytes in all.
+  Receiver(int pipe, std::chrono::milliseconds patience, std::uint64_t allowance,
+           const base::TimeSource& time = base::SteadyTime())
+      : pipe_(pipe), time_(time), patience_(patience), allowance_(allowance) {}
 
   template <Plain Value>
   void operator()(Value& value) {
@@ -88,6 +91,7 @@ class Receiver {
   bool AwaitBytes();
 
   const int pipe_;
+  const base::TimeSource& time_;
   std::chrono::nanoseconds patience_;
   std::uint64_t allowance_;
   Failure failure_ = Failure::kNone;

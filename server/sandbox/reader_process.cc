@@ -31,7 +31,6 @@ namespace thunderhead::sandbox {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 
 constexpr std::string_view kReaderFailed = "READER_FAILED";
 constexpr char kWhatToDo[] =
@@ -95,7 +94,7 @@ void ReapLater(pid_t process) {
 // A running reader; killed, and its end collected, when this object goes.
 class Child {
  public:
-  explicit Child(pid_t process) : process_(process) {}
+  Child(pid_t process, const base::TimeSource& time) : process_(process), time_(time) {}
   ~Child() { Kill(); }
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
@@ -108,7 +107,7 @@ class Child {
 
   // The signal that ended it, 0 if it ended by itself, nothing if it still runs after `patience`.
   std::optional<int> End(milliseconds patience) {
-    const auto until = steady_clock::now() + patience;
+    const auto until = time_.Now() + patience;
     int status = 0;
     while (process_ > 0) {
       const pid_t ended = waitpid(process_, &status, WNOHANG);
@@ -117,7 +116,7 @@ class Child {
         ReapLater(0);
         return ended > 0 && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
       }
-      if (steady_clock::now() >= until) return std::nullopt;
+      if (time_.Now() >= until) return std::nullopt;
       std::this_thread::sleep_for(milliseconds(1));
     }
     return 0;
@@ -125,6 +124,7 @@ class Child {
 
  private:
   pid_t process_;
+  const base::TimeSource& time_;
 };
 
 // Variables that a program needs to start; none of this one's secrets.
@@ -207,24 +207,21 @@ absl::Status Nonsense(const std::string& path, const std::string& what) {
                     absl::StrCat("gave a result that cannot be right, by ", what, kWhatToDo)));
 }
 
-// One line of text, whatever the reader sent.
-std::string Printable(const std::string& text) {
+// Returns what the reader sent as one line of at most 2000 bytes.
+std::string OneLine(const std::string& text) {
   constexpr std::size_t kLongest = 2000;
-  std::string line = base::ValidUtf8(text.substr(0, kLongest));
-  std::ranges::replace_if(
-      line, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return line;
+  return base::Printable(text.substr(0, kLongest));
 }
 
 void Log(const Note& note) {
   const bool warning = note.code >= static_cast<int>(spdlog::level::warn);
-  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", Printable(note.text));
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", OneLine(note.text));
 }
 
 // A status that the reader made of what the file says.
 absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   const auto code = static_cast<absl::StatusCode>(note.code);
-  std::string text = Printable(note.text);
+  std::string text = OneLine(note.text);
   switch (code) {
     case absl::StatusCode::kResourceExhausted:
       absl::StrAppend(&text, " (untrusted files have ", limits.memory_bytes >> 20,
@@ -317,10 +314,10 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
   const int error =
       Spawn(program_, request_from.Number(), reply_to.Number(), file.Number(), process);
   if (error != 0) return NoReader(request.path, error);
-  Child child(process);
+  Child child(process, time_);
   request_from.Close();
   reply_to.Close();
-  Receiver from_reader(reply_from.Number(), limits_.time, limits_.memory_bytes);
+  Receiver from_reader(reply_from.Number(), limits_.time, limits_.memory_bytes, time_);
   absl::Status status = base::OrOutOfMemory(
       [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits_); });
   if (!from_reader.Ok()) return Judge(request.path, from_reader, child, limits_);

@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "base/time_source.h"
 #include "sandbox/archive.h"
 #include "sandbox/messages.h"
 #include "volume/storm_file.h"
@@ -22,14 +23,16 @@ struct ReaderLimits {
   std::chrono::milliseconds time{120'000};  // that this process waits, and processor time
 };
 
-// Starts `program`, this one by default, as the reader.
+// Starts `program`, this one by default, as the reader, and waits for it by `time`.
 class ReaderProcess {
  public:
   // Takes the result after its kind; nothing received fails until the Receiver is asked.
   using Take = std::function<absl::Status(Receiver& from_reader)>;
 
-  explicit ReaderProcess(const ReaderLimits& limits, std::string program = "/proc/self/exe")
-      : limits_(limits), program_(std::move(program)) {}
+  explicit ReaderProcess(const ReaderLimits& limits,
+                         const base::TimeSource& time = base::SteadyTime(),
+                         std::string program = "/proc/self/exe")
+      : limits_(limits), time_(time), program_(std::move(program)) {}
 
   // Has the file read. `wanted` is the reply that `take` understands; errors of the file come as
   // they are. `checkpoint` may be empty.
@@ -38,6 +41,7 @@ class ReaderProcess {
 
  private:
   const ReaderLimits limits_;
+  const base::TimeSource& time_;
   const std::string program_;
 };
 

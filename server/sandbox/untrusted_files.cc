@@ -12,7 +12,6 @@ namespace thunderhead::sandbox {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::steady_clock;
 
 // A description reads no fields, and the catalogue waits for it.
 constexpr std::chrono::milliseconds kDescriptionTime{20'000};
@@ -72,7 +71,7 @@ Request RequestFor(Wanted wanted, const std::string& path, std::size_t record = 
 UntrustedFiles::UntrustedFiles(UntrustedOptions options) : options_(std::move(options)) {}
 
 absl::Status UntrustedFiles::Probe() const {
-  return ReaderProcess(options_.limits)
+  return ReaderProcess(options_.limits, *options_.time)
       .Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, {}, [](Receiver& from_reader) {
         Note nothing;
         Visit(from_reader, nothing);
@@ -96,15 +95,16 @@ absl::Status UntrustedFiles::Run(Request request, Reply wanted, const ReaderLimi
     const std::lock_guard lock(mutex_);
     const auto known = offenders_.find(path);
     if (known != offenders_.end() && stamp == known->second.stamp &&
-        steady_clock::now() - known->second.when < kPause) {
+        options_.time->Now() - known->second.when < kPause) {
       return known->second.failure;
     }
   }
-  absl::Status status = ReaderProcess(limits).Run(std::move(request), wanted, checkpoint, take);
+  absl::Status status =
+      ReaderProcess(limits, *options_.time).Run(std::move(request), wanted, checkpoint, take);
   const std::lock_guard lock(mutex_);
   offenders_.erase(path);
   if (stamp.has_value() && IsReaderFailure(status)) {
-    offenders_.emplace(path, Offender{*stamp, steady_clock::now(), status});
+    offenders_.emplace(path, Offender{*stamp, options_.time->Now(), status});
   }
   return status;
 }

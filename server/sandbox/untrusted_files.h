@@ -13,6 +13,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/file_stamp.h"
+#include "base/time_source.h"
 #include "sandbox/reader_process.h"
 #include "volume/storm_file.h"
 #include "volume/storm_format.h"
@@ -23,6 +24,7 @@ struct UntrustedOptions {
   std::vector<std::string> folders;  // files below them, also by a link
   bool all = false;                  // every file
   ReaderLimits limits;
+  const base::TimeSource* time = &base::SteadyTime();  // must outlive the files
 };
 
 class UntrustedFiles : public std::enable_shared_from_this<UntrustedFiles> {
@@ -48,7 +50,7 @@ class UntrustedFiles : public std::enable_shared_from_this<UntrustedFiles> {
   // A file that made its reader fail, which would probably do so again.
   struct Offender {
     base::FileStamp stamp;
-    std::chrono::steady_clock::time_point when;
+    base::TimeSource::Clock::time_point when;
     absl::Status failure;
   };
 

@@ -24,8 +24,6 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using Response = http::response<http::string_body>;
 
-// A client that takes longer to ask and to listen is cut off.
-constexpr std::chrono::seconds kPatience{2};
 // With more connections the oldest of them is closed.
 constexpr std::size_t kMaxConnections = 64;
 constexpr std::size_t kMaxRequestBytes = 16 << 10;
@@ -66,9 +64,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(tcp::socket socket, const OperatorPages& pages)
       : stream_(std::move(socket)), pages_(pages) {}
 
-  void Start() {
-    // For all of it.
-    stream_.expires_after(kPatience);
+  // `patience` is for all of it.
+  void Start(std::chrono::milliseconds patience) {
+    stream_.expires_after(patience);
     http::async_read(stream_, buffer_, request_,
                      [self = shared_from_this()](const error_code& error, std::size_t) {
                        if (!error) self->Respond();
@@ -96,8 +94,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
 class RunningPort final : public OperatorPort {
  public:
-  explicit RunningPort(OperatorPages pages)
-      : pages_(std::move(pages)), acceptor_(io_), pause_(io_) {}
+  RunningPort(OperatorPages pages, std::chrono::milliseconds patience)
+      : pages_(std::move(pages)), patience_(patience), acceptor_(io_), pause_(io_) {}
 
   ~RunningPort() override {
     // This ends open connections, too.
@@ -148,10 +146,11 @@ class RunningPort final : public OperatorPort {
     }
     const auto connection = std::make_shared<Connection>(std::move(socket), pages_);
     connections_.push_back(connection);
-    connection->Start();
+    connection->Start(patience_);
   }
 
   const OperatorPages pages_;
+  const std::chrono::milliseconds patience_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;
@@ -162,10 +161,10 @@ class RunningPort final : public OperatorPort {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<OperatorPort>> OperatorPort::Open(const std::string& host,
-                                                                 std::uint16_t port,
-                                                                 OperatorPages pages) {
-  auto opened = std::make_unique<RunningPort>(std::move(pages));
+absl::StatusOr<std::unique_ptr<OperatorPort>> OperatorPort::Open(
+    const std::string& host, std::uint16_t port, OperatorPages pages,
+    std::chrono::milliseconds patience) {
+  auto opened = std::make_unique<RunningPort>(std::move(pages), patience);
   if (absl::Status status = opened->Listen(host, port); !status.ok()) return status;
   return opened;
 }

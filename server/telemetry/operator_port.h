@@ -2,6 +2,7 @@
 // at once, each within seconds, on a thread of its own; who says nothing holds up nobody.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -28,11 +29,14 @@ struct OperatorPages {
 
 class OperatorPort {
  public:
-  // GET /metrics, /healthz and /readyz on that address, port 0 for a free one. UNAVAILABLE if it
-  // cannot be listened on.
-  static absl::StatusOr<std::unique_ptr<OperatorPort>> Open(const std::string& host,
-                                                            std::uint16_t port,
-                                                            OperatorPages pages);
+  // The longest time that a client may take to ask and to listen.
+  static constexpr std::chrono::seconds kPatience{2};
+
+  // GET /metrics, /healthz and /readyz on that address, port 0 for a free one. A client that takes
+  // longer than `patience` is cut off. UNAVAILABLE if the address cannot be listened on.
+  static absl::StatusOr<std::unique_ptr<OperatorPort>> Open(
+      const std::string& host, std::uint16_t port, OperatorPages pages,
+      std::chrono::milliseconds patience = kPatience);
   virtual ~OperatorPort() = default;
 
   virtual std::uint16_t Port() const = 0;

@@ -37,6 +37,7 @@ class CachedStormStore::Handle final : public StormStore {
   }
   std::size_t CachedBytes() const override { return store_->CachedBytes(); }
   void Listen(CatalogueListener listener) override { store_->Listen(std::move(listener)); }
+  std::size_t PendingReads() const override { return store_->PendingReads(); }
   std::optional<HungRead> Hung() const override { return store_->Hung(); }
 
  private:
@@ -57,16 +58,19 @@ void CachedStormStore::Start() {
   if (options_.memory != nullptr) {
     member_.emplace(options_.memory, static_cast<base::MemoryBudget::Cache*>(this));
   }
-  threads_.emplace_back("reading a storm", [self = shared_from_this()] {
-    self->ReadDue(self->asked_, self->reading_asked_);
-  });
+  threads_.emplace_back(
+      "reading a storm",
+      [self = shared_from_this()] { self->ReadDue(self->asked_, self->reading_asked_); },
+      *options_.time);
   if (options_.reader_apart) {
     threads_.emplace_back(
         "reading a storm beside a storage that hangs",
-        [self = shared_from_this()] { self->ReadDue(self->beside_, self->reading_beside_); });
+        [self = shared_from_this()] { self->ReadDue(self->beside_, self->reading_beside_); },
+        *options_.time);
   }
   if (options_.read_ahead == 0) return;
-  threads_.emplace_back("reading ahead", [self = shared_from_this()] { self->ReadAhead(); });
+  threads_.emplace_back(
+      "reading ahead", [self = shared_from_this()] { self->ReadAhead(); }, *options_.time);
 }
 
 void CachedStormStore::End() {
@@ -78,6 +82,11 @@ void CachedStormStore::End() {
   live_.reset();
   threads_.clear();
   member_.reset();
+}
+
+std::size_t CachedStormStore::PendingReads() const {
+  const Lock lock(mutex_);
+  return pending_.size();
 }
 
 std::vector<StormInfoPtr> CachedStormStore::Storms() const {

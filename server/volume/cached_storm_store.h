@@ -47,6 +47,7 @@ class CachedStormStore final : public StormStore,
   std::vector<int> TimesInMemory(std::string_view id) const override;
   std::size_t CachedBytes() const override;
   void Listen(CatalogueListener listener) override;
+  std::size_t PendingReads() const override;
   std::optional<HungRead> Hung() const override;
 
   // Makes the storms of the paths those `found`, and tells the listener what has changed. Storms
@@ -136,6 +137,7 @@ class CachedStormStore final : public StormStore,
   std::optional<HungRead> HungIn(const Activity& activity) const;
   // The same; the log tells of each once.
   std::optional<HungRead> NoteHang(Activity& activity) const;
+  base::TimeSource::Clock::time_point Now() const { return options_.time->Now(); }
   // When the activity hangs unless it goes on.
   std::chrono::steady_clock::time_point HangsAt(const Activity& activity) const;
   // The file other than `path` that netCDF-C has worked on for longer than `time`.

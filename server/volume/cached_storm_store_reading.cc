@@ -184,7 +184,8 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
       if (hung.has_value()) return Hangs(*hung);
       return absl::CancelledError("the store of storms has ended");
     }
-    changed_.wait_until(lock, HangsAt(activity) + std::chrono::milliseconds(1));
+    changed_.wait_until(
+        lock, options_.time->LookAgainAt(HangsAt(activity) + std::chrono::milliseconds(1)));
   }
   return *shared->result;
 }
@@ -227,7 +228,7 @@ std::shared_ptr<const RecordReader> CachedStormStore::ReaderOf(const StormFile& 
 
 std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const {
   if (!activity.reads) return std::nullopt;
-  const auto since = steady_clock::now() - activity.went_on;
+  const auto since = Now() - activity.went_on;
   const bool is_late = since > options_.read_deadline;
   // It may only wait for another, and need not do so for the deadline if that one is known to hang.
   // Another process waits for none.
@@ -250,7 +251,7 @@ std::optional<HungRead> CachedStormStore::NoteHang(Activity& activity) const {
 
 steady_clock::time_point CachedStormStore::HangsAt(const Activity& activity) const {
   // Once it begins or goes on, whoever waits looks again.
-  if (!activity.reads) return steady_clock::now() + options_.read_deadline;
+  if (!activity.reads) return Now() + options_.read_deadline;
   auto since = activity.went_on;
   const auto holder = &activity != &reading_beside_ ? NetcdfHolder::Now() : std::nullopt;
   if (holder.has_value() && holder->path != activity.file) since = std::min(since, holder->since);
@@ -261,7 +262,7 @@ std::optional<HungRead> CachedStormStore::HolderFor(std::chrono::milliseconds ti
                                                     std::string_view path) const {
   const std::optional<NetcdfHolder> holder = NetcdfHolder::Now();
   if (!holder.has_value() || holder->path == path) return std::nullopt;
-  const auto since = steady_clock::now() - holder->since;
+  const auto since = Now() - holder->since;
   if (since <= time) return std::nullopt;
   return HungRead{holder->path, duration<double>(since).count(), DeviceOf(holder->path)};
 }
@@ -300,7 +301,7 @@ void CachedStormStore::ReadAhead() {
     }
     // It would wait behind it, and then who asks for that time does so with it.
     if (HungBefore().has_value()) {
-      changed_.wait_for(lock, kLookAgain);
+      changed_.wait_until(lock, options_.time->LookAgainAt(Now() + kLookAgain));
       continue;
     }
     const std::shared_ptr<PendingRead> read = Begin(*place, Purpose::kAhead);
@@ -320,7 +321,7 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   Fields fields = absl::CancelledError("nobody waits for it any more");
   if (!is_asked || read.waiters > 0) {
     const StormFile& file = FileOf(*read.place.storm, read.place.time);
-    activity = {true, file.path, file.device, steady_clock::now(), false};
+    activity = {true, file.path, file.device, Now(), false};
     changed_.notify_all();  // those who wait for it: from now on it may hang
     fields = ReadFile(lock, read, activity);
     activity.reads = false;
@@ -353,7 +354,7 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<VerticalGrid> grid,
                                VerticalGridOf(lock, place, read.purpose));
   const std::shared_ptr<const RecordReader> reader = ReaderOf(file, read.purpose);
-  activity.went_on = steady_clock::now();
+  activity.went_on = Now();
   const auto urgency = read.purpose != Purpose::kAhead ? base::MemoryBudget::Urgency::kPatient
                                                        : base::MemoryBudget::Urgency::kAhead;
   lock.unlock();
@@ -448,7 +449,7 @@ absl::Status CachedStormStore::Checkpoint(PendingRead& read, Activity& activity,
     changed_.notify_all();
     if (ending_ || unwanted()) return absl::CancelledError("read-ahead was cancelled");
   }
-  activity.went_on = steady_clock::now();
+  activity.went_on = Now();
   const std::vector<std::shared_ptr<Listener>> listeners = read.listeners;
   lock.unlock();
   for (const auto& listener : listeners) {

@@ -37,7 +37,7 @@ void CachedStormStore::Listen(CatalogueListener listener) {
 void CachedStormStore::Follow(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first) {
   following_ = true;
   live_ = std::make_unique<LiveCatalogue>(
-      std::move(scan), std::move(first), *options_.live,
+      std::move(scan), std::move(first), *options_.live, *options_.time,
       [weak = weak_from_this()](const std::vector<CataloguedStorm>& found) {
         if (const auto store = weak.lock()) store->Renew(found);
       });
@@ -45,7 +45,8 @@ void CachedStormStore::Follow(std::unique_ptr<CatalogueScan> scan, CatalogueScan
 
 void CachedStormStore::LetReadersGoFirst() {
   Lock lock(mutex_);
-  changed_.wait_for(lock, kLongestCourtesy, [this] { return ending_ || asked_reads_ == 0; });
+  base::WaitUntil(*options_.time, changed_, lock, Now() + kLongestCourtesy,
+                  [this] { return ending_ || asked_reads_ == 0; });
 }
 
 void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {

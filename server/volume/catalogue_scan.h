@@ -13,6 +13,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/patient_calls.h"
+#include "base/time_source.h"
 #include "volume/storm_catalogue.h"
 #include "volume/storm_format.h"
 
@@ -35,6 +36,8 @@ class CatalogueScan {
     std::function<void(const std::string& path)> look_at = LookAtFolder;
     // How long that may take; then the path's storage hangs, and its storms stay as they were.
     std::chrono::milliseconds patience = std::chrono::seconds(10);
+    // The time that `patience` is measured by; it must outlive the scan.
+    const base::TimeSource* time = &base::SteadyTime();
   };
 
   struct Result {
@@ -45,7 +48,7 @@ class CatalogueScan {
   };
 
   explicit CatalogueScan(Options options)
-      : options_(std::move(options)), calls_(options_.patience) {}
+      : options_(std::move(options)), calls_(options_.patience, *options_.time) {}
 
   // Opens it and reads its first entry, or the file's first byte.
   static void LookAtFolder(const std::string& path);

@@ -9,7 +9,6 @@ namespace thunderhead::volume {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 
 // Events come in bursts, and a scan looks at every file.
 constexpr milliseconds kShortestPause{300};
@@ -17,12 +16,15 @@ constexpr milliseconds kShortestPause{300};
 }  // namespace
 
 LiveCatalogue::LiveCatalogue(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first,
-                             const LiveCatalogueOptions& options, Renew renew)
+                             const LiveCatalogueOptions& options, const base::TimeSource& time,
+                             Renew renew)
     : running_(new Running{.options = options,
+                           .time = time,
                            .renew = std::move(renew),
                            .scan = std::move(scan),
                            .newest = std::move(first)}),
-      thread_("the search for storms", [running = running_] { running->Run(); }) {}
+      thread_(
+          "the search for storms", [running = running_] { running->Run(); }, time) {}
 
 LiveCatalogue::~LiveCatalogue() {
   running_->stopping = true;
@@ -33,19 +35,24 @@ void LiveCatalogue::Running::Run() {
   // Changes between the first scan and the watch have no event.
   bool again = WatchFolders();
   while (!stopping) {
-    const Time pause_ends = steady_clock::now() + kShortestPause;
-    Time next = steady_clock::now() + options.rescan;
+    const Time pause_ends = time.Now() + kShortestPause;
+    Time next = time.Now() + options.rescan;
     if (newest.look_again_at.has_value()) next = std::min(next, *newest.look_again_at);
-    if (!again) events.WaitUntil(next);
-    while (!stopping && steady_clock::now() < pause_ends) events.WaitUntil(pause_ends);
+    if (!again) WaitForEventUntil(next);
+    while (!stopping && time.Now() < pause_ends) WaitForEventUntil(pause_ends);
     if (stopping) return;
     Scan();
     again = WatchFolders();
   }
 }
 
+void LiveCatalogue::Running::WaitForEventUntil(Time deadline) {
+  while (!stopping && time.Now() < deadline && !events.WaitUntil(time.LookAgainAt(deadline))) {
+  }
+}
+
 void LiveCatalogue::Running::Scan() {
-  absl::StatusOr<CatalogueScan::Result> result = scan->Scan(steady_clock::now());
+  absl::StatusOr<CatalogueScan::Result> result = scan->Scan(time.Now());
   if (!result.ok()) {
     std::string why(result.status().message());
     if (why != complaint) spdlog::warn("the storms stay as they were: {}", why);

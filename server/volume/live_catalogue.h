@@ -20,9 +20,10 @@ class LiveCatalogue {
   // Takes the storms that there are now.
   using Renew = std::function<void(const std::vector<CataloguedStorm>&)>;
 
-  // `scan` has been made by `first`, whose storms are known. `renew` must own what it uses.
+  // `scan` has been made by `first`, whose storms are known. `renew` must own what it uses. `time`
+  // must outlive the thread.
   LiveCatalogue(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first,
-                const LiveCatalogueOptions& options, Renew renew);
+                const LiveCatalogueOptions& options, const base::TimeSource& time, Renew renew);
   // Waits for a scan under way, unless it hangs.
   ~LiveCatalogue();
   LiveCatalogue(const LiveCatalogue&) = delete;
@@ -36,8 +37,10 @@ class LiveCatalogue {
     void Run();
     void Scan();
     bool WatchFolders();
+    void WaitForEventUntil(Time deadline);
 
     const LiveCatalogueOptions options;
+    const base::TimeSource& time;
     const Renew renew;
     const std::unique_ptr<CatalogueScan> scan;
     CatalogueScan::Result newest;

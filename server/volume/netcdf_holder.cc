@@ -9,6 +9,7 @@ namespace {
 struct Held {
   std::mutex mutex;
   std::optional<NetcdfHolder> holder;
+  const base::TimeSource* time = &base::SteadyTime();
 };
 
 Held& TheHeld() {
@@ -24,12 +25,18 @@ std::optional<NetcdfHolder> NetcdfHolder::Now() {
   return held.holder;
 }
 
+void NetcdfHolder::MeasureBy(const base::TimeSource& time) {
+  Held& held = TheHeld();
+  const std::lock_guard lock(held.mutex);
+  held.time = &time;
+}
+
 void NetcdfHolder::Begins(const std::string& path) {
   Held& held = TheHeld();
   const std::lock_guard lock(held.mutex);
   held.holder.emplace();
   held.holder->path = path;
-  held.holder->since = std::chrono::steady_clock::now();
+  held.holder->since = held.time->Now();
 }
 
 void NetcdfHolder::Ends() {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "base/time_source.h"
+
 namespace thunderhead::volume {
 
 struct NetcdfHolder {
@@ -14,6 +16,9 @@ struct NetcdfHolder {
 
   // None if netCDF-C is not working.
   static std::optional<NetcdfHolder> Now();
+
+  // Measures `since` by that time from now on, in the whole process; it must outlive its use.
+  static void MeasureBy(const base::TimeSource& time);
 
  private:
   friend class NetcdfLock;

@@ -1,10 +1,8 @@
 #include "volume/storm_store.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include "absl/strings/str_format.h"
@@ -54,15 +52,16 @@ absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::stri
                              .formats = options.formats,
                              .settle = options.live->settle,
                              .retry = options.live->rescan,
-                             .before_file = [weak = std::weak_ptr(store)] {
-                               if (const auto held = weak.lock()) held->LetReadersGoFirst();
-                             }});
-  THUNDERHEAD_ASSIGN_OR_RETURN(CatalogueScan::Result first,
-                               scan->Scan(std::chrono::steady_clock::now()));
+                             .before_file =
+                                 [weak = std::weak_ptr(store)] {
+                                   if (const auto held = weak.lock()) held->LetReadersGoFirst();
+                                 },
+                             .time = options.time});
+  THUNDERHEAD_ASSIGN_OR_RETURN(CatalogueScan::Result first, scan->Scan(options.time->Now()));
   if (first.storms.empty() && first.look_again_at.has_value()) {
     spdlog::info("waiting until the files of {} are complete", absl::StrJoin(paths, ", "));
-    std::this_thread::sleep_until(*first.look_again_at);
-    THUNDERHEAD_ASSIGN_OR_RETURN(first, scan->Scan(std::chrono::steady_clock::now()));
+    base::SleepUntil(*options.time, *first.look_again_at);
+    THUNDERHEAD_ASSIGN_OR_RETURN(first, scan->Scan(options.time->Now()));
   }
   if (first.storms.empty()) {
     spdlog::warn("{}: holds no storm yet; model output ({}) is shown as soon as it is complete",

@@ -17,6 +17,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "base/memory_budget.h"
+#include "base/time_source.h"
 #include "volume/hydrometeor_fields.h"
 #include "volume/storm_file.h"
 #include "volume/storm_format.h"
@@ -101,6 +102,9 @@ struct StormStoreOptions {
   std::shared_ptr<BorderData> borders;
   // Absent: the storms are those of the start. With it, a folder without storms is no error.
   std::optional<LiveCatalogueOptions> live;
+  // The time that deadlines, pauses and settling files are measured by. It must outlive the store,
+  // and a thread of the store's that hangs.
+  const base::TimeSource* time = &base::SteadyTime();
 };
 
 // A read that its storage does not let go on.
@@ -151,6 +155,9 @@ class StormStore {
 
   // Bytes of all cached times.
   virtual std::size_t CachedBytes() const = 0;
+
+  // Times that are being read, or wait to be, for callers and ahead.
+  virtual std::size_t PendingReads() const { return 0; }
 
   // The read that hangs now, if one does.
   virtual std::optional<HungRead> Hung() const { return std::nullopt; }

@@ -20,6 +20,7 @@
 #include "access/secret_file.h"
 #include "access/token_list.h"
 #include "base/error_details.h"
+#include "tests/support/manual_time.h"
 #include "tests/support/temporary_folder.h"
 
 namespace thunderhead::access {
@@ -41,6 +42,12 @@ std::string Sha256(const std::string& text) {
 
 std::string LineOf(const std::string& name, const std::string& role, const std::string& token) {
   return absl::StrCat(name, " ", role, " ", Sha256(token), "\n");
+}
+
+// The files' storage is waited for however slow the machine is: time stands still.
+const base::TimeSource& StandingTime() {
+  static const testing::ManualTime time;
+  return time;
 }
 
 class SecretFile {
@@ -89,7 +96,7 @@ TEST(TokenListTest, WrongLinesAreNamedAndNotRepeated) {
 
 TEST(TokenFileTest, IsReadAgainWhenItChanges) {
   SecretFile file(LineOf("anna", "viewer", "one"));
-  const auto tokens = TrustTokens(file.Path());
+  const auto tokens = TrustTokens(file.Path(), StandingTime());
   ASSERT_TRUE(tokens.ok()) << tokens.status();
   EXPECT_TRUE((*tokens)->Identify({"one", ""}).ok());
   file.Write(LineOf("ben", "viewer", "two"));
@@ -105,12 +112,13 @@ TEST(TokenFileTest, AFileThatOthersMayReadOrWriteIsRefused) {
   for (const auto wrong : {std::filesystem::perms::others_read, std::filesystem::perms::group_write,
                            std::filesystem::perms::others_write}) {
     std::filesystem::permissions(file.Path(), std::filesystem::perms::owner_read | wrong);
-    EXPECT_THAT(std::string(TrustTokens(file.Path()).status().message()), HasSubstr("chmod"))
+    EXPECT_THAT(std::string(TrustTokens(file.Path(), StandingTime()).status().message()),
+                HasSubstr("chmod"))
         << static_cast<int>(wrong);
   }
   std::filesystem::permissions(
       file.Path(), std::filesystem::perms::owner_read | std::filesystem::perms::group_read);
-  EXPECT_TRUE(TrustTokens(file.Path()).ok());
+  EXPECT_TRUE(TrustTokens(file.Path(), StandingTime()).ok());
 }
 
 struct Claims {
@@ -118,20 +126,25 @@ struct Claims {
   std::string role = "presenter";
   std::string issuer;
   std::string audience;
+  std::string json;  // an object with further claims
   long expires_in_s = 600;
   long begins_in_s = 0;
 };
 
 class JwtTest : public ::testing::Test {
  protected:
+  // Of all tokens and all that are asked about them, however long a test takes.
+  static inline const system_clock::time_point kNow = system_clock::now();
+
   static std::string Sign(const Claims& claims, jwt_alg_t algorithm, const std::string& key) {
     jwt_t* jwt = nullptr;
     jwt_new(&jwt);
-    const long now = std::time(nullptr);
+    const long now = system_clock::to_time_t(kNow);
     if (!claims.subject.empty()) jwt_add_grant(jwt, "sub", claims.subject.c_str());
     if (!claims.role.empty()) jwt_add_grant(jwt, "thunderhead_role", claims.role.c_str());
     if (!claims.issuer.empty()) jwt_add_grant(jwt, "iss", claims.issuer.c_str());
     if (!claims.audience.empty()) jwt_add_grant(jwt, "aud", claims.audience.c_str());
+    if (!claims.json.empty()) jwt_add_grants_json(jwt, claims.json.c_str());
     if (claims.expires_in_s != 0) jwt_add_grant_int(jwt, "exp", now + claims.expires_in_s);
     if (claims.begins_in_s != 0) jwt_add_grant_int(jwt, "nbf", now + claims.begins_in_s);
     const bool none = algorithm == JWT_ALG_NONE;
@@ -150,7 +163,7 @@ class JwtTest : public ::testing::Test {
 
   // Empty if the token is believed.
   std::string Complaint(const std::string& token, const JwtClaims& wanted = {}) const {
-    const auto identity = JwtKey::Parse(secret_)->Verify(token, wanted, system_clock::now());
+    const auto identity = JwtKey::Parse(secret_)->Verify(token, wanted, kNow);
     return std::string(identity.status().message());
   }
 
@@ -158,7 +171,7 @@ class JwtTest : public ::testing::Test {
 };
 
 TEST_F(JwtTest, ASignedTokenIsBelieved) {
-  const auto identity = JwtKey::Parse(secret_ + "\n")->Verify(Sign(), {}, system_clock::now());
+  const auto identity = JwtKey::Parse(secret_ + "\n")->Verify(Sign(), {}, kNow);
   ASSERT_TRUE(identity.ok()) << identity.status();
   EXPECT_EQ(identity->name, "anna");
   EXPECT_EQ(identity->role, Role::kPresenter);
@@ -193,6 +206,17 @@ TEST_F(JwtTest, TimesAndClaimsAreChecked) {
   EXPECT_EQ(Complaint(Sign({.issuer = "us"}), {.issuer = "us"}), "");
   EXPECT_THAT(Complaint(Sign({.audience = "mail"}), {.audience = "storms"}), HasSubstr("(aud)"));
   EXPECT_EQ(Complaint(Sign({.audience = "storms"}), {.audience = "storms"}), "");
+  // A list is for each text in it, and for nothing that only contains the text.
+  for (const char* const list : {R"(["storms"])", R"(["mail", "storms"])"}) {
+    const std::string json = absl::StrCat(R"({"aud": )", list, "}");
+    EXPECT_EQ(Complaint(Sign({.json = json}), {.audience = "storms"}), "") << list;
+  }
+  for (const char* const other : {R"(["mail"])", R"([{"storms": 1}])", R"([["storms"]])",
+                                  R"({"storms": 1})", "[]", "1", R"(["mail\",\"storms"])"}) {
+    const std::string json = absl::StrCat(R"({"aud": )", other, "}");
+    EXPECT_THAT(Complaint(Sign({.json = json}), {.audience = "storms"}), HasSubstr("(aud)"))
+        << other;
+  }
 }
 
 TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
@@ -210,11 +234,10 @@ TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
   });
   const auto key = JwtKey::Parse(public_key);
   ASSERT_TRUE(key.ok()) << key.status();
-  const auto now = system_clock::now();
-  EXPECT_TRUE(key->Verify(Sign({}, JWT_ALG_RS256, private_key), {}, now).ok());
+  EXPECT_TRUE(key->Verify(Sign({}, JWT_ALG_RS256, private_key), {}, kNow).ok());
   // Everybody knows the public key, so nobody may sign with it as if it were a secret.
-  EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_HS256, public_key), {}, now).ok());
-  EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_NONE, ""), {}, now).ok());
+  EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_HS256, public_key), {}, kNow).ok());
+  EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_NONE, ""), {}, kNow).ok());
   EXPECT_THAT(std::string(JwtKey::Parse(private_key).status().message()),
               HasSubstr("no public RSA key"));
   EXPECT_THAT(std::string(JwtKey::Parse("short").status().message()), HasSubstr("32"));
@@ -286,7 +309,7 @@ TEST(AuditTest, AFloodBeforeCallsHidesNoRefusedCall) {
 TEST(DoorTest, WhatTheGatewayRefusesIsWrittenWithoutAnIdentity) {
   std::vector<std::string> lines;
   SecretFile file(LineOf("anna", "viewer", "one"));
-  Door door(*TrustTokens(file.Path()),
+  Door door(*TrustTokens(file.Path(), StandingTime()),
             std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
   door.ReportBeforeCall("192.0.2.7:1", "Request",
                         base::WithDetails(absl::PermissionDeniedError("evil.example"),
@@ -299,7 +322,7 @@ TEST(DoorTest, WhatTheGatewayRefusesIsWrittenWithoutAnIdentity) {
 TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
   std::vector<std::string> lines;
   SecretFile file(LineOf("anna", "viewer", "one"));
-  Door door(*TrustTokens(file.Path()),
+  Door door(*TrustTokens(file.Path(), StandingTime()),
             std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
   const auto caller = door.Admit("Interact", CallKind::kStream, {"one", "192.0.2.7:1"});
   ASSERT_TRUE(caller.ok()) << caller.status();
@@ -317,7 +340,8 @@ TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
 
 TEST(DoorTest, ItsOwnTokenIsAnOperators) {
   SecretFile file(LineOf("anna", "viewer", "one"));
-  Door door(*TrustTokens(file.Path()), std::make_shared<Audit>([](const std::string&) {}), {});
+  Door door(*TrustTokens(file.Path(), StandingTime()),
+            std::make_shared<Audit>([](const std::string&) {}), {});
   EXPECT_TRUE(door.Admit("RenderImage", CallKind::kUnary, {door.OwnToken(), ""}).ok());
   std::string other = door.OwnToken();
   other.back() = other.back() == '0' ? '1' : '0';

@@ -62,10 +62,6 @@ absl::Status MisbehaveWhenDescribed(const std::string& name) {
   if (name == "hang") std::this_thread::sleep_for(std::chrono::hours(1));
   if (name == "spin") Spin();
   if (name == "leave") _exit(0);
-  if (name == "mute") {
-    close(STDOUT_FILENO);
-    std::this_thread::sleep_for(std::chrono::hours(1));
-  }
   if (name == "chatter") {
     Sender server(STDOUT_FILENO);
     for (;;) {
@@ -152,6 +148,10 @@ class MisbehavingReader final : public volume::RecordReader {
     HydrometeorFields fields = SoundFields();
     Spoil(name_, fields);
     if (name_ == "crash-reading") std::raise(SIGBUS);
+    if (name_ == "mute-reading") close(STDOUT_FILENO);
+    if (name_ == "mute-reading" || name_ == "hang-reading") {
+      std::this_thread::sleep_for(std::chrono::hours(1));
+    }
     return fields;
   }
 

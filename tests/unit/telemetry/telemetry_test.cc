@@ -7,10 +7,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "boost/asio/io_context.hpp"
@@ -21,6 +23,7 @@
 #include "telemetry/metrics.h"
 #include "telemetry/operator_port.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::telemetry {
 namespace {
@@ -89,10 +92,15 @@ TEST(ResidentBytes, IsAboutThisProcess) {
 
 class Port : public ::testing::Test {
  protected:
-  Port() {
-    auto port = OperatorPort::Open(
-        "127.0.0.1", 0,
-        {.metrics = [this] { return Expose(metrics_, {}); }, .health = [this] { return health_; }});
+  Port() { Open(testing::kHangLimit); }
+
+  void Open(std::chrono::milliseconds patience,
+            std::function<bool(std::string_view host)> allows_host = {}) {
+    auto port = OperatorPort::Open("127.0.0.1", 0,
+                                   {.metrics = [this] { return Expose(metrics_, {}); },
+                                    .health = [this] { return health_; },
+                                    .allows_host = std::move(allows_host)},
+                                   patience);
     EXPECT_TRUE(port.ok()) << port.status();
     port_ = *std::move(port);
   }
@@ -131,38 +139,39 @@ TEST_F(Port, AnswersHealth) {
   EXPECT_THAT(Get("/else"), StartsWith("HTTP/1.1 404"));
 }
 
-TEST_F(Port, ASlowClientIsCutOff) {
+TEST_F(Port, ASlowClientHoldsUpNobody) {
   auto silent = Connect();
   boost::asio::write(silent, boost::asio::buffer(std::string("GET /met")));
-  const auto began = std::chrono::steady_clock::now();
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200"));
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(10));
+}
+
+TEST_F(Port, ASlowClientIsCutOff) {
+  Open(std::chrono::milliseconds(10));
+  auto silent = Connect();
+  boost::system::error_code error;
+  boost::asio::write(silent, boost::asio::buffer(std::string("GET /met")), error);
+  char byte = 0;
+  EXPECT_EQ(boost::asio::read(silent, boost::asio::buffer(&byte, 1), error), 0U);
+  EXPECT_TRUE(error);
 }
 
 TEST_F(Port, SilentClientsHoldUpNobody) {
   // More than there may be.
   std::vector<boost::asio::ip::tcp::socket> silent;
   for (int i = 0; i < 100; ++i) silent.push_back(Connect());
-  const auto began = std::chrono::steady_clock::now();
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200"));
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1000));
   // The oldest made room, the newest is still there.
   boost::system::error_code error;
   char byte = 0;
   boost::asio::read(silent.front(), boost::asio::buffer(&byte, 1), error);
   EXPECT_TRUE(error);
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1500));
   silent.back().non_blocking(true);
   silent.back().read_some(boost::asio::buffer(&byte, 1), error);
   EXPECT_EQ(error, boost::asio::error::would_block);
 }
 
 TEST_F(Port, AnswersToItsNamesAlone) {
-  port_ =
-      *OperatorPort::Open("127.0.0.1", 0,
-                          {.metrics = [this] { return Expose(metrics_, {}); },
-                           .health = [this] { return health_; },
-                           .allows_host = [](std::string_view host) { return host == "here"; }});
+  Open(testing::kHangLimit, [](std::string_view host) { return host == "here"; });
   EXPECT_THAT(Get("/metrics"), StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(Get("/metrics", "evil.example"), StartsWith("HTTP/1.1 403"));
   EXPECT_THAT(Get("/readyz", "evil.example"), StartsWith("HTTP/1.1 403"));
@@ -206,11 +215,10 @@ TEST_F(Port, IsScrapedByPrometheus) {
     return text.str();
   };
   std::string frames;
-  for (int i = 0; i < 120 && frames.find("=> 42") == std::string::npos; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_TRUE(testing::WaitFor([&] {
     frames = query("thunderhead_frames_total{technique=\"light_volume\"}");
-  }
-  EXPECT_THAT(frames, HasSubstr("=> 42"));
+    return frames.find("=> 42") != std::string::npos;
+  })) << frames;
   EXPECT_THAT(query("thunderhead_update_to_frame_seconds_count"), HasSubstr("=> 1"));
   std::system(("kill $(cat " + pid_file + ")").c_str());
 }

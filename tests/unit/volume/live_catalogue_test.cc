@@ -6,16 +6,16 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <future>
 #include <iterator>
 #include <mutex>
-#include <thread>
 
 #include "absl/strings/str_format.h"
 #include "base/error_details.h"
+#include "tests/support/manual_time.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 #include "volume/catalogue_scan.h"
 #include "volume/netcdf_lock.h"
 #include "volume/storm_store.h"
@@ -25,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
+using std::chrono::minutes;
 using std::chrono::seconds;
 using ::testing::ElementsAre;
 using testing::SyntheticWrf;
@@ -79,14 +80,14 @@ class LiveFolder : public ::testing::Test {
     fs::rename(elsewhere_ + "/complete", path);
   }
 
-  CatalogueScan Scanner() {
+  CatalogueScan Scanner(seconds settle = seconds(3)) {
     return CatalogueScan({.paths = {data_},
                           .formats = StormFormats::BuiltIn(),
-                          .settle = seconds(3),
+                          .settle = settle,
                           .retry = seconds(30)});
   }
 
-  // The numbers of times of the storms found after `after`.
+  // The numbers of times of the storms found after `after`, which the scan is told.
   std::vector<std::size_t> TimesAt(CatalogueScan& scan, seconds after) {
     const auto result = scan.Scan(CatalogueScan::Time(std::chrono::hours(1)) + after);
     EXPECT_TRUE(result.ok()) << result.status();
@@ -99,18 +100,21 @@ class LiveFolder : public ::testing::Test {
     StormStoreOptions options;
     options.read_ahead = 0;
     options.live = LiveCatalogueOptions{.rescan = rescan, .settle = milliseconds(200)};
+    options.time = &time_;
     auto store = StormStore::Open({data_}, options);
     EXPECT_TRUE(store.ok()) << store.status();
     return *std::move(store);
   }
 
-  // True if `condition` becomes true within a limit that is generous even on a busy machine.
-  static bool Eventually(const std::function<bool()>& condition) {
-    for (int i = 0; i < 2000; ++i) {
+  // Lets the stores' time pass until `condition()` is true. Elsewhere it stands still. An hour, the
+  // usual pause of scans, never passes.
+  template <typename Condition>
+  bool Eventually(Condition condition) {
+    return testing::WaitFor([&] {
       if (condition()) return true;
-      std::this_thread::sleep_for(milliseconds(10));
-    }
-    return false;
+      time_.Advance(milliseconds(10));
+      return false;
+    });
   }
 
   static std::size_t TimesOf(const StormStore& store) {
@@ -119,6 +123,7 @@ class LiveFolder : public ::testing::Test {
     return times;
   }
 
+  testing::ManualTime time_;
   TemporaryFolder folder_;
   double top_m_ = SyntheticWrf().top_m;
   const std::string data_ = folder_.File("series");
@@ -133,24 +138,32 @@ TEST_F(LiveFolder, AFolderThatHangsHoldsUpNoOther) {
   PutOld(other + "/wrfout_d01_00:00:00", WrfBytes({0}));
   std::promise<void> storage;
   const auto hangs = std::make_shared<std::atomic<bool>>(false);
-  CatalogueScan scan(
-      {.paths = {data_, other},
-       .formats = StormFormats::BuiltIn(),
-       .settle = seconds(3),
-       .retry = seconds(30),
-       .look_at =
-           [hangs, answers = storage.get_future().share(), gone = data_](const std::string& path) {
-             if (*hangs && path == gone) answers.wait();
-           },
-       .patience = milliseconds(100)});
+  const auto begun = std::make_shared<std::atomic<int>>(0);
+  CatalogueScan scan({.paths = {data_, other},
+                      .formats = StormFormats::BuiltIn(),
+                      .settle = seconds(3),
+                      .retry = seconds(30),
+                      .look_at =
+                          [hangs, begun, answers = storage.get_future().share(),
+                           gone = data_](const std::string& path) {
+                            if (!*hangs || path != gone) return;
+                            ++*begun;
+                            answers.wait();
+                          },
+                      .patience = milliseconds(100),
+                      .time = &time_});
   EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1, 1));
   *hangs = true;
   PutOld(other + "/wrfout_d01_01:00:00", WrfBytes({1}));
   fs::remove(File(0));  // nobody can tell
-  EXPECT_THAT(TimesAt(scan, seconds(10)), ElementsAre(1, 1));
+  auto waiting = std::async(std::launch::async, [&] { return TimesAt(scan, seconds(10)); });
+  ASSERT_TRUE(testing::WaitFor([&] { return *begun == 1; }));
+  time_.Advance(milliseconds(100));
+  EXPECT_THAT(waiting.get(), ElementsAre(1, 1));
+  // That it hangs is known: nobody waits for it while time stands still.
   EXPECT_THAT(TimesAt(scan, seconds(20)), ElementsAre(1, 2));
   storage.set_value();
-  EXPECT_TRUE(Eventually([&] { return TimesAt(scan, seconds(30)).size() == 1; }));
+  EXPECT_TRUE(testing::WaitFor([&] { return TimesAt(scan, seconds(30)).size() == 1; }));
 }
 
 TEST_F(LiveFolder, OffersAFileThatComesInPiecesWhenItIsComplete) {
@@ -180,21 +193,21 @@ TEST_F(LiveFolder, DoesNotOfferAFileWhoseSizeMoves) {
 TEST_F(LiveFolder, OffersOldFilesAtOnceAndNewOnesLater) {
   PutOld(File(0), WrfBytes({0}));
   Put(File(1), WrfBytes({1}));
-  CatalogueScan scan = Scanner();
+  CatalogueScan scan = Scanner(minutes(30));
   EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1));
-  EXPECT_THAT(TimesAt(scan, seconds(3)), ElementsAre(2)) << "one series of both";
+  EXPECT_THAT(TimesAt(scan, minutes(30)), ElementsAre(2)) << "one series of both";
 }
 
 // One of them alone would be a storm of its own name.
 TEST_F(LiveFolder, FilesThatCameJustBeforeTheStartAreOfferedTogether) {
   for (int hour = 0; hour < 2; ++hour) {
     Put(File(hour), WrfBytes({hour}));
-    fs::last_write_time(File(hour), fs::file_time_type::clock::now() - seconds(2 * hour));
+    fs::last_write_time(File(hour), fs::file_time_type::clock::now() - minutes(20 * hour));
   }
-  CatalogueScan scan = Scanner();
+  CatalogueScan scan = Scanner(minutes(40));
   EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre());
-  EXPECT_THAT(TimesAt(scan, seconds(2)), ElementsAre());
-  EXPECT_THAT(TimesAt(scan, seconds(3)), ElementsAre(2));
+  EXPECT_THAT(TimesAt(scan, minutes(20)), ElementsAre());
+  EXPECT_THAT(TimesAt(scan, minutes(40)), ElementsAre(2));
 }
 
 TEST_F(LiveFolder, KeepsTheTimesOfAFileThatGrows) {
@@ -255,9 +268,11 @@ TEST_F(LiveFolder, AFolderThatGoesAwayComesBack) {
 TEST_F(LiveFolder, AnEmptyFolderIsWaitedFor) {
   const auto store = Open();
   EXPECT_TRUE(store->Storms().empty());
-  std::this_thread::sleep_for(seconds(1));  // the scan after the start is over
   MoveInto(File(0), WrfBytes({0}));
   EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
+  // The scan after the start is over, so that only the kernel's event tells of this one.
+  MoveInto(File(1), WrfBytes({1}));
+  EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 2; }));
 }
 
 TEST_F(LiveFolder, APathThatIsNotThereIsAnError) {
@@ -282,7 +297,7 @@ TEST_F(LiveFolder, TwelveFilesCopiedOneByOneAreOneSeriesThatGrows) {
     std::ofstream copy(File(hour), std::ios::binary);
     for (std::size_t at = 0; at < whole.size(); at += whole.size() / 4) {
       copy << whole.substr(at, whole.size() / 4) << std::flush;
-      std::this_thread::sleep_for(milliseconds(20));
+      time_.Advance(milliseconds(20));
       EXPECT_EQ(TimesOf(*store), static_cast<std::size_t>(hour));
     }
     copy.close();
@@ -384,6 +399,7 @@ TEST_F(LiveFolder, NothingIsReadOfAFileThatIsNotTheOneDescribed) {
   StormStoreOptions options;
   options.read_ahead = 0;
   options.live = LiveCatalogueOptions{.rescan = std::chrono::hours(1), .settle = seconds(5)};
+  options.time = &time_;
   const auto store = *StormStore::Open({data_}, options);
   const auto shown = store->Get("series", 0, {});
   ASSERT_TRUE(shown.ok());

@@ -15,7 +15,9 @@
 #include "base/memory_budget.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/manual_time.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 #include "volume/netcdf_lock.h"
 #include "volume/storm_store.h"
 
@@ -23,8 +25,8 @@ namespace thunderhead::volume {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 using ::testing::HasSubstr;
+using testing::WaitFor;
 
 constexpr int kManyTimes = 64;
 constexpr int kCells = 64;
@@ -134,8 +136,20 @@ class CubeFormat final : public StormFormat {
   const std::shared_ptr<Storage> storage_;
 };
 
+// NetCDF-C's holder counts by that time while this lives.
+class NetcdfIsMeasuredBy {
+ public:
+  explicit NetcdfIsMeasuredBy(const base::TimeSource& time) { NetcdfHolder::MeasureBy(time); }
+  ~NetcdfIsMeasuredBy() { NetcdfHolder::MeasureBy(base::SteadyTime()); }
+  NetcdfIsMeasuredBy(const NetcdfIsMeasuredBy&) = delete;
+  NetcdfIsMeasuredBy& operator=(const NetcdfIsMeasuredBy&) = delete;
+};
+
+// Time moves only where a test moves it.
 class StormMemory : public ::testing::Test {
  protected:
+  static constexpr milliseconds kDeadline{200};
+
   ~StormMemory() override { storage_->Answer(); }
 
   std::string Cube(const std::string& name, int cells) {
@@ -147,12 +161,23 @@ class StormMemory : public ::testing::Test {
   std::unique_ptr<StormStore> Open(const std::vector<std::string>& paths,
                                    StormStoreOptions options) {
     options.formats.Add(std::make_shared<CubeFormat>(storage_));
+    options.time = &time_;
     auto store = StormStore::Open(paths, options);
     EXPECT_TRUE(store.ok()) << store.status();
     return *std::move(store);
   }
 
+  // Asks for a time of "far.cube", whose storage hangs; returns once it is being read.
+  std::future<absl::Status> GetFar(StormStore& store, int time) {
+    const int passed = storage_->Passed();
+    auto far = std::async(std::launch::async,
+                          [&store, time] { return store.Get("far.cube", time, {}).status(); });
+    EXPECT_TRUE(WaitFor([&] { return storage_->Passed() > passed; }));
+    return far;
+  }
+
   testing::TemporaryFolder folder_;
+  testing::ManualTime time_;
   const std::shared_ptr<Storage> storage_ = std::make_shared<Storage>();
 };
 
@@ -219,52 +244,50 @@ TEST_F(StormMemory, ATimeBeyondTheBudgetIsRefusedBeforeItIsRead) {
 
 TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   const auto store = Open({Cube("far", kCells), Cube("near", kCells)},
-                          {.read_ahead = 1, .read_deadline = milliseconds(200)});
+                          {.read_ahead = 1, .read_deadline = kDeadline});
   ASSERT_TRUE(store->Get("near.cube", 0, {}).ok());
   storage_->Hang();
-  const auto begun = steady_clock::now();
-  const absl::Status late = store->Get("far.cube", 0, {}).status();
-  const auto took = steady_clock::now() - begun;
+  auto far = GetFar(*store, 0);
+  time_.Advance(kDeadline);
+  EXPECT_EQ(far.wait_for(milliseconds(0)), std::future_status::timeout);
+  time_.Advance(milliseconds(1));
+  const absl::Status late = far.get();
   EXPECT_TRUE(absl::IsDeadlineExceeded(late)) << late;
   EXPECT_THAT(std::string(late.message()), HasSubstr("far.cube"));
   EXPECT_EQ(base::DetailsOf(late).reason, "STORAGE_HANGS");
   EXPECT_TRUE(base::DetailsOf(late).retry_after.has_value());
-  EXPECT_GE(took, milliseconds(200));
-  EXPECT_LT(took, std::chrono::seconds(5));
   ASSERT_TRUE(store->Hung().has_value());
   EXPECT_THAT(store->Hung()->file, HasSubstr("far.cube"));
-  // Times in memory are still given; a read that would wait behind is refused at once.
+  // Times in memory are still given; a read that would wait behind is refused at once, while time
+  // stands still.
   EXPECT_TRUE(store->Get("near.cube", 0, {}).ok());
   EXPECT_EQ(store->Storms().size(), 2U);
-  const auto behind = steady_clock::now();
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("near.cube", 9, {}).status()));
-  EXPECT_LT(steady_clock::now() - behind, milliseconds(150));
 }
 
 TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherProcess) {
   std::filesystem::create_directories(folder_.Path() / "other");
   std::atomic<int> apart{0};
-  const auto store = Open({Cube("far", kCells), Cube("other/farther", kCells), Cube("b", kCells)},
-                          {.read_ahead = 0,
-                           .read_deadline = milliseconds(200),
-                           .reader_apart = [&](const StormFile& file) {
-                             ++apart;
-                             return file.reader;
-                           }});
+  const auto store = Open(
+      {Cube("far", kCells), Cube("other/farther", kCells), Cube("b", kCells)},
+      {.read_ahead = 0, .read_deadline = kDeadline, .reader_apart = [&](const StormFile& file) {
+         ++apart;
+         return file.reader;
+       }});
   ASSERT_TRUE(store->Get("b.cube", 0, {}).ok());
   EXPECT_EQ(apart, 0) << "nothing hangs";
   storage_->Hang();
+  auto far = GetFar(*store, 0);
   // Somebody else's read, that waits behind it.
-  auto behind = std::async(std::launch::async, [&] {
-    std::this_thread::sleep_for(milliseconds(50));
-    return store->Get("b.cube", 1, {}).status();
-  });
-  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 0, {}).status()));
+  auto behind =
+      std::async(std::launch::async, [&] { return store->Get("b.cube", 1, {}).status(); });
+  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 2; }));
+  time_.Advance(kDeadline + milliseconds(1));
+  EXPECT_TRUE(absl::IsDeadlineExceeded(far.get()));
   EXPECT_TRUE(behind.get().ok());
-  const auto begun = steady_clock::now();
+  // Now that it is known, others go at once, while time stands still.
   double progress = 0.0;
   EXPECT_TRUE(store->Get("b.cube", 2, [&](double share) { progress = share; }).ok());
-  EXPECT_LT(steady_clock::now() - begun, milliseconds(150)) << "at once, as it is known";
   EXPECT_EQ(progress, 0.5);
   EXPECT_GE(apart, 2);
   // Of the storage that hangs nothing is read by yet another process, of no folder.
@@ -274,78 +297,66 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherProcess) {
   EXPECT_EQ(apart, before);
   storage_->Answer();
   EXPECT_TRUE(store->Get("b.cube", 2, {}).ok());
-  absl::Status again = absl::UnknownError("");
-  for (int i = 0; i < 1000 && !again.ok(); ++i) {
-    std::this_thread::sleep_for(milliseconds(5));
-    again = store->Get("far.cube", 0, {}).status();
-  }
-  EXPECT_TRUE(again.ok()) << again;
+  EXPECT_TRUE(WaitFor([&] { return store->Get("far.cube", 0, {}).ok(); }));
 }
 
 TEST_F(StormMemory, PlaybackGoesOnBesideAStorageThatHangs) {
-  const auto store = Open({Cube("far-locked", kCells), Cube("locked", kCells)},
-                          {.read_ahead = 1,
-                           .read_deadline = milliseconds(1000),
-                           .reader_apart = CubeFormat::ReaderApart});
+  const NetcdfIsMeasuredBy measured(time_);
+  const auto store =
+      Open({Cube("far-locked", kCells), Cube("locked", kCells)},
+           {.read_ahead = 1, .read_deadline = kDeadline, .reader_apart = CubeFormat::ReaderApart});
   ASSERT_TRUE(store->Get("locked.cube", 0, {}).ok());
-  while (store->Peek("locked.cube", 1) == nullptr) {
-    std::this_thread::sleep_for(milliseconds(1));
-  }
+  ASSERT_TRUE(WaitFor([&] { return store->Peek("locked.cube", 1) != nullptr; }));
   storage_->Hang();
   auto hung =
       std::async(std::launch::async, [&] { return store->Get("far-locked.cube", 0, {}).status(); });
+  ASSERT_TRUE(WaitFor([&] { return storage_->Passed() == 1; }));
   // Reading ahead begins, and waits behind it, before it is known to hang.
-  std::this_thread::sleep_for(milliseconds(600));
+  time_.Advance(kDeadline / 2);
   ASSERT_TRUE(store->Get("locked.cube", 1, {}).ok());
+  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 2; }));
+  time_.Advance(kDeadline / 2 + milliseconds(1));
   EXPECT_TRUE(absl::IsDeadlineExceeded(hung.get()));
+  // It is known to hang, so these are given while time stands still.
   for (int time = 2; time < 8; ++time) {
-    const auto begun = steady_clock::now();
     EXPECT_TRUE(store->Get("locked.cube", time, {}).ok()) << time;
-    EXPECT_LT(steady_clock::now() - begun, milliseconds(300)) << time;
   }
   storage_->Answer();
 }
 
 TEST_F(StormMemory, AFileThatNetcdfHangsWithOutsideTheStoreIsNamed) {
-  const auto store =
-      Open({Cube("locked", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(200)});
+  const NetcdfIsMeasuredBy measured(time_);
+  const auto store = Open({Cube("locked", kCells)}, {.read_ahead = 0, .read_deadline = kDeadline});
   std::optional<NetcdfLock> other(folder_.File("written.nc"));
-  std::this_thread::sleep_for(milliseconds(250));
-  const auto begun = steady_clock::now();
+  time_.Advance(kDeadline + milliseconds(1));
+  // At once, while time stands still, as it is known.
   const absl::Status late = store->Get("locked.cube", 0, {}).status();
-  EXPECT_LT(steady_clock::now() - begun, milliseconds(150)) << "at once, as it is known";
   EXPECT_THAT(std::string(late.message()), HasSubstr("written.nc"));
   other.reset();
   EXPECT_TRUE(store->Get("locked.cube", 0, {}).ok());
 }
 
 TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {
-  const auto store =
-      Open({Cube("far", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(100)});
+  const auto store = Open({Cube("far", kCells)}, {.read_ahead = 0, .read_deadline = kDeadline});
   storage_->Hang();
-  ASSERT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 0, {}).status()));
+  auto far = GetFar(*store, 0);
+  time_.Advance(kDeadline + milliseconds(1));
+  ASSERT_TRUE(absl::IsDeadlineExceeded(far.get()));
   storage_->Answer();
-  absl::Status status = absl::UnknownError("");
-  const auto until = steady_clock::now() + std::chrono::seconds(20);
-  while (!status.ok() && steady_clock::now() < until) {
-    std::this_thread::sleep_for(milliseconds(5));
-    status = store->Get("far.cube", 0, {}).status();
-  }
-  EXPECT_TRUE(status.ok()) << status;
+  EXPECT_TRUE(WaitFor([&] { return store->Get("far.cube", 0, {}).ok(); }));
   EXPECT_FALSE(store->Hung().has_value());
   EXPECT_EQ(storage_->Passed(), 1) << "what was read late is kept";
 }
 
 TEST_F(StormMemory, AReadThatGoesOnSlowlyIsNotRefused) {
-  const auto store =
-      Open({Cube("near", kCells)}, {.read_ahead = 0, .read_deadline = milliseconds(300)});
+  const auto store = Open({Cube("near", kCells)}, {.read_ahead = 0, .read_deadline = kDeadline});
   // Several wait behind one another, in all for longer than the deadline.
   std::vector<std::jthread> callers;
   std::atomic<int> given = 0;
   for (int time = 0; time < 6; ++time) {
     callers.emplace_back([&, time] {
-      const auto fields = store->Get(
-          "near.cube", time, [](double) { std::this_thread::sleep_for(milliseconds(100)); });
+      const auto fields =
+          store->Get("near.cube", time, [this](double) { time_.Advance(kDeadline / 3); });
       if (fields.ok()) ++given;
     });
   }
@@ -354,14 +365,19 @@ TEST_F(StormMemory, AReadThatGoesOnSlowlyIsNotRefused) {
 }
 
 TEST_F(StormMemory, AStoreEndsWhileItsStorageHangs) {
-  auto store = Open({Cube("far", kCells)}, {.read_ahead = 1, .read_deadline = milliseconds(50)});
+  auto store = Open({Cube("far", kCells)}, {.read_ahead = 1, .read_deadline = kDeadline});
   storage_->Hang();
-  ASSERT_FALSE(store->Get("far.cube", 0, {}).ok());
-  const auto begun = steady_clock::now();
-  store.reset();
-  EXPECT_LT(steady_clock::now() - begun, std::chrono::seconds(15));
-  storage_->Answer();  // and its thread finds what it used
-  std::this_thread::sleep_for(milliseconds(100));
+  auto far = GetFar(*store, 0);
+  time_.Advance(kDeadline + milliseconds(1));
+  ASSERT_FALSE(far.get().ok());
+  auto ended = std::async(std::launch::async, [&] { store.reset(); });
+  EXPECT_TRUE(WaitFor([&] {
+    time_.Advance(milliseconds(100));
+    return ended.wait_for(milliseconds(0)) == std::future_status::ready;
+  }));
+  storage_->Answer();
+  EXPECT_TRUE(WaitFor([&] { return storage_.use_count() == 1; }))
+      << "its thread finds what it used, and ends";
 }
 
 }  // namespace

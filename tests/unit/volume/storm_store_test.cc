@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <filesystem>
 #include <thread>
 
 #include "absl/strings/str_format.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 #include "volume/fields_cache.h"
 
 namespace thunderhead::volume {
@@ -19,6 +19,7 @@ namespace {
 
 using testing::SyntheticWrf;
 using testing::TemporaryFolder;
+using testing::WaitFor;
 using testing::WrfCell;
 
 constexpr int kTimes = 6;
@@ -52,14 +53,11 @@ class StormSeries : public ::testing::Test {
     return *std::move(store);
   }
 
-  // True if `condition` becomes true within a limit that is generous even on a busy machine.
-  template <typename Condition>
-  static bool Eventually(Condition condition) {
-    for (int i = 0; i < 2000; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    return false;
+  // Waits until that time has been read ahead and nothing else is read after it: the reading thread
+  // begins the next time before others see the one that it has read.
+  static bool ReadsAheadNoFurtherThan(StormStore& store, int time) {
+    return WaitFor(
+        [&] { return store.Peek("series", time) != nullptr && store.PendingReads() == 0; });
   }
 
   TemporaryFolder folder_;
@@ -123,7 +121,7 @@ TEST_F(StormSeries, ForgetsAStormThatIsRemoved) {
   EXPECT_TRUE(absl::IsNotFound(store->Remove("series")));
   EXPECT_EQ(info->id, "series") << "what was pointed to stays";
   EXPECT_GT((*held)->Bytes(), 0U) << "and what was given";
-  EXPECT_TRUE(Eventually([&] { return store->CachedBytes() == 0; }));
+  EXPECT_TRUE(WaitFor([&] { return store->CachedBytes() == 0; }));
   // Another of that name may come.
   ASSERT_TRUE(store->Add(folder_.File("series")).ok());
   EXPECT_TRUE(store->Get("series", 1, {}).ok());
@@ -133,7 +131,7 @@ TEST_F(StormSeries, TellsWhichTimesAreInMemory) {
   const auto store = Open({.read_ahead = 2});
   EXPECT_THAT(store->TimesInMemory("series"), ::testing::IsEmpty());
   ASSERT_TRUE(store->Get("series", 1, {}).ok());
-  EXPECT_TRUE(Eventually([&] { return store->TimesInMemory("series") == std::vector{1, 2, 3}; }));
+  EXPECT_TRUE(WaitFor([&] { return store->TimesInMemory("series") == std::vector{1, 2, 3}; }));
   EXPECT_THAT(store->TimesInMemory("another"), ::testing::IsEmpty());
   ASSERT_TRUE(store->Remove("series").ok());
   EXPECT_THAT(store->TimesInMemory("series"), ::testing::IsEmpty());
@@ -175,9 +173,8 @@ TEST_F(StormSeries, KeepsTheNewestEvenIfItAloneIsTooLarge) {
 TEST_F(StormSeries, ReadsTheNextTimesAhead) {
   const auto store = Open({.read_ahead = 2});
   ASSERT_TRUE(store->Get("series", 1, {}).ok());
-  EXPECT_TRUE(Eventually([&] { return store->Peek("series", 3) != nullptr; }));
+  EXPECT_TRUE(ReadsAheadNoFurtherThan(*store, 3));
   EXPECT_NE(store->Peek("series", 2), nullptr);
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(store->Peek("series", 4), nullptr);
   EXPECT_EQ(store->Peek("series", 0), nullptr);
 }
@@ -185,7 +182,7 @@ TEST_F(StormSeries, ReadsTheNextTimesAhead) {
 TEST_F(StormSeries, StopsReadingAheadAtTheLastTime) {
   const auto store = Open({.read_ahead = 3});
   ASSERT_TRUE(store->Get("series", kTimes - 2, {}).ok());
-  EXPECT_TRUE(Eventually([&] { return store->Peek("series", kTimes - 1) != nullptr; }));
+  EXPECT_TRUE(WaitFor([&] { return store->Peek("series", kTimes - 1) != nullptr; }));
   ASSERT_TRUE(store->Get("series", kTimes - 1, {}).ok());
   EXPECT_EQ(store->CachedBytes(), 2 * one_time_);
 }
@@ -193,8 +190,7 @@ TEST_F(StormSeries, StopsReadingAheadAtTheLastTime) {
 TEST_F(StormSeries, NeverPushesOutTheTimeInViewByReadingAhead) {
   const auto store = Open({.byte_budget = 2 * one_time_, .read_ahead = 4});
   ASSERT_TRUE(store->Get("series", 0, {}).ok());
-  EXPECT_TRUE(Eventually([&] { return store->CachedBytes() == 2 * one_time_; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_TRUE(ReadsAheadNoFurtherThan(*store, 1));
   EXPECT_NE(store->Peek("series", 0), nullptr);
   EXPECT_NE(store->Peek("series", 1), nullptr);
   EXPECT_LE(store->CachedBytes(), 2 * one_time_);
@@ -206,7 +202,7 @@ TEST_F(StormSeries, OutlivesABrokenTimeWhenReadingAhead) {
   const std::string broken = store->Storms()[0]->files[1];
   std::filesystem::resize_file(broken, 1000);
   ASSERT_TRUE(store->Get("series", 0, {}).ok());
-  EXPECT_TRUE(Eventually([&] { return store->Peek("series", 2) != nullptr; }));
+  EXPECT_TRUE(WaitFor([&] { return store->Peek("series", 2) != nullptr; }));
   const auto second = store->Get("series", 1, {});
   EXPECT_EQ(second.status().code(), absl::StatusCode::kDataLoss);
   EXPECT_THAT(std::string(second.status().message()), ::testing::HasSubstr(broken));
@@ -252,6 +248,11 @@ TEST_F(StormSeries, ServesManyThreadsThatWanderAboutWithinABudget) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(failures, 0);
+  // Times in use are kept beyond the budget until another one is read.
+  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 0; }));
+  int time = 0;
+  while (store->Peek("series", time) != nullptr) ++time;
+  ASSERT_TRUE(store->Get("series", time, {}).ok());
   EXPECT_LE(store->CachedBytes(), 3 * one_time_);
 }
 
@@ -259,7 +260,9 @@ TEST_F(StormSeries, EndsWhileItReadsAhead) {
   for (int i = 0; i < 20; ++i) {
     const auto store = Open({.read_ahead = 5});
     ASSERT_TRUE(store->Get("series", 0, {}).ok());
-    std::this_thread::sleep_for(std::chrono::microseconds(300 * i));
+    // At another stage each time.
+    const auto read = static_cast<std::size_t>(i % kTimes);
+    ASSERT_TRUE(WaitFor([&] { return store->TimesInMemory("series").size() >= read; }));
   }
 }
 
