@@ -4,13 +4,10 @@ import { appendFileSync, mkdtempSync, renameSync, rmSync, unlinkSync, writeFileS
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { setTimeout } from "node:timers/promises";
 import { cloudFile } from "./cloud_file.mjs";
-import { launchBrowser, listenForErrors, PICTURE_TIMEOUT_MS, rested, screenshot, until } from "./driver.mjs";
+import { launchBrowser, listenForErrors, rested, screenshot, until } from "./driver.mjs";
 import { difference, grabCanvas } from "./pictures.mjs";
 import { freePort, startServer } from "./server_process.mjs";
-
-const SETTLE_MS = 500;
 
 let folder;
 let server;
@@ -22,10 +19,10 @@ const fileOf = (hour) => join(folder, `ball_${String(hour).padStart(2, "0")}.nc`
 const validTime = () => page.getByTestId("valid-time").innerText();
 
 async function awaitValidTime(pattern) {
-  const end = Date.now() + PICTURE_TIMEOUT_MS;
-  while (!pattern.test(await validTime())) {
-    assert.ok(Date.now() < end, `the time bar says "${await validTime()}", not ${pattern}\n${server.log()}`);
-    await setTimeout(100);
+  try {
+    await until("the time", async () => pattern.test(await validTime()));
+  } catch {
+    assert.fail(`the time bar says "${await validTime()}", not ${pattern}\n${server.log()}`);
   }
 }
 
@@ -37,7 +34,7 @@ before(async () => {
     httpPort: await freePort(),
     grpcPort: await freePort(),
     data: folder,
-    more: ["--settle-seconds", String(SETTLE_MS / 1000), "--rescan-seconds", "2"],
+    more: ["--settle-seconds", "0.3", "--rescan-seconds", "0.5"],
   });
   browser = await launchBrowser();
   page = await (await browser.newContext({ viewport: { width: 900, height: 560 } })).newPage();
@@ -55,20 +52,21 @@ test("a session that shows the newest time goes on to a newer one when its file 
   await awaitValidTime(/02:00.*2 of 2/s);
   const whole = cloudFile(3);
   writeFileSync(fileOf(3), whole.subarray(0, whole.length / 2));
-  await setTimeout(4 * SETTLE_MS);
-  assert.match(await validTime(), /2 of 2/, "half a file is no time");
+  // Half a file is no time when one that was written later is.
+  writeFileSync(fileOf(0), cloudFile(0));
+  await awaitValidTime(/02:00.*3 of 3/s);
   appendFileSync(fileOf(3), whole.subarray(whole.length / 2));
-  await awaitValidTime(/03:00.*3 of 3/s);
+  await awaitValidTime(/03:00.*4 of 4/s);
   await screenshot("catalogue-newest", page);
 });
 
 test("a session with a time selected keeps it when others come", async () => {
-  await page.getByTestId("time").fill("1");
-  await awaitValidTime(/02:00.*2 of 3/s);
+  await page.getByTestId("time").fill("2");
+  await awaitValidTime(/02:00.*3 of 4/s);
   writeFileSync(fileOf(4), cloudFile(4));
-  await awaitValidTime(/02:00.*2 of 4/s);
-  writeFileSync(fileOf(0), cloudFile(0));
   await awaitValidTime(/02:00.*3 of 5/s);
+  writeFileSync(fileOf(1.5), cloudFile(1.5));
+  await awaitValidTime(/02:00.*4 of 6/s);
 });
 
 test("a file that is replaced keeps its time, and its picture comes by itself", async () => {
@@ -79,7 +77,7 @@ test("a file that is replaced keeps its time, and its picture comes by itself", 
   renameSync(fresh, fileOf(2));
   // The picture before may be drawn again meanwhile, as the time that came before it changes the scene.
   await until("a smaller cloud", async () => {
-    assert.match(await validTime(), /02:00.*3 of 5/s, "at any time");
+    assert.match(await validTime(), /02:00.*4 of 6/s, "at any time");
     await rested(page);
     return difference(before, await grabCanvas(page)) > 1;
   });
@@ -88,7 +86,7 @@ test("a file that is replaced keeps its time, and its picture comes by itself", 
 test("a time that is deleted while it is shown says so, and others that are deleted go", async () => {
   unlinkSync(fileOf(2));
   unlinkSync(fileOf(0));
-  await awaitValidTime(/02:00.*2 of 4.*deleted, shown from memory/s);
+  await awaitValidTime(/02:00.*3 of 5.*deleted, shown from memory/s);
   await screenshot("catalogue-deleted", page);
   assert.deepEqual(complaints, []);
 });

@@ -6,9 +6,10 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { digest, writeCertificate } from "./credentials.mjs";
-import { launchBrowser, PICTURE_TIMEOUT_MS, rested, screenshot, until } from "./driver.mjs";
+import { launchBrowser, rested, screenshot, until } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
+const VIEWPORT = { width: 640, height: 400 };
 const TOKENS = { teacher: "teacher-token-5f2c", student: "student-token-91aa" };
 
 let folder;
@@ -17,6 +18,8 @@ let browser;
 
 const file = (name) => join(folder, name);
 const audit = () => readFileSync(file("audit.log"), "utf8");
+// A thread of the server writes the lines.
+const audited = (line) => until(`${line} in the audit`, () => line.test(audit()));
 
 function writeTokens(lines) {
   writeFileSync(file("tokens"), `${lines.join("\n")}\n`, { mode: 0o600 });
@@ -47,7 +50,7 @@ after(async () => {
 });
 
 async function openPage(url = server.url) {
-  const context = await browser.newContext({ ignoreHTTPSErrors: true });
+  const context = await browser.newContext({ viewport: VIEWPORT, ignoreHTTPSErrors: true });
   const page = await context.newPage();
   await page.goto(url);
   return page;
@@ -58,7 +61,7 @@ async function signIn(page, token) {
   await page.getByRole("button", { name: "Sign in" }).click();
 }
 
-const visible = (page, id) => page.getByTestId(id).waitFor({ timeout: PICTURE_TIMEOUT_MS });
+const visible = (page, id) => page.getByTestId(id).waitFor();
 const asked = (page) => page.getByTestId("sign-in").isVisible();
 
 let teacher;
@@ -72,8 +75,8 @@ test("nobody sees a storm without a token, or with a wrong one", async () => {
   await until("the refusal of a wrong token", async () =>
     /does not know this token/.test(await teacher.getByTestId("sign-in").innerText()),
   );
-  assert.match(audit(), /identity="" role=none peer="127\.0\.0\.1:\d+" act=CreateSession verdict=refused reason="TOKEN_MISSING"/);
-  assert.match(audit(), /reason="TOKEN_UNKNOWN"/);
+  await audited(/identity="" role=none peer="127\.0\.0\.1:\d+" act=CreateSession verdict=refused reason="TOKEN_MISSING"/);
+  await audited(/reason="TOKEN_UNKNOWN"/);
 });
 
 test("a presenter's token opens a session, also after a reload", async () => {
@@ -83,7 +86,7 @@ test("a presenter's token opens a session, also after a reload", async () => {
   await teacher.reload();
   await rested(teacher);
   assert.equal(await asked(teacher), false);
-  assert.match(audit(), /identity="teacher" role=presenter peer="127\.0\.0\.1:\d+" act=CreateSession verdict=allowed/);
+  await audited(/identity="teacher" role=presenter peer="127\.0\.0\.1:\d+" act=CreateSession verdict=allowed/);
 });
 
 test("a viewer's token watches by the link, and opens nothing itself", async () => {
@@ -97,7 +100,7 @@ test("a viewer's token watches by the link, and opens nothing itself", async () 
   await until("the refusal of the role", async () =>
     /not for the role of viewer/.test(await alone.getByTestId("sign-in").innerText()),
   );
-  assert.match(audit(), /identity="student" role=viewer .* act=CreateSession verdict=refused reason="ROLE_MAY_NOT"/);
+  await audited(/identity="student" role=viewer .* act=CreateSession verdict=refused reason="ROLE_MAY_NOT"/);
 });
 
 test("a token that is taken away ends what it opened", async () => {
