@@ -22,6 +22,7 @@ function bench(first: Scene = sceneOf(0)) {
   const paints: (() => void)[] = [];
   const rests: (() => void)[] = [];
   const page = { scene: first, refused: [] as string[], others: [] as bigint[], completed: 0 };
+  const agreed: (bigint | undefined)[] = [];
   const sync = new SceneSync({
     scene: () => page.scene,
     adopt: (scene) => {
@@ -36,6 +37,7 @@ function bench(first: Scene = sceneOf(0)) {
         sent.push({ scene, expected, answer, lost: () => reject(new Error("lost")) });
       }),
     taken: () => undefined,
+    agreed: (revision) => agreed.push(revision),
     refused: (message) => page.refused.push(message),
     onNextPaint: (callback) => {
       paints.push(callback);
@@ -59,6 +61,7 @@ function bench(first: Scene = sceneOf(0)) {
     sync,
     sent,
     page,
+    agreed,
     refresh,
     settle,
     edit,
@@ -88,6 +91,22 @@ describe("scenes on their way to the server", () => {
     await b.refresh();
     expect(b.times()).toEqual([3]);
     expect(b.sent[0]?.expected).toBe(1n);
+  });
+
+  it("are agreed on once the server has taken them and told what they became", async () => {
+    const b = steering();
+    expect(b.agreed).toEqual([1n]);
+    b.toTime(1);
+    expect(b.sync.agreed).toBeUndefined();
+    await b.refresh();
+    b.sent[0]?.answer(taken(2n));
+    await b.settle();
+    expect(b.sync.agreed).toBeUndefined();
+    b.sync.told(sceneOf(1), 2n);
+    expect(b.sync.agreed).toBe(2n);
+    b.sync.forget();
+    expect(b.sync.agreed).toBeUndefined();
+    expect(b.agreed).toEqual([1n, undefined, undefined, 2n, undefined]);
   });
 
   const expectations = (b: ReturnType<typeof bench>) => b.sent.map(({ expected }) => expected);

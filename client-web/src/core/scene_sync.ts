@@ -26,6 +26,8 @@ export interface SyncSteps {
   // Rejects if the connection is lost.
   send(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict>;
   taken(): void;
+  // The revision on which page and server agree may have changed: SceneSync.agreed.
+  agreed?(revision: bigint | undefined): void;
   // A scene was refused, or is sent again later as the server is busy.
   refused(message: string): void;
   // Requests one call at the next screen refresh; returns a function that cancels it.
@@ -50,6 +52,8 @@ export class SceneSync {
   // One was not taken, so the others will not be: nothing is sent before all are answered.
   #drains = false;
   #revision = -1n;
+  // The newest revision whose scene the server has told, with its defaults filled in.
+  #completed = -1n;
   #told: { readonly scene: Scene; readonly revision: bigint } | undefined;
   #mayEdit = false;
   // Nothing is sent before the newer scene is known.
@@ -74,6 +78,13 @@ export class SceneSync {
     return this.#edits.length > 0;
   }
 
+  // The revision on which page and server agree: the server has taken every edit and has told the scene that they became.
+  // Undefined until then.
+  get agreed(): bigint | undefined {
+    const known = this.#revision >= 0n && this.#completed >= this.#revision;
+    return known && this.#inFlight === 0 && !this.unsettled ? this.#revision : undefined;
+  }
+
   // The page's scene was edited.
   edited(edit: Edit): void {
     this.#edits.push(edit);
@@ -81,6 +92,7 @@ export class SceneSync {
     // A hand may be faster than the controls, which cannot be used while another steers.
     this.#giveUp();
     this.#schedule();
+    this.#tellAgreed();
   }
 
   // The page's scene is about to open a session.
@@ -92,14 +104,18 @@ export class SceneSync {
   opened(completed: Scene, revision: bigint): void {
     this.#edits.splice(0, this.#openingEdits);
     this.#told = undefined;
+    this.#completed = revision;
     this.#rebase(completed, revision);
+    this.#tellAgreed();
   }
 
   // Joined, again or another session: its next scene is taken whatever its revision.
   forget(): void {
     this.#revision = -1n;
+    this.#completed = -1n;
     this.#told = undefined;
     this.#endStale();
+    this.#tellAgreed();
   }
 
   // This page steers and is connected.
@@ -121,6 +137,7 @@ export class SceneSync {
   discard(onLost: () => void): void {
     this.#onLost = onLost;
     this.#giveUp();
+    this.#tellAgreed();
   }
 
   #giveUp(): void {
@@ -134,9 +151,11 @@ export class SceneSync {
   // The session's scene.
   told(scene: Scene, revision: bigint): void {
     this.#told = { scene, revision };
+    if (revision > this.#completed) this.#completed = revision;
     this.#endStale();
     this.#adoptTold();
     this.#schedule();
+    this.#tellAgreed();
   }
 
   dispose(): void {
@@ -211,6 +230,11 @@ export class SceneSync {
     this.#giveUp();
     this.#adoptTold();
     this.#schedule();
+    this.#tellAgreed();
+  }
+
+  #tellAgreed(): void {
+    this.#steps.agreed?.(this.agreed);
   }
 
   #judge(verdict: SceneVerdict, sent: readonly Edit[], scene: Scene): void {

@@ -98,6 +98,18 @@ export class Screen {
     return { box, projection, distanceM };
   }
 
+  // For tests: the revision that the picture at rest will show, empty until it is known.
+  tellAgreed(revision: bigint | undefined): void {
+    const { canvas } = this.#place;
+    if (canvas !== undefined) canvas.dataset.agreed = String(revision ?? "");
+  }
+
+  // A new call: frames count from the beginning, and the picture on the canvas is of an earlier call.
+  startCall(): void {
+    this.#flow.startCall();
+    delete this.#place.canvas?.dataset.revision;
+  }
+
   dispose(): void {
     clearInterval(this.#pace);
     this.#flow.dispose();
@@ -123,6 +135,7 @@ export class Screen {
       scale: String(frame.accuracy?.imageScale ?? 1),
       ownView: String(frame.ownView),
       tier: String(frame.tier),
+      paths: String(frame.modelled?.tracedPaths ?? 0n),
       time: String(shownTimeIndex ?? ""),
       camera: pose?.kind ?? "",
       azimuth: standingAzimuthDeg(pose)?.toFixed(2) ?? "",

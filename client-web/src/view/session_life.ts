@@ -76,6 +76,7 @@ export class SessionLife implements SessionListener {
       changedByOthers: (scene, revision) => ledger.told(scene.timeIndex ?? 0, revision),
       send: (scene, expectedRevision) => this.#send(scene, expectedRevision),
       taken: () => state.dismiss("refused"),
+      agreed: (revision) => parts.screen().tellAgreed(revision),
       refused: (text) => parts.notes.problem("refused", text),
       onNextPaint: (callback) => parts.onNextPaint(callback),
       later: parts.later,
@@ -181,7 +182,7 @@ export class SessionLife implements SessionListener {
       this.#parts.keys.keep(joined.viewerKey, this.#presenterKey);
     this.#parts.ledger.startSession();
     this.#sync.forget();
-    this.#parts.screen().flow.startCall();
+    this.#parts.screen().startCall();
     this.#parts.viewpoint().ownView.resume();
     void this.#parts.storms.learn();
   }

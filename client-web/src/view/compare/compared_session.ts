@@ -20,6 +20,8 @@ import { PictureFlow } from "../picture_flow";
 
 export interface ComparedSteps {
   painted(frame: Frame): void;
+  // SceneSync.agreed of B's session.
+  agreed(revision: bigint | undefined): void;
   // Something that B cannot show.
   problem(text: string | undefined): void;
   // Why nothing comes from B's session; undefined once it is there.
@@ -61,6 +63,7 @@ export class ComparedSession implements SessionListener {
       changedByOthers: () => undefined,
       send: (scene, revision) => this.#client.updateScene(scene, revision),
       taken: () => steps.problem(undefined),
+      agreed: (revision) => steps.agreed(revision),
       refused: (text) => steps.problem(text),
       onNextPaint: (callback) => steps.onNextPaint(callback),
       later: steps.later,

@@ -235,9 +235,14 @@ export class Comparing {
     this.#session = new ComparedSession(this.#calls, this.#openInteract, {
       painted: (frame) => {
         this.frame.value = frame;
-        if (this.#canvas !== undefined) this.#canvas.dataset.revision = String(frame.sceneRevision);
-        if (this.#canvas !== undefined) this.#canvas.dataset.refined = String(frame.refined);
+        this.#tell({
+          revision: String(frame.sceneRevision),
+          refined: String(frame.refined),
+          size: `${frame.widthPx}x${frame.heightPx}`,
+          scale: String(frame.accuracy?.imageScale ?? 1),
+        });
       },
+      agreed: (revision) => this.#tell({ agreed: String(revision ?? "") }),
       problem: (text) => {
         this.problem.value = text;
       },
@@ -251,6 +256,11 @@ export class Comparing {
     if (this.#canvas !== undefined) this.#session.attach(this.#canvas).resize(widthPx, heightPx);
     this.#session.resized({ widthPx, heightPx });
     this.#session.start(scene);
+  }
+
+  // For tests: what B's canvas shows.
+  #tell(data: Record<string, string>): void {
+    if (this.#canvas !== undefined) Object.assign(this.#canvas.dataset, data);
   }
 
   async #describe(stormId: string | undefined): Promise<void> {
