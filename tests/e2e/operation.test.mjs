@@ -1,15 +1,17 @@
 // The real program as its operator sees it: metrics, health, JSON logs, draining. Needs no browser.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { linkSync, mkdtempSync, rmSync, statSync } from "node:fs";
+import { linkSync, mkdtempSync, readdirSync, readlinkSync, rmSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { setTimeout } from "node:timers/promises";
+import { until } from "./driver.mjs";
 import { BINARY, ROOT, freePort, startServer } from "./server_process.mjs";
 
-// Of the 30 s that the first signal leaves a picture; a busy machine takes a second to end a process.
-const AT_ONCE_MS = 5000;
+// Of complaints of libraries (server/app/library_log).
+const LINES_A_SECOND = 10;
+// Longer than any picture takes.
+const DRAIN = ["--drain-seconds", "3600"];
 
 async function start(...more) {
   const operatorPort = await freePort();
@@ -20,27 +22,39 @@ async function start(...more) {
     const answer = await fetch(`http://127.0.0.1:${operatorPort}/${path}`);
     return { status: answer.status, text: await answer.text() };
   };
-  const pictures = async () =>
-    Number(/^thunderhead_pictures_in_progress (\d+)/m.exec((await get("metrics")).text)?.[1]);
+  const metric = async (name) => Number(new RegExp(`^thunderhead_${name} (\\d+)`, "m").exec((await get("metrics")).text)?.[1]);
+  // The server shows itself two pictures at its start, each in a session.
+  await until("the server's own pictures", async () => (await metric("sessions_opened_total")) === 2 && (await metric("sessions")) === 0);
   // Begins a picture that takes some seconds; resolves when the server has it.
   const beginPicture = async (file) => {
-    // The server draws two by itself at its start, one after the other.
-    for (let quiet = 0; quiet < 10; quiet = (await pictures()) === 0 ? quiet + 1 : 0) await setTimeout(50);
     const child = spawn(BINARY, [
       ...["render", "supercell", "-o", file, "--renderer", "light_volume", "--slices", "512"],
-      ...["--size", "2560x1440", "--server", `127.0.0.1:${ports.grpcPort}`],
+      ...["--size", "1920x1080", "--server", `127.0.0.1:${ports.grpcPort}`],
     ]);
     let said = "";
     child.stderr.on("data", (text) => {
       said += text;
     });
-    while ((await pictures()) === 0) {
+    await until("the picture to begin", async () => {
       assert.equal(child.exitCode, null, said);
-      await setTimeout(20);
-    }
+      return (await metric("pictures_in_progress")) > 0;
+    });
     return child;
   };
   return { ...server, get, beginPicture };
+}
+
+// Files of the folder that the process has open.
+function openFiles({ pid }, folder) {
+  const open = `/proc/${pid}/fd`;
+  return readdirSync(open).filter((descriptor) => {
+    try {
+      return readlinkSync(`${open}/${descriptor}`).startsWith(folder);
+    } catch {
+      // It has been closed meanwhile.
+      return false;
+    }
+  }).length;
 }
 
 const ended = (child) => new Promise((resolve) => child.once("exit", (code, signal) => resolve({ code, signal })));
@@ -72,8 +86,14 @@ test("metrics, health and logs of a server that serves and then stops", async ()
     assert.equal(typeof message, "string");
   }
   assert.ok(messages.some(({ message }) => message.startsWith("draining")));
-  const complaints = messages.filter(({ message }) => message.startsWith("protobuf: ")).length;
-  assert.ok(complaints >= 1 && complaints <= 100, `${complaints} lines of 200 faulty calls`);
+  const complaints = messages.filter(({ message }) => message.startsWith("protobuf: "));
+  assert.ok(complaints.length >= 1, "faulty calls are told");
+  const seconds = complaints.map(({ time }) => time.slice(0, 19));
+  for (const second of new Set(seconds)) {
+    const lines = seconds.filter((each) => each === second).length;
+    // The last line of the second before may be written late.
+    assert.ok(lines <= LINES_A_SECOND + 1, `${lines} lines in the second ${second}`);
+  }
 });
 
 test("SIGTERM ends a server that still reads its storms", async () => {
@@ -89,8 +109,10 @@ test("SIGTERM ends a server that still reads its storms", async () => {
         said += text;
       });
     }
-    await setTimeout(1000);
-    assert.equal(child.exitCode, null, said);
+    await until("a storm that is read", () => {
+      assert.equal(child.exitCode, null, said);
+      return openFiles(child, folder) > 0;
+    });
     const exit = ended(child);
     child.kill("SIGTERM");
     assert.deepEqual(await exit, { code: 0, signal: null });
@@ -104,30 +126,34 @@ test("SIGTERM waits for the picture that was begun, a second one ends at once", 
   const folder = mkdtempSync(join(tmpdir(), "thunderhead-drain-"));
   const file = join(folder, "picture.png");
   try {
-    // A busy machine may take more than the usual 30 s for the picture.
-    const server = await start("--drain-seconds", "300");
+    const server = await start(...DRAIN);
     const picture = await server.beginPicture(file);
     const drawn = ended(picture);
     const exit = ended(server.child);
     server.child.kill("SIGTERM");
-    await setTimeout(100);
-    assert.deepEqual(await server.get("readyz"), { status: 503, text: "draining\n" });
+    let ready;
+    await until("the server to drain", async () => {
+      ready = await server.get("readyz");
+      return ready.status !== 200;
+    });
+    assert.deepEqual(ready, { status: 503, text: "draining\n" });
     assert.equal((await server.get("healthz")).status, 200);
     assert.deepEqual(await drawn, { code: 0, signal: null });
     assert.ok(statSync(file).size > 10_000);
     assert.deepEqual(await exit, { code: 0, signal: null });
 
-    const other = await start();
+    const other = await start(...DRAIN);
     const lost = await other.beginPicture(file);
     const gaveUp = ended(lost);
     const killed = ended(other.child);
     other.child.kill("SIGTERM");
-    await setTimeout(400);
-    const again = Date.now();
-    other.child.kill("SIGTERM");
+    await until("the server to drain", async () => (await other.get("readyz")).status === 503);
+    // Signals that follow the first one closely count as the same request.
+    await until("the end", () => {
+      other.child.kill("SIGTERM");
+      return other.child.exitCode !== null || other.child.signalCode !== null;
+    });
     assert.deepEqual(await killed, { code: 128 + 15, signal: null });
-    const tookMs = Date.now() - again;
-    assert.ok(tookMs < AT_ONCE_MS, `it ended after ${tookMs} ms`);
     assert.notEqual((await gaveUp).code, 0);
   } finally {
     rmSync(folder, { recursive: true, force: true });

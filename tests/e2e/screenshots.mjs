@@ -28,8 +28,7 @@ const PICTURES = {
     await openPanel(page, "compare");
     await page.getByTestId("compare-time").selectOption("0");
     await page.keyboard.press("Escape");
-    await page.getByTestId("compared-canvas").waitFor();
-    await page.waitForTimeout(5000);
+    await restedAndFits(page, "compared-canvas");
   },
 };
 const folder = process.argv[2] ?? fileURLToPath(new URL("../../docs/page/", import.meta.url));
@@ -45,7 +44,7 @@ async function cameraOf(page, kind) {
 
 // A tool is looked at with what it is for in it.
 async function prepare(page, tool) {
-  const come = (locator) => locator.waitFor({ timeout: 20_000 });
+  const come = (locator) => locator.waitFor();
   if (tool === "map") await come(page.locator("[data-testid=inset-map] canvas"));
   if (tool === "probe") {
     await page.getByTestId("probe-middle").click();
@@ -59,8 +58,10 @@ async function prepare(page, tool) {
     await page.getByTestId("mark-middle").click();
     await come(page.getByTestId("mark"));
   }
-  await page.waitForTimeout(500);
 }
+
+// Waits until what was changed is on the screen.
+const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 mkdirSync(folder, { recursive: true });
 const data = fileURLToPath(new URL("../../samples/", import.meta.url));
@@ -79,7 +80,7 @@ try {
     const file = process.argv[2] === undefined ? { type: "jpeg", quality: 80 } : { type: "png" };
     const shoot = async (name) => {
       await restedAndFits(page);
-      await page.waitForTimeout(500);
+      await painted(page);
       await page.screenshot({ path: `${folder}/${name}-${width}.${file.type}`, ...file });
     };
     for (const name of TOOLS.filter(wanted)) {
@@ -92,7 +93,6 @@ try {
     await openTool(page, undefined);
     for (const name of PANELS.filter(wanted)) {
       await openPanel(page, name);
-      await page.waitForTimeout(300);
       await shoot(name);
       await page.keyboard.press("Escape");
     }

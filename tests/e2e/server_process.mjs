@@ -7,8 +7,9 @@ import { fileURLToPath } from "node:url";
 
 export const ROOT = fileURLToPath(new URL("../../", import.meta.url));
 export const BINARY = process.env.THUNDERHEAD_BINARY ?? `${ROOT}build/release/bin/thunderhead`;
-const START_TIMEOUT_MS = 60_000;
-const STOP_TIMEOUT_MS = 10_000;
+// A program that takes longer to start or to stop hangs.
+const START_TIMEOUT_MS = 600_000;
+const STOP_TIMEOUT_MS = 600_000;
 
 // A port that is free now; the program uses the same one again after a restart.
 export function freePort() {

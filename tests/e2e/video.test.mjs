@@ -9,14 +9,13 @@ import { freePort, startServer } from "./server_process.mjs";
 import { throttledLink } from "./throttled_link.mjs";
 
 const WINDOW = { width: 1000, height: 700 };
+// Where the camera's turns begin and end.
+const [LEFT, RIGHT] = [300, 500].map((x) => ({ x, y: 350 }));
 // A host name other than localhost, which Chromium is told to resolve to this machine.
 const OTHER_HOST = "storms.test";
 // A JPEG frame takes 0.4 s over this link. The server tries smaller frames where one takes more than 0.1 s
 // (session/link_estimate).
 const SLOW_LINK = { kbitPerS: 1000, roundTripMs: 150 };
-// A machine that draws few frames takes long to find that they are too large; the test ends once it has.
-const SLOW_FOR_MS = 180_000;
-const TURNS_FOR_MS = 60_000;
 // Maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the picture.
 const ALIKE = 2.5;
 // Share of what a wrong matrix or range would change: video of low quality, whose colours are paler, makes -0.26 of it, a wrong one makes 1.
@@ -47,20 +46,35 @@ const jpegOnly = () => {
       : decode(source, ...rest);
 };
 
-// Counts, in the page, the frames that are shown in each encoding.
+// Notes, in the page, the sequences of the frames that are shown, by encoding.
 const watchCanvas = () => {
+  const canvas = document.querySelector("[data-testid=storm-canvas]");
   window.seen = {};
-  window.watching = setInterval(() => {
-    const canvas = document.querySelector("[data-testid=storm-canvas]");
-    if (canvas === null || canvas.dataset.encoding === undefined) return;
+  new MutationObserver(() => {
     const { encoding, sequence } = canvas.dataset;
-    window.seen[encoding] ??= { count: 0, sequences: [] };
-    const seen = window.seen[encoding];
-    if (seen.sequences.at(-1) === sequence) return;
-    seen.count += 1;
-    seen.sequences.push(sequence);
-  }, 8);
+    window.seen[encoding] ??= [];
+    window.seen[encoding].push(sequence);
+  }).observe(canvas, { attributeFilter: ["data-sequence"] });
 };
+
+// Opens a session, with pictures that have no traced light, by a browser that takes JPEG only.
+async function present(...scripts) {
+  const page = await open(server.url, jpegOnly, ...scripts);
+  await openTool(page, "look");
+  await changing(() => chooseQuality(page, "Fast"), page);
+  await openTool(page, undefined);
+  return page;
+}
+
+// Turns the presenter's camera to and fro until `holds` gives true.
+async function turningUntil(what, presenter, holds) {
+  let [from, to] = [LEFT, RIGHT];
+  await until(what, async () => {
+    await dragBetween(presenter, from, to, 30);
+    [from, to] = [to, from];
+    return holds();
+  });
+}
 
 before(async () => {
   const ports = { httpPort: await freePort(), grpcPort: await freePort() };
@@ -74,30 +88,24 @@ after(async () => {
 });
 
 test("a browser that saves data sees video while the camera turns, and a still of 10 bits at rest", async () => {
-  const presenter = await open(server.url, jpegOnly);
-  await rested(presenter);
+  const presenter = await present();
   const link = presenter.url();
   const viewer = await open(link, savesData);
   await rested(viewer);
   await viewer.evaluate(watchCanvas);
 
-  let shown = 0;
-  // A busy machine shows few pictures a round.
-  const end = Date.now() + TURNS_FOR_MS;
-  for (let round = 0; round < 4 || (shown < 10 && Date.now() < end); round += 1) {
-    const x = round % 2 === 0 ? 300 : 500;
-    await dragBetween(presenter, { x, y: 350 }, { x: 800 - x, y: 350 }, 30);
-    shown = (await viewer.evaluate(() => window.seen.vp9?.count)) ?? 0;
-  }
-  assert.ok(shown >= 10, `only ${shown} pictures of video were shown`);
-  const { sequences } = await viewer.evaluate(() => window.seen.vp9);
-  const numbers = sequences.map(Number);
+  let numbers = [];
+  // A busy machine shows few pictures a turn.
+  await turningUntil("ten pictures of video", presenter, async () => {
+    numbers = ((await viewer.evaluate(() => window.seen.vp9)) ?? []).map(Number);
+    return numbers.length >= 10;
+  });
   assert.deepEqual(numbers, [...numbers].sort((a, b) => a - b), "pictures came out of order");
 
   await rested(presenter);
   let still;
   let jpeg;
-  // Both of the same frame: those that follow have more traced light.
+  // Both of the same frame.
   await until("the still", async () => {
     const seen = await canvasData(viewer);
     if (seen.encoding !== "avif" || seen.refined !== "true") return false;
@@ -110,7 +118,6 @@ test("a browser that saves data sees video while the camera turns, and a still o
   const apart = difference(still, jpeg);
   assert.ok(apart < ALIKE, `the still is ${apart} levels from JPEG`);
   await viewer.getByTestId("readout-summary").click();
-  // A frame with more traced light, which comes as video before its own still, may be between.
   await until("the readout's word for it", async () => /AVIF/.test(await viewer.getByTestId("encoding").innerText()));
   await screenshot("still-avif", viewer);
   assert.deepEqual(complaints, []);
@@ -151,8 +158,7 @@ test("by a slow link come video, or smaller pictures where the browser decodes n
   for (let i = 0; i < 2; i += 1)
     links.push(await throttledLink({ port: Number(new URL(server.url).port), ...SLOW_LINK }));
   try {
-    const presenter = await open(server.url, jpegOnly);
-    await rested(presenter);
+    const presenter = await present();
     const session = new URL(presenter.url()).search;
     const slow = await open(`http://127.0.0.1:${links[0].port}/${session}`);
     const old = await open(`http://127.0.0.1:${links[1].port}/${session}`, jpegOnly);
@@ -161,16 +167,14 @@ test("by a slow link come video, or smaller pictures where the browser decodes n
     assert.equal((await canvasData(old)).tier, "0");
 
     const reached = { video: false, smaller: false };
-    const end = Date.now() + SLOW_FOR_MS;
-    for (let step = 0; Date.now() < end && !(reached.video && reached.smaller); step += 1) {
-      const x = step % 2 === 0 ? 300 : 500;
-      await dragBetween(presenter, { x, y: 350 }, { x: 800 - x, y: 350 }, 30);
+    // A machine that draws few frames takes long to find that they are too large.
+    await turningUntil("video, and smaller pictures", presenter, async () => {
       reached.video ||= (await canvasData(slow)).encoding === "vp9";
       const { tier, encoding } = await canvasData(old);
       assert.equal(encoding, "jpeg");
       reached.smaller ||= tier !== "0";
-    }
-    assert.deepEqual(reached, { video: true, smaller: true });
+      return reached.video && reached.smaller;
+    });
     await old.getByTestId("readout-summary").click();
     await screenshot("slow-link", old);
     // Stills are worth waiting for.
@@ -213,22 +217,20 @@ test("the colours of video are those of JPEG", async () => {
     }, sequence);
     return PNG.sync.read(Buffer.from(dataUrl.split(",")[1], "base64"));
   };
-  const presenter = await open(server.url, jpegOnly, keepsPictures);
-  await rested(presenter);
-  // Without traced light, which comes when the picture rests, after its video; in strong colours, which show a wrong matrix.
+  const presenter = await present(keepsPictures);
+  // Strong colours show a wrong matrix.
   await openTool(presenter, "look");
-  await changing(() => chooseQuality(presenter, "Fast"), presenter);
   await changing(() => presenter.getByTestId("colours").getByText("False colours").click(), presenter);
   await openTool(presenter, undefined);
   await restedAndFits(presenter);
   const viewer = await open(presenter.url(), savesData, keepsPictures);
   await rested(viewer);
   // One frame in both encodings, in full quality: moving pictures may be coarse. Either may have left it out.
-  let right = 120;
+  let rightPx = 120;
   let sequence;
   await until("a frame that rests, as video and as JPEG", async () => {
-    await dragBetween(presenter, { x: 300, y: 350 }, { x: 300 + right, y: 350 }, 20);
-    right = -right;
+    await dragBetween(presenter, LEFT, { x: LEFT.x + rightPx, y: LEFT.y }, 20);
+    rightPx = -rightPx;
     await rested(presenter);
     const { revision } = await canvasData(presenter);
     await until("the still", async () => {

@@ -1,15 +1,14 @@
 // Measures a drag with server and browser on this machine: frames painted a second, and milliseconds from each movement of the
 // pointer, as the browser dates it, to the end of the page's frame that paints a picture which follows it.
-//   node drag.mjs [seconds] [width] [height] [trace]
-// At 960 x 540, the size that the aims are of, it fails where they are missed. With `trace` it also prints what a picture costs the
-// browser, by a trace of one more drag.
+//   node drag.bench.mjs [seconds] [width] [height] [trace]
+// The aims, at 960 x 540, are 20 frames/s and a median of 120 ms. With `trace` it also prints what a picture costs the browser, by a
+// trace of one more drag.
 import { loadavg } from "node:os";
 import { setTimeout } from "node:timers/promises";
 import { launchBrowser, rested, until } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
-const AIM = { widthPx: 960, heightPx: 540, framesPerSecond: 20, medianMs: 120 };
-const [seconds, width, height] = [20, AIM.widthPx, AIM.heightPx].map((usual, i) => Number(process.argv[2 + i] ?? usual));
+const [seconds, width, height] = [20, 960, 540].map((usual, i) => Number(process.argv[2 + i] ?? usual));
 const STEP_MS = 16;
 const STEP_PX = 4;
 // A drag over the whole window's height turns the camera so far.
@@ -102,21 +101,19 @@ try {
   await until("drags", async () => {
     strokes.push(await stroke(page));
     return total("ms") >= 1000 * seconds;
-  }, 20_000 * seconds);
-  const sorted = strokes.flatMap(({ latenciesMs }) => latenciesMs).sort((a, b) => a - b);
-  const [medianMs, lateMs] = [0.5, 0.95].map((share) => sorted[Math.floor(share * sorted.length)]);
-  const framesPerSecond = (1000 * total("frames")) / total("ms");
-  console.log(
-    `${width} x ${height}, ${(total("ms") / 1000).toFixed(0)} s: ${framesPerSecond.toFixed(1)} frames/s, ` +
-      `${medianMs.toFixed(0)} ms from pointer to picture (median; 95th percentile ${lateMs.toFixed(0)} ms); ` +
-      `the machine's load ${loadavg()[0].toFixed(1)}`,
-  );
+  });
+  const percentileOf = (some) => {
+    const sorted = some.flatMap(({ latenciesMs }) => latenciesMs).sort((a, b) => a - b);
+    return (share) => sorted[Math.floor(share * sorted.length)].toFixed(0);
+  };
+  const half = Math.ceil(strokes.length / 2);
+  console.log(`${width} x ${height}, ${(total("ms") / 1000).toFixed(0)} s; the machine's load ${loadavg()[0].toFixed(1)}`);
+  console.log(`figure: drag, frames shown: ${((1000 * total("frames")) / total("ms")).toFixed(1)} frames/s`);
+  console.log(`figure: drag, pointer to picture, median: ${percentileOf(strokes)(0.5)} ms`);
+  console.log(`figure: drag, pointer to picture, 95th percentile: ${percentileOf(strokes)(0.95)} ms`);
+  console.log(`figure: drag, pointer to picture, median of the first half: ${percentileOf(strokes.slice(0, half))(0.5)} ms`);
+  console.log(`figure: drag, pointer to picture, median of the last half: ${percentileOf(strokes.slice(-half))(0.5)} ms`);
   if (process.argv[5] === "trace") console.log(`CPU time a picture: ${(await costsOfPicture(page)).join(", ")}`);
-  const isOfAim = width === AIM.widthPx && height === AIM.heightPx;
-  if (isOfAim && (framesPerSecond < AIM.framesPerSecond || medianMs > AIM.medianMs)) {
-    console.error(`The aims are ${AIM.framesPerSecond} frames/s and ${AIM.medianMs} ms`);
-    process.exitCode = 1;
-  }
 } finally {
   await browser.close();
   await server.stop();

@@ -1,7 +1,6 @@
-// Measures the page on a slow link while its camera turns: frames a second and latency, from its readout. Fails if the latency grows or
-// there are fewer than 8 frames/s on the whole, as its first seconds, in which the link is learnt, have.
-//   node slow_link.mjs [seconds] [kbit/s] [round trip in ms]
-import assert from "node:assert/strict";
+// Measures the page on a slow link while its camera turns: frames a second and latency, from its readout. The latency should not grow,
+// and there should be 8 frames/s on the whole: the first seconds, in which the link is learnt, have fewer.
+//   node slow_link.bench.mjs [seconds] [kbit/s] [round trip in ms]
 import { setTimeout } from "node:timers/promises";
 import { canvasData, launchBrowser, rested } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
@@ -61,12 +60,12 @@ try {
   await page.mouse.up();
   const third = Math.ceil(all.length / 3);
   const mean = (list) => list.reduce((sum, one) => sum + one.median, 0) / list.length;
-  console.log(`first third ${mean(all.slice(0, third)).toFixed(0)} ms, last ${mean(all.slice(-third)).toFixed(0)} ms`);
+  const fps = all.reduce((sum, one) => sum + one.fps, 0) / all.length;
+  console.log(`figure: slow link, frames shown: ${fps.toFixed(1)} frames/s`);
+  console.log(`figure: slow link, latency in the first third: ${mean(all.slice(0, third)).toFixed(0)} ms`);
+  console.log(`figure: slow link, latency in the last third: ${mean(all.slice(-third)).toFixed(0)} ms`);
   const shown = await rested(page);
   console.log(`at rest: ${shown.encoding}`);
-  assert.ok(mean(all.slice(-third)) <= 1.2 * mean(all.slice(0, third)) + 50, "the latency has grown");
-  const fps = all.reduce((sum, one) => sum + one.fps, 0) / all.length;
-  assert.ok(fps >= 8, `${fps.toFixed(1)} frames/s`);
 } finally {
   await browser.close();
   await link.close();
