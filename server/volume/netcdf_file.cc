@@ -19,6 +19,7 @@
 #include "base/status.h"
 #include "volume/classic_file_size.h"
 #include "volume/classic_header.h"
+#include "volume/hdf5_layout.h"
 #include "volume/memory_fit.h"
 #include "volume/netcdf_lock.h"
 
@@ -187,6 +188,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
     int handle = kNoHandle;
     const NetcdfLock lock(path);
+    THUNDERHEAD_RETURN_IF_ERROR(CheckHdf5Bytes(path, file->bytes));
     if (const int code = OpenMemory(*file, handle); code != NC_NOERR) return OpenError(path, code);
     return Checked(path, handle, file->bytes.size());
   }
@@ -199,6 +201,9 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
   int handle = kNoHandle;
   const NetcdfLock lock(path);
+  if (const absl::Status layout = CheckHdf5File(path); !layout.ok()) {
+    return IsHeldByWriter(path) ? HeldByWriter(path) : layout;
+  }
   if (const int code = nc_open(path.c_str(), NC_NOWRITE, &handle); code != NC_NOERR) {
     return IsHeldByWriter(path) ? HeldByWriter(path) : OpenError(path, code);
   }
@@ -302,8 +307,7 @@ absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& v
   std::vector<double> values(total);
   if (total == 0) return values;
   const NetcdfLock lock(path_);
-  int id = 0;
-  nc_inq_varid(handle_, variable.c_str(), &id);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const int id, NumbersId(variable, shape.size()));
   if (const int code = nc_get_var_double(handle_, id, values.data()); code != NC_NOERR) {
     return ReadError(variable, code);
   }
@@ -435,13 +439,12 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
   std::vector<double> packed;
   {
     const NetcdfLock lock(path_);
-    int id = 0;
-    int code = nc_inq_varid(handle_, variable.c_str(), &id);
-    if (code != NC_NOERR) return ReadError(variable, code);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const int id, NumbersId(variable, count.size()));
     packing = PackingOf(handle_, id);
     // No chunk cache: every chunk is read once, and the cache would keep a second copy of each
     // variable.
     nc_set_var_chunk_cache(handle_, id, 0, 0, 0.0F);
+    int code = NC_NOERR;
     if (packing.PlainFloat()) {
       code = nc_get_vara_float(handle_, id, start.data(), count.data(), values.data());
     } else {
@@ -456,6 +459,46 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
     for (std::size_t i = 0; i < total; ++i) values[i] = Clean(packed[i], packing);
   }
   return absl::OkStatus();
+}
+
+absl::StatusOr<int> NetcdfFile::NumbersId(const std::string& variable, std::size_t rank) const {
+  int id = 0;
+  nc_type type = NC_NAT;
+  int dimensions = 0;
+  if (const int code = nc_inq_varid(handle_, variable.c_str(), &id); code != NC_NOERR) {
+    return ReadError(variable, code);
+  }
+  if (const int code = nc_inq_var(handle_, id, nullptr, &type, &dimensions, nullptr, nullptr);
+      code != NC_NOERR) {
+    return ReadError(variable, code);
+  }
+  switch (type) {
+    case NC_BYTE:
+    case NC_UBYTE:
+    case NC_SHORT:
+    case NC_USHORT:
+    case NC_INT:
+    case NC_UINT:
+    case NC_INT64:
+    case NC_UINT64:
+    case NC_FLOAT:
+    case NC_DOUBLE:
+      break;
+    case NC_CHAR:
+      return ReadError(variable, NC_ECHAR);
+    default:
+      // NetCDF-C calls strings, and numbers that it does not know such as long double, NC_STRING,
+      // and would write pointers into the memory of the numbers.
+      return absl::InvalidArgumentError(
+          absl::StrCat(path_, ": ", variable,
+                       " is of a type other than integers of up to 64 bits, float and double; "
+                       "write it as one of those"));
+  }
+  if (static_cast<std::size_t>(dimensions) != rank) {
+    return absl::InvalidArgumentError(absl::StrCat(path_, ": ", variable, " has ", dimensions,
+                                                   " dimensions where ", rank, " are needed"));
+  }
+  return id;
 }
 
 absl::StatusOr<std::size_t> NetcdfFile::CountThatFits(const std::string& variable,

@@ -81,6 +81,10 @@ class NetcdfFile {
 
   absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
                           const std::vector<std::size_t>& count, std::vector<float>& values) const;
+  // Returns the id of a variable whose type is in the allow-list of numbers and that has `rank`
+  // dimensions. Every read of numbers begins here. INVALID_ARGUMENT for another type or rank. The
+  // caller holds NetcdfLock.
+  absl::StatusOr<int> NumbersId(const std::string& variable, std::size_t rank) const;
   absl::StatusOr<std::size_t> CountThatFits(const std::string& variable,
                                             const std::vector<std::size_t>& lengths,
                                             std::size_t bytes_each) const;

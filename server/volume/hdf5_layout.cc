@@ -1,0 +1,114 @@
+#include "volume/hdf5_layout.h"
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <cstring>
+
+#include "absl/strings/str_cat.h"
+#include "base/utf8.h"
+
+namespace thunderhead::volume {
+namespace {
+
+// More than any model writes; a file of many tiny objects must not take minutes to look through.
+constexpr int kMostObjects = 100'000;
+
+constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+
+// Closes an identifier of HDF5.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Handle() {
+    if (id_ >= 0) close_(id_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  hid_t get() const { return id_; }
+  bool ok() const { return id_ >= 0; }
+
+ private:
+  const hid_t id_;
+  herr_t (*const close_)(hid_t);
+};
+
+// What a walk has found so far.
+struct Walk {
+  int objects = 0;
+  std::string complaint;
+};
+
+herr_t Refuse(Walk& walk, const char* name, const char* what) {
+  walk.complaint = absl::StrCat(base::Printable(name), " ", what);
+  return 1;  // ends the walk
+}
+
+herr_t LookAtLink(hid_t /*group*/, const char* name, const H5L_info_t* info, void* data) {
+  Walk& walk = *static_cast<Walk*>(data);
+  if (++walk.objects > kMostObjects) return Refuse(walk, name, "is one object too many");
+  const bool is_own = info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT;
+  return is_own ? 0 : Refuse(walk, name, "is a link to another file");
+}
+
+herr_t LookAtObject(hid_t root, const char* name, const H5O_info_t* info, void* data) {
+  if (info->type != H5O_TYPE_DATASET) return 0;
+  Walk& walk = *static_cast<Walk*>(data);
+  const Handle dataset(H5Dopen2(root, name, H5P_DEFAULT), &H5Dclose);
+  if (!dataset.ok()) return Refuse(walk, name, "cannot be opened");
+  const Handle creation(H5Dget_create_plist(dataset.get()), &H5Pclose);
+  if (!creation.ok()) return Refuse(walk, name, "has no readable layout");
+  if (H5Pget_external_count(creation.get()) != 0) {
+    return Refuse(walk, name, "keeps its values in other files (external storage)");
+  }
+  if (H5Pget_layout(creation.get()) == H5D_VIRTUAL) {
+    return Refuse(walk, name, "takes its values from other files (virtual dataset)");
+  }
+  return 0;
+}
+
+absl::Status Look(const std::string& path, hid_t opened) {
+  const Handle file(opened, &H5Fclose);
+  if (!file.ok()) {
+    return absl::DataLossError(
+        absl::StrCat(path,
+                     ": cannot be opened as HDF5; it is cut short, damaged or still being "
+                     "written: wait for the model to finish, or copy the file again"));
+  }
+  Walk walk;
+  herr_t status = H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, &LookAtLink, &walk);
+  if (status == 0) {
+    status =
+        H5Ovisit2(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, &LookAtObject, &walk, H5O_INFO_BASIC);
+  }
+  if (status < 0) {
+    return absl::DataLossError(
+        absl::StrCat(path, ": its HDF5 structure is damaged; copy the file again"));
+  }
+  if (status == 0) return absl::OkStatus();
+  return absl::PermissionDeniedError(
+      absl::StrCat(path, ": ", walk.complaint,
+                   "; write all values into one file, for example with nccopy, and give that"));
+}
+
+}  // namespace
+
+absl::Status CheckHdf5File(const std::string& path) {
+  if (H5Fis_hdf5(path.c_str()) <= 0) return absl::OkStatus();
+  return Look(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+}
+
+absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes) {
+  // HDF5 looks for its signature at the start, and at 512 bytes and each power of two after it.
+  bool found = false;
+  for (std::size_t at = 0; at + sizeof(kSignature) <= bytes.size() && !found;
+       at = at == 0 ? 512 : 2 * at) {
+    found = std::memcmp(bytes.data() + at, kSignature, sizeof(kSignature)) == 0;
+  }
+  if (!found) return absl::OkStatus();
+  void* const image = const_cast<std::byte*>(bytes.data());  // opened for reading alone
+  return Look(path, H5LTopen_file_image(image, bytes.size(),
+                                        H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE));
+}
+
+}  // namespace thunderhead::volume

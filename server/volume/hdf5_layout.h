@@ -1,0 +1,19 @@
+// Looks through the structure of an HDF5 file before netCDF-C opens it. HDF5 can place the values
+// of a variable in other files, which would show a viewer any file that the server's user can read.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace thunderhead::volume {
+
+// Return PERMISSION_DENIED if a dataset keeps its values in other files (external storage, virtual
+// datasets) or a link leads to another file, DATA_LOSS if the structure cannot be read, and OK for
+// a file that is not HDF5. The caller holds NetcdfLock. The bytes are not copied.
+absl::Status CheckHdf5File(const std::string& path);
+absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes);
+
+}  // namespace thunderhead::volume
