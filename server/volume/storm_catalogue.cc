@@ -1,6 +1,9 @@
 #include "volume/storm_catalogue.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <new>
@@ -14,6 +17,7 @@
 #include "base/file_stamp.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
+#include "base/utf8.h"
 #include "spdlog/spdlog.h"
 #include "volume/run_start.h"
 
@@ -22,8 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDeepestFolder =
-    8;  // below a path given by the user; also ends loops of symbolic links
+// Bounds of the walk below one path that the user gave.
+constexpr int kDeepestFolder = 8;
+constexpr std::size_t kMostEntries = 200'000;  // files and folders
+constexpr std::chrono::minutes kLongestWalk{10};
 
 struct NamedStorm {
   std::string name;
@@ -80,22 +86,91 @@ bool ContinueOneAnother(const std::vector<StormFile>& files) {
   return distinct.size() * 2 > total;
 }
 
+// What symbolic links a search follows. All paths are canonical.
+struct LinkRules {
+  std::vector<fs::path> targets;    // links lead into these alone
+  std::vector<fs::path> untrusted;  // links in these are not followed
+};
+
+// The walk below one path that the user gave.
+struct Walk {
+  const StormSearch& search;
+  const LinkRules& links;
+  std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + kLongestWalk;
+  std::set<std::pair<dev_t, ino_t>> visited = {};  // folders, by device and inode
+  std::size_t entries = 0;
+  absl::Status first_failure = absl::OkStatus();
+};
+
+// Notes why something below the path was left out.
+void LeaveOut(Walk& walk, const fs::path& path, const absl::Status& why) {
+  walk.first_failure.Update(why);
+  if (walk.search.on_unlisted) {
+    walk.search.on_unlisted(path.string(), why);
+  } else {
+    spdlog::warn("left out: {}", std::string(why.message()));
+  }
+}
+
+// Returns whether `path` is `folder` or below it. Both are canonical.
+bool IsWithin(const fs::path& path, const fs::path& folder) {
+  return std::ranges::mismatch(folder, path).in1 == folder.end();
+}
+
+bool IsWithinAny(const fs::path& path, const std::vector<fs::path>& folders) {
+  return std::ranges::any_of(folders, [&](const fs::path& each) { return IsWithin(path, each); });
+}
+
+// PERMISSION_DENIED for a symbolic link that is not followed.
+absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
+  std::error_code error;
+  const fs::path folder = fs::canonical(link.parent_path(), error);
+  if (error || IsWithinAny(folder, rules.untrusted)) {
+    return absl::PermissionDeniedError(
+        absl::StrCat(link.string(),
+                     ": is a symbolic link, which is not followed in an untrusted "
+                     "folder; put the file itself there"));
+  }
+  const fs::path target = fs::canonical(link, error);
+  if (error) {
+    return absl::PermissionDeniedError(
+        absl::StrCat(link.string(), ": is a symbolic link that leads nowhere"));
+  }
+  if (IsWithinAny(target, rules.targets)) return absl::OkStatus();
+  return absl::PermissionDeniedError(
+      absl::StrCat(link.string(), ": is a symbolic link to ", target.string(),
+                   ", outside the data folders; allow it with --allow-links-to ",
+                   (fs::is_directory(target, error) ? target : target.parent_path()).string()));
+}
+
 struct Folder {
   std::vector<fs::path> files;
   std::vector<fs::path> folders;
 };
 
-absl::StatusOr<Folder> List(const fs::path& path) {
+absl::StatusOr<Folder> List(const fs::path& path, Walk& walk) {
   const base::SlowCall call(path.string());
   Folder folder;
   std::error_code error;
   fs::directory_iterator entries(path, error);
   for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    if (++walk.entries > kMostEntries || std::chrono::steady_clock::now() > walk.end) {
+      return absl::ResourceExhaustedError(absl::StrCat(
+          path.string(), ": the search stopped after ", walk.entries - 1,
+          " files and folders; give --data folders farther down, with fewer files below them"));
+    }
     const fs::path& entry = entries->path();
     if (entry.filename().string().starts_with('.')) continue;
     std::error_code ignored;
-    if (fs::is_directory(entry, ignored)) folder.folders.push_back(entry);
-    if (fs::is_regular_file(entry, ignored)) folder.files.push_back(entry);
+    const bool is_folder = fs::is_directory(entry, ignored);
+    if (!is_folder && !fs::is_regular_file(entry, ignored)) continue;
+    if (entries->is_symlink(ignored)) {
+      if (const absl::Status allowed = CheckLink(walk.links, entry); !allowed.ok()) {
+        LeaveOut(walk, entry, allowed);
+        continue;
+      }
+    }
+    (is_folder ? folder.folders : folder.files).push_back(entry);
   }
   if (error) {
     return absl::PermissionDeniedError(
@@ -132,19 +207,25 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile>
   return storms;
 }
 
-absl::Status SearchFolder(const fs::path& path, const StormSearch& search, int depth,
-                          std::vector<NamedStorm>& storms, absl::Status& first_failure) {
-  if (search.on_folder) search.on_folder(path.string());
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path));
+// Searches a folder and those below it, each once: links can make one folder appear in many places.
+absl::Status SearchFolder(const fs::path& path, int depth, Walk& walk,
+                          std::vector<NamedStorm>& storms) {
+  struct stat identity {};
+  if (::stat(path.c_str(), &identity) == 0 &&
+      !walk.visited.emplace(identity.st_dev, identity.st_ino).second) {
+    return absl::OkStatus();
+  }
+  if (walk.search.on_folder) walk.search.on_folder(path.string());
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path, walk));
   std::vector<StormFile> files;
   for (const fs::path& file : folder.files) {
-    absl::StatusOr<StormFile> metadata = search.describe(file.string());
+    absl::StatusOr<StormFile> metadata = walk.search.describe(file.string());
     if (metadata.ok()) {
       files.push_back(*std::move(metadata));
       continue;
     }
     if (absl::IsCancelled(metadata.status())) continue;
-    first_failure.Update(metadata.status());
+    walk.first_failure.Update(metadata.status());
     // A file of another kind, such as a read-me, is normal; a storm that cannot be read deserves a
     // warning.
     const bool other = absl::IsInvalidArgument(metadata.status());
@@ -154,21 +235,31 @@ absl::Status SearchFolder(const fs::path& path, const StormSearch& search, int d
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
   for (const fs::path& below : folder.folders) {
-    if (absl::Status status = SearchFolder(below, search, depth + 1, storms, first_failure);
-        !status.ok()) {
-      first_failure.Update(status);
-      if (search.on_unlisted) {
-        search.on_unlisted(below.string(), status);
-      } else {
-        spdlog::warn("left out: {}", std::string(status.message()));
-      }
-    }
+    const absl::Status status = SearchFolder(below, depth + 1, walk, storms);
+    if (!status.ok()) LeaveOut(walk, below, status);
   }
   return absl::OkStatus();
 }
 
-absl::Status Search(const std::string& path, const StormSearch& search,
-                    std::vector<NamedStorm>& storms) {
+// Appends the canonical paths of those that exist.
+void AppendCanonical(const std::vector<std::string>& paths, std::vector<fs::path>* canonical) {
+  for (const std::string& path : paths) {
+    std::error_code error;
+    fs::path found = fs::canonical(path, error);
+    if (!error) canonical->push_back(std::move(found));
+  }
+}
+
+LinkRules LinkRulesOf(const std::vector<std::string>& paths, const StormSearch& search) {
+  LinkRules rules;
+  AppendCanonical(paths, &rules.targets);
+  AppendCanonical(search.allowed_links, &rules.targets);
+  AppendCanonical(search.untrusted, &rules.untrusted);
+  return rules;
+}
+
+absl::Status Search(const std::string& path, Walk walk, std::vector<NamedStorm>& storms) {
+  const StormSearch& search = walk.search;
   std::error_code error;
   if (search.may_find_nothing && fs::status(path, error).type() == fs::file_type::not_found) {
     return absl::OkStatus();
@@ -182,18 +273,18 @@ absl::Status Search(const std::string& path, const StormSearch& search,
     return absl::OkStatus();
   }
   const std::size_t before = storms.size();
-  absl::Status first_failure;
-  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, search, 0, storms, first_failure));
+  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, walk, storms));
   if (storms.size() > before || search.may_find_nothing) return absl::OkStatus();
-  if (!first_failure.ok()) {
-    return base::Annotate(first_failure, absl::StrCat(path, " holds no storm; its first file"));
+  if (!walk.first_failure.ok()) {
+    return base::Annotate(walk.first_failure,
+                          absl::StrCat(path, " holds no storm; its first file"));
   }
   return absl::NotFoundError(absl::StrCat(path, ": holds no storm; put the model's output files (",
                                           search.examples, ") there"));
 }
 
 std::string TitleOf(const std::string& name, const StormFile& file) {
-  return file.about.empty() ? name : absl::StrCat(name, " (", file.about, ")");
+  return base::Printable(file.about.empty() ? name : absl::StrCat(name, " (", file.about, ")"));
 }
 
 // Drops files that were found before under another path or through a link.
@@ -297,6 +388,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormSearch& search) {
   std::vector<NamedStorm> named;
+  const LinkRules links = LinkRulesOf(paths, search);
   for (std::size_t path = 0; path < paths.size(); ++path) {
     const std::size_t before = named.size();
     if (search.answers && !search.answers(paths[path])) {
@@ -304,7 +396,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
         named.push_back({storm.name, storm.files});
       }
     } else {
-      THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], search, named));
+      THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], {.search = search, .links = links}, named));
     }
     for (std::size_t i = before; i < named.size(); ++i) named[i].path = path;
     if (search.found == nullptr) continue;

@@ -41,7 +41,7 @@ struct StormSearch {
   std::function<absl::StatusOr<StormFile>(const std::string&)> describe;
   // True if a path that is gone and a folder without storms are no errors.
   bool may_find_nothing = false;
-  // Called with a folder below a path that cannot be listed; empty: it is logged.
+  // Called with a folder or link below a path that is left out, and why; empty: it is logged.
   std::function<void(const std::string&, const absl::Status&)> on_unlisted;
   // Called with every folder before it is listed; may be empty.
   std::function<void(const std::string&)> on_folder;
@@ -52,6 +52,10 @@ struct StormSearch {
   // The storms found by the search before, for that purpose; owned by callers who search again and
   // again, and updated by each search.
   FoundByPath* found = nullptr;
+  // Symbolic links are followed into the searched paths and into these folders, and nowhere else.
+  std::vector<std::string> allowed_links = {};
+  // Folders in which no symbolic link is followed, because others may put files there.
+  std::vector<std::string> untrusted = {};
 };
 
 // Describes files by the formats; a file whose metadata exhausts the memory is an error.
