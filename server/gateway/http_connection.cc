@@ -60,6 +60,7 @@ class HttpConnection {
   net::awaitable<bool> Answer(Parser& parser);
   net::awaitable<bool> AnswerPage(const Request& request, const std::string& path);
   net::awaitable<bool> AnswerUpgrade(const Request& request);
+  net::awaitable<bool> RefuseOrigin(const Request& request, const char* what);
   net::awaitable<bool> AnswerPost(Parser& parser, const std::string& path);
   net::awaitable<bool> AnswerOptions(const Request& request);
   net::awaitable<bool> AnswerCall(Parser& parser);
@@ -117,9 +118,10 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
   const std::string_view target = View(request.target());
   const std::string path(target.substr(0, target.find('?')));
   bool keep = false;
-  if (request.count(http::field::host) > 1) {
-    keep = co_await answers_.SendText(request, http::status::bad_request,
-                                      "A request has one Host header, not several.\n");
+  if (const auto ambiguity = FindAmbiguity(request); ambiguity.has_value()) {
+    // What follows on the connection may be part of this request, so nothing more is read from it.
+    answers_.SetUnreadInput(true);
+    keep = co_await answers_.SendText(request, http::status::bad_request, *ambiguity);
   } else if (!site_.policy.AllowsHost(host)) {
     answers_.Tell(request, "Request", HostNotAllowed());
     keep = co_await answers_.SendText(
@@ -206,9 +208,23 @@ net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
   co_return keep;
 }
 
+net::awaitable<bool> HttpConnection::RefuseOrigin(const Request& request, const char* what) {
+  const std::string origin(View(request[http::field::origin]));
+  answers_.Tell(request, what, OriginNotAllowed());
+  const bool keep = co_await answers_.SendText(
+      request, http::status::forbidden,
+      absl::StrCat("Pages of ", origin, " may not call this server; start it with --allow-origin ",
+                   origin, " to allow that.\n"));
+  co_return keep;
+}
+
 net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::string& path) {
   const Request& request = parser.get();
   bool keep = false;
+  if (!site_.policy.MayCall(View(request[http::field::origin]), View(request[http::field::host]))) {
+    keep = co_await RefuseOrigin(request, "Request");
+    co_return keep;
+  }
   // Calls look for no file, whose storage may hang.
   const bool is_call =
       IsMethodPath(path) && IsBinaryGrpcWeb(View(request[http::field::content_type]));
@@ -245,11 +261,7 @@ net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::strin
 net::awaitable<bool> HttpConnection::AnswerOptions(const Request& request) {
   const std::string_view origin = View(request[http::field::origin]);
   if (!origin.empty() && !site_.policy.AllowsOrigin(origin)) {
-    answers_.Tell(request, "Preflight", OriginNotAllowed());
-    const std::string text =
-        absl::StrCat("Pages of ", std::string(origin), " may not call this server; start it with ",
-                     "--allow-origin ", std::string(origin), " to allow that.\n");
-    const bool keep = co_await answers_.SendText(request, http::status::forbidden, text);
+    const bool keep = co_await RefuseOrigin(request, "Preflight");
     co_return keep;
   }
   http::response<http::empty_body> response(http::status::no_content, request.version());

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
 #include "gateway/text_view.h"
 
 namespace thunderhead::gateway {
@@ -21,11 +22,27 @@ constexpr char kContentSecurityPolicy[] =
     "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
     "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'self'; frame-ancestors 'self'";
 
-// "localhost" of "LocalHost:8080", "[::1]" of "[::1]:8080".
-std::string WithoutPort(std::string_view host) {
+// Returns "localhost" of "LocalHost:8080" and "[::1]" of "[::1]:8080". Returns nothing if what
+// follows the name is no port.
+std::optional<std::string> NameOfHost(std::string_view host) {
   const size_t bracket = host.find(']');
   const size_t colon = host.find(':', bracket == std::string_view::npos ? 0 : bracket);
+  if (colon != std::string_view::npos) {
+    constexpr size_t kMostDigits = 5;
+    const std::string_view port = host.substr(colon + 1);
+    if (port.empty() || port.size() > kMostDigits ||
+        !std::ranges::all_of(port, absl::ascii_isdigit)) {
+      return std::nullopt;
+    }
+  }
   return absl::AsciiStrToLower(std::string(host.substr(0, colon)));
+}
+
+// Returns whether the request has exactly one Transfer-Encoding, which is `chunked` alone, or none.
+bool HasPlainEncoding(const http::request_header<>& request) {
+  const auto count = request.count(http::field::transfer_encoding);
+  return count == 0 ||
+         (count == 1 && boost::beast::iequals(request[http::field::transfer_encoding], "chunked"));
 }
 
 // True for "192.0.2.7" and "[2001:db8::7]".
@@ -50,8 +67,32 @@ HttpPolicy::HttpPolicy(bool loopback, std::vector<std::string> allowed_hosts,
   if (!loopback_ && !error) allowed_hosts_.push_back(absl::AsciiStrToLower(own));
 }
 
+std::optional<std::string> FindAmbiguity(const http::request_header<>& request) {
+  for (const http::field field :
+       {http::field::host, http::field::origin, http::field::content_length}) {
+    if (request.count(field) > 1) {
+      return absl::StrCat("A request has one ", std::string(View(http::to_string(field))),
+                          " header, not several.\n");
+    }
+  }
+  if (!HasPlainEncoding(request)) return "The only Transfer-Encoding is 'chunked', once.\n";
+  const bool has_encoding = request.count(http::field::transfer_encoding) > 0;
+  if (has_encoding && request.count(http::field::content_length) > 0) {
+    return "A request has Transfer-Encoding or Content-Length, not both.\n";
+  }
+  if (has_encoding && request.version() < 11) {
+    return "A request by HTTP/1.0 has no Transfer-Encoding; send Content-Length.\n";
+  }
+  if (!NameOfHost(View(request[http::field::host])).has_value()) {
+    return "The Host header's port is no number.\n";
+  }
+  return std::nullopt;
+}
+
 bool HttpPolicy::AllowsHost(std::string_view host) const {
-  const std::string name = WithoutPort(host);
+  const std::optional<std::string> named = NameOfHost(host);
+  if (!named.has_value()) return false;
+  const std::string& name = *named;
   if (name == "localhost" || name == "127.0.0.1" || name == "[::1]") return true;
   return std::ranges::find(allowed_hosts_, name) != allowed_hosts_.end() ||
          (!loopback_ && IsAddress(name));
@@ -60,6 +101,10 @@ bool HttpPolicy::AllowsHost(std::string_view host) const {
 bool HttpPolicy::AllowsOrigin(std::string_view origin) const {
   return std::find(allowed_origins_.begin(), allowed_origins_.end(), origin) !=
          allowed_origins_.end();
+}
+
+bool HttpPolicy::MayCall(std::string_view origin, std::string_view host) const {
+  return origin.empty() || AllowsOrigin(origin) || IsOwnOrigin(origin, host);
 }
 
 bool HttpPolicy::IsOwnOrigin(std::string_view origin, std::string_view host) const {

@@ -3,11 +3,17 @@
 #pragma once
 
 #include <boost/beast/http/fields.hpp>
+#include <boost/beast/http/message.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace thunderhead::gateway {
+
+// Says why a proxy in front could understand the request otherwise than this server (request
+// smuggling), or why its Host is malformed; nothing if it is plain. RFC 9112, 6.1 and 6.3.
+std::optional<std::string> FindAmbiguity(const boost::beast::http::request_header<>& request);
 
 class HttpPolicy {
  public:
@@ -20,6 +26,11 @@ class HttpPolicy {
   bool AllowsHost(std::string_view host) const;
   // True for an origin, other than the page's own, whose pages may call.
   bool AllowsOrigin(std::string_view origin) const;
+
+  // True for a request without an Origin header, from the page's own origin, or from an allowed
+  // one. A browser sends a simple POST without asking before, so each call is checked and not the
+  // preflight alone.
+  bool MayCall(std::string_view origin, std::string_view host) const;
 
   // True for the origin of the page that is served under `host`, the request's Host header.
   bool IsOwnOrigin(std::string_view origin, std::string_view host) const;

@@ -15,8 +15,7 @@ std::optional<UpgradeRefusal> FindUpgradeRefusal(const http::request<http::strin
                                                  const HttpPolicy& policy) {
   // Browsers let any page open a WebSocket to any server, and leave it to the server to refuse.
   const std::string_view origin = View(request[http::field::origin]);
-  if (!origin.empty() && !policy.IsOwnOrigin(origin, View(request[http::field::host])) &&
-      !policy.AllowsOrigin(origin)) {
+  if (!policy.MayCall(origin, View(request[http::field::host]))) {
     return UpgradeRefusal{
         http::status::forbidden,
         absl::StrCat("Pages of ", std::string(origin), " may not call this server; start it with ",

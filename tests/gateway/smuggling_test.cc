@@ -1,0 +1,94 @@
+// Requests that a proxy in front could understand otherwise than the gateway. What follows such a
+// request on its connection is never answered.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/gateway/echo_test.h"
+#include "tests/gateway/raw_client.h"
+
+namespace thunderhead::gateway::test {
+namespace {
+
+const std::string kPost = "POST /thunderhead.gateway.test.Echo/Say HTTP/1.1\r\n";
+const std::string kType = "Content-Type: application/grpc-web\r\n";
+const std::string kHost = "Host: localhost\r\n";
+const std::string kNext = "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
+
+class SmugglingTest : public EchoTest {
+ protected:
+  // Returns all that the server answers before it ends the connection.
+  std::string AnswersTo(const std::string& bytes) {
+    RawClient client(Site().Port());
+    client.SendUntilClosed(bytes);
+    client.ShutdownSending();
+    return client.ReadToEnd();
+  }
+
+  void ExpectRefused(const std::string& bytes) {
+    const std::string answers = AnswersTo(bytes + kNext);
+    EXPECT_TRUE(answers.starts_with("HTTP/1.1 400")) << bytes << answers;
+    EXPECT_EQ(answers.find("HTTP/1.", 1), std::string::npos) << "a second answer: " << answers;
+  }
+};
+
+TEST_F(SmugglingTest, TransferEncodingOtherThanChunkedIsRefused) {
+  for (const std::string encoding : {"xchunked", "identity", "chunked, identity", "gzip, chunked",
+                                     "\x0b"
+                                     "chunked",
+                                     "chunked, chunked", ""}) {
+    const std::string line = "Transfer-Encoding: " + encoding + "\r\n";
+    ExpectRefused(kPost + kHost + kType + line + "Content-Length: 5\r\n\r\n" + Frame(""));
+    ExpectRefused(kPost + kHost + kType + line + "\r\n" + Frame(""));
+    ExpectRefused("GET /healthz HTTP/1.1\r\n" + kHost + line + "\r\n");
+  }
+}
+
+TEST_F(SmugglingTest, TwoLengthsAreRefused) {
+  const std::string chunked = "Transfer-Encoding: chunked\r\n";
+  const std::string length = "Content-Length: 5\r\n";
+  ExpectRefused(kPost + kHost + kType + chunked + length + "\r\n0\r\n\r\n");
+  ExpectRefused(kPost + kHost + kType + chunked + chunked + "\r\n0\r\n\r\n");
+  ExpectRefused(kPost + kHost + kType + length + length + "\r\n" + Frame(""));
+  ExpectRefused(kPost + kHost + kType + length + "Content-Length: 6\r\n\r\n" + Frame(""));
+  ExpectRefused("GET /healthz HTTP/1.0\r\n" + kHost + "Connection: keep-alive\r\n" + chunked +
+                "\r\n0\r\n\r\n");
+}
+
+TEST_F(SmugglingTest, RepeatedHostAndOriginAreRefused) {
+  const std::string get = "GET /healthz HTTP/1.1\r\n";
+  ExpectRefused(get + kHost + "Host: evil.example\r\n\r\n");
+  ExpectRefused(get + kHost + kHost + "\r\n");
+  ExpectRefused(get + kHost + "Origin: http://localhost\r\nOrigin: http://evil.example\r\n\r\n");
+}
+
+TEST_F(SmugglingTest, APortThatIsNoNumberIsRefused) {
+  for (const std::string host :
+       {"localhost:80evil", "localhost:", "localhost:-1", "localhost:8080:1", "localhost:123456",
+        "[::1]:a", "localhost: 80", "example:localhost"}) {
+    ExpectRefused("GET /healthz HTTP/1.1\r\nHost: " + host + "\r\n\r\n");
+  }
+}
+
+TEST_F(SmugglingTest, APlainRequestIsAnswered) {
+  const std::string answers =
+      AnswersTo(kPost + "Host: localhost:8080\r\n" + kType +
+                "Transfer-Encoding: Chunked\r\n\r\n5\r\n" + Frame("") + "\r\n0\r\n\r\n" + kNext);
+  EXPECT_TRUE(answers.starts_with("HTTP/1.1 200")) << answers;
+  EXPECT_TRUE(answers.ends_with("ok\n")) << answers;
+}
+
+TEST_F(SmugglingTest, AForeignOriginMayNotPostEvenWithoutAPreflight) {
+  for (const std::string origin :
+       {"https://evil.example", "null", "http://localhost:9999", "file://"}) {
+    RawClient client(Site().Port());
+    const Response answer =
+        client.Ask("POST", "/thunderhead.gateway.test.Echo/Say",
+                   {{"Content-Type", "application/grpc-web"}, {"Origin", origin}}, Frame(""));
+    EXPECT_EQ(answer.result(), boost::beast::http::status::forbidden) << origin;
+  }
+  EXPECT_EQ(Record().started, 0);
+}
+
+}  // namespace
+}  // namespace thunderhead::gateway::test
