@@ -153,6 +153,28 @@ export async function atOneMoment(page, action) {
   }
 }
 
+const PICTURES_OF_MOVIE = /FetchRenderResult|RenderImage/;
+
+// Runs an action while no picture of a movie reaches the page, so that the movie cannot end.
+export async function holdingMovie(page, action) {
+  let release;
+  const released = new Promise((resolve) => {
+    release = resolve;
+  });
+  const hold = async (route) => {
+    await released;
+    // The call may have been given up.
+    await route.continue().catch(() => undefined);
+  };
+  await page.route(PICTURES_OF_MOVIE, hold);
+  try {
+    return await action();
+  } finally {
+    release();
+    await page.unroute(PICTURES_OF_MOVIE, hold);
+  }
+}
+
 // Puts the page's clock forward, as far as the page reads it.
 export async function passTime(page, ms) {
   await page.evaluate((passed) => {

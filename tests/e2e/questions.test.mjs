@@ -16,6 +16,7 @@ import {
   chooseQuality,
   dragBetween,
   grabStill,
+  holdingMovie,
   launchBrowser,
   listenForErrors,
   openPanel,
@@ -228,10 +229,12 @@ function lengthOf(file) {
 // pictures take depends on the machine.
 async function assertTwoHourMovie(how, ask) {
   const coming = page.waitForEvent("download");
-  await timed(`make a movie of the next two hours, by ${how}`, async () => {
-    await ask();
-    await page.getByTestId("keep-work").waitFor();
-  });
+  await holdingMovie(page, () =>
+    timed(`make a movie of the next two hours, by ${how}`, async () => {
+      await ask();
+      await page.getByTestId("keep-work").waitFor();
+    }),
+  );
   const download = await coming;
   assert.match(download.suggestedFilename(), /^run_00.*0600Z\.webm$/);
   const { pictures, seconds } = lengthOf(await download.path());

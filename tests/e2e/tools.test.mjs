@@ -14,6 +14,7 @@ import {
   chooseQuality,
   dragBetween,
   grabStill,
+  holdingMovie,
   launchBrowser,
   listenForErrors,
   openPanel,
@@ -523,9 +524,11 @@ for (const format of ["webm", "mp4"])
     await fillMovieForm(format);
     const codec = await saidCodec(format);
     const coming = page.waitForEvent("download");
-    await page.getByTestId("save-movie").click();
-    await page.keyboard.press("Escape");
-    await page.getByTestId("at-work").waitFor();
+    await holdingMovie(page, async () => {
+      await page.getByTestId("save-movie").click();
+      await page.keyboard.press("Escape");
+      await page.getByTestId("at-work").waitFor();
+    });
     await assertIsTheMovie(await coming, codec);
   });
 
@@ -533,12 +536,14 @@ test("a reload while a movie is made goes on with it, and the next does not make
   await fillMovieForm("webm");
   const downloads = [];
   page.on("download", (download) => downloads.push(download));
-  await page.getByTestId("save-movie").click();
-  await page.keyboard.press("Escape");
-  await until("a movie that outlives the page", rememberedMovie);
-  assert.equal(downloads.length, 0);
-  await page.reload();
-  await page.getByTestId("at-work").waitFor();
+  await holdingMovie(page, async () => {
+    await page.getByTestId("save-movie").click();
+    await page.keyboard.press("Escape");
+    await until("a movie that outlives the page", rememberedMovie);
+    assert.equal(downloads.length, 0);
+    await page.reload();
+    await page.getByTestId("at-work").waitFor();
+  });
   await until("the movie", async () => downloads.length > 0);
   await assertIsTheMovie(downloads[0]);
   assert.equal(await rememberedMovie(), undefined);
@@ -604,14 +609,14 @@ test("a movie that is cancelled is neither saved nor made again", async () => {
   const downloads = [];
   page.on("download", (download) => downloads.push(download));
   await openMovieForm();
-  await page.getByTestId("movie-size").selectOption("3840x2160");
-  await page.getByTestId("save-movie").click();
-  await until("the job", rememberedMovie);
-  await page.getByTestId("keep-cancel").click();
-  await page.getByTestId("keep-work").waitFor({ state: "detached" });
-  await until("the job to be given up", async () => (await rememberedMovie()) === undefined);
+  await holdingMovie(page, async () => {
+    await page.getByTestId("save-movie").click();
+    await until("the job", rememberedMovie);
+    await page.getByTestId("keep-cancel").click();
+    await page.getByTestId("keep-work").waitFor({ state: "detached" });
+    await until("the job to be given up", async () => (await rememberedMovie()) === undefined);
+  });
   assert.equal(await page.getByTestId("save-movie").isEnabled(), true);
-  await page.getByTestId("movie-size").selectOption("window");
   await key("Escape");
   await page.reload();
   await restedAndFits(page);
