@@ -14,8 +14,10 @@
 namespace thunderhead::desktop {
 namespace {
 
-// The interface takes a few frames to come to rest after an event.
+// The interface takes a few drawings to come to rest after an event: windows find their sizes, and
+// controls light up. Where a drawing takes long, there are as many.
 constexpr std::chrono::milliseconds kSettles{200};
+constexpr int kSettlingDraws = 6;
 constexpr std::chrono::milliseconds kFrame{16};
 // ImGui takes a press in one drawing and tells in a later one who has the keys.
 constexpr int kFocusDraws = 3;
@@ -76,7 +78,8 @@ App::App(Flags flags, std::vector<v1::Scene> views, std::unique_ptr<Window> wind
       ui_(session_, catalogue_),
       stage_(ui_),
       kiosk_(std::move(views), flags_.view_seconds),
-      status_(flags_.status_file),
+      status_(flags_.status_file,
+              flags_.status_always ? std::chrono::milliseconds(0) : StatusLog::kInterval),
       pointer_([this](const PointerInput::Motion& motion) { ui_.Move(motion); }),
       keys_(MakeKeyActions()) {
   ui_.choices.name = flags_.name;
@@ -145,7 +148,8 @@ void App::Wake() {
 }
 
 int App::Timeout_ms(Clock::time_point now) const {
-  const bool moves = flags_.turn_deg_per_s != 0.0 || ui_.playback.playing() || now < redraw_until_;
+  const bool moves =
+      flags_.turn_deg_per_s != 0.0 || ui_.playback.playing() || now < redraw_until_ || redraws_ > 0;
   constexpr int kIdle_ms = 500;
   return moves ? static_cast<int>(kFrame.count()) : kIdle_ms;
 }
@@ -160,12 +164,12 @@ void App::Run() {
     if (!TakeEvents(Timeout_ms(begin))) break;
     const auto now = Clock::now();
     stale |= ui_.Refresh();
-    if (std::exchange(ui_.texts_changed, false)) redraw_until_ = now + kSettles;
+    if (std::exchange(ui_.texts_changed, false)) Unsettle(now);
     Advance(now);
     stale |= TakePicture();
     // Once a second in any case: times and figures go on.
-    stale |= now < redraw_until_ || now - drawn_at > std::chrono::seconds(1);
-    if (window_->minimized()) settling_draws_ = 0;
+    stale |= now < redraw_until_ || redraws_ > 0 || now - drawn_at > std::chrono::seconds(1);
+    if (window_->minimized()) settling_draws_ = redraws_ = 0;
     if (settling_draws_ > 0) {
       --settling_draws_;
       stale = true;
@@ -175,9 +179,16 @@ void App::Run() {
       drawn_at = now;
       stale = false;
     }
-    status_.Write(ui_, kiosk_.shown(), now);
+    ui_.typing = FocusNow().text;
+    status_.Write(ui_, kiosk_.shown(), input_, Clock::now());
   }
   if (flags_.seconds > 0.0) PrintSummary();
+}
+
+void App::Unsettle(Clock::time_point now) {
+  redraw_until_ = now + kSettles;
+  redraws_ = kSettlingDraws;
+  input_.drawings = 0;
 }
 
 bool App::TakeEvents(int timeout_ms) {
@@ -203,7 +214,8 @@ bool App::TakeEvents(int timeout_ms) {
 
 bool App::TakeEvent(const SDL_Event& event) {
   window_->Take(event);
-  redraw_until_ = Clock::now() + kSettles;
+  Unsettle(Clock::now());
+  input_.Take(event);
   if (event.type == SDL_WINDOWEVENT) resized_at_ = Clock::now();
   if (flags_.kiosk) return false;
   pointer_.SetSize(window_->width(), window_->height());
@@ -285,6 +297,7 @@ void App::TellWindow(Clock::time_point now) {
 }
 
 void App::Draw() {
+  redraws_ = std::max(0, redraws_ - 1);
   ui_.scale = window_->scale();
   ui_.width = window_->width();
   ui_.height = window_->height();
@@ -301,6 +314,7 @@ void App::Draw() {
     DrawPanel(ui_, layout);
     ui_.choices.focuses_panel = false;
   });
+  ++input_.drawings;
 }
 
 void App::DrawKiosk() {

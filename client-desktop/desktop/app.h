@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "desktop/flags.h"
+#include "desktop/input_tally.h"
 #include "desktop/keyboard.h"
 #include "desktop/kiosk.h"
 #include "desktop/picture_texture.h"
@@ -48,6 +49,8 @@ class App final : private client::SessionListener {
   bool TakeEvents(int timeout_ms);
   bool TakeEvent(const SDL_Event& event);
   bool TakePicture();
+  // The interface comes to rest after an event or new texts.
+  void Unsettle(Clock::time_point now);
   void Advance(Clock::time_point now);
   void Turn(Clock::time_point now);
   void TellWindow(Clock::time_point now);
@@ -80,7 +83,9 @@ class App final : private client::SessionListener {
   KeyActions keys_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_live_ = Clock::now();
+  InputTally input_;
   Clock::time_point redraw_until_{};
+  int redraws_ = 0;  // due at least, however long they take
   // Drawings that are due before more input is taken: only they tell whether a text field has the
   // keys.
   int settling_draws_ = 0;

@@ -23,6 +23,8 @@ ParsedFlags ParseFlags(int argc, char** argv) {
                  "PEM file of who vouches for the server's certificate; without it nothing is "
                  "encrypted");
   app.add_option("--token-file", flags.access.token_file, "file with the access token");
+  app.add_flag("--allow-plaintext-token", flags.access.allow_plaintext_token,
+               "sends the token to another machine without encryption, where others may read it");
   app.add_flag("--full-screen", flags.full_screen, "begins in full screen");
   CLI::Option* const kiosk =
       app.add_flag("--kiosk", flags.kiosk, "for a wall: full screen, no controls, never gives up");
@@ -37,6 +39,8 @@ ParsedFlags ParseFlags(int argc, char** argv) {
   app.add_flag("--save-bytes", flags.saves_bytes, "takes video however fast the link is");
   app.add_option("--status", flags.status_file,
                  "file that gets a line of JSON a second; at 1 MiB it becomes FILE.1");
+  // Tests wait for states. An empty group hides the flag in the help.
+  app.add_flag("--status-always", flags.status_always)->group("");
   app.add_option("--seconds", flags.seconds, "ends after so long and prints what was shown")
       ->check(CLI::Range(1.0, 1e7));
   app.add_option("--turn", flags.turn_deg_per_s,

@@ -23,8 +23,9 @@ struct Flags {
   int height = 800;
   double scale = 0.0;  // of texts and controls; 0: as the monitor asks
   bool saves_bytes = false;
-  std::string status_file;  // one line of JSON a second; empty: none
-  double seconds = 0.0;     // to run; 0: until it is closed
+  std::string status_file;     // one line of JSON a second; empty: none
+  bool status_always = false;  // a line after every turn of the loop instead
+  double seconds = 0.0;        // to run; 0: until it is closed
   double turn_deg_per_s = 0.0;
 };
 

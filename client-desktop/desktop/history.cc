@@ -19,7 +19,7 @@ constexpr std::size_t kMaxSteps = 100;
 
 void History::Record(const v1::Scene& before, const v1::Scene& after, const std::string& subject,
                      TimePoint now) {
-  const bool goes_on = subject == subject_ && now - last_ < kMoment && !done_.empty();
+  const bool goes_on = subject == subject_ && IsOpen(now);
   subject_ = subject;
   last_ = now;
   undone_.clear();
@@ -34,6 +34,10 @@ void History::Record(const v1::Scene& before, const v1::Scene& after, const std:
   } else {
     step.push_back({before, after});
   }
+}
+
+bool History::IsOpen(TimePoint now) const {
+  return !subject_.empty() && now - last_ < kMoment && !done_.empty();
 }
 
 std::optional<History::Edit> History::Undo() {

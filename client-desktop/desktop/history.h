@@ -21,6 +21,8 @@ class History {
   // The scene was changed; `subject` names what of it.
   void Record(const v1::Scene& before, const v1::Scene& after, const std::string& subject,
               TimePoint now);
+  // True if another change of the last subject would belong to the last step.
+  bool IsOpen(TimePoint now) const;
   // The edit that takes the last step back, or makes it again; nothing where there is none.
   std::optional<Edit> Undo();
   std::optional<Edit> Redo();

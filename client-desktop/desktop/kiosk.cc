@@ -54,6 +54,7 @@ void Kiosk::Advance(Ui& ui, TimePoint now) {
   } else if (view.has_camera()) {
     if (!ui.session.ShowCamera(view.camera())) return;
   }
+  ++ui.edits;
   shown_ = next;
   asked_at_ = shown_at_ = now;
   shown_in_ = state.joined_count;

@@ -38,6 +38,44 @@ const char* NameOf(client::Link link) {
   return "";
 }
 
+const char* NameOf(Tool tool) {
+  switch (tool) {
+    case Tool::kNone:
+      return "";
+    case Tool::kCamera:
+      return "camera";
+    case Tool::kTime:
+      return "time";
+    case Tool::kLight:
+      return "light";
+    case Tool::kLook:
+      return "look";
+    case Tool::kFields:
+      return "fields";
+    case Tool::kMarks:
+      return "marks";
+  }
+  return "";
+}
+
+const char* NameOf(Panel panel) {
+  switch (panel) {
+    case Panel::kNone:
+      return "";
+    case Panel::kStorms:
+      return "storms";
+    case Panel::kPeople:
+      return "people";
+    case Panel::kReadout:
+      return "figures";
+    case Panel::kDrawer:
+      return "settings";
+    case Panel::kHelp:
+      return "keys";
+  }
+  return "";
+}
+
 std::string JsonString(const std::string& text) {
   google::protobuf::Value value;
   value.set_string_value(text);
@@ -111,9 +149,9 @@ absl::Status StatusLog::CheckWritable(const std::string& path) {
       absl::StrCat("cannot write the file of --status, '", path, "': ", std::strerror(errno)));
 }
 
-void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_point now) {
-  constexpr std::chrono::milliseconds kInterval{1000};
-  if (!file_.is_open() || now - last_ < kInterval) return;
+void StatusLog::Write(const Ui& ui, int view, const InputTally& input,
+                      std::chrono::steady_clock::time_point now) {
+  if (!file_.is_open() || now - last_ < interval_) return;
   last_ = now;
   const View camera = ViewOf(ui);
   const auto& people = ui.state.presence.people();
@@ -123,8 +161,8 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
   // The viewers' key, for others to join by; never the presenter's.
   file_.Write(
       absl::StrFormat(
-          R"({"t_s":%.1f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
-          R"("viewer_key":"%s","storm":"%s","time_index":%d,"revision":%d,"shown_revision":%d,)"
+          R"({"t_s":%.3f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"
+          R"("viewer_key":"%s","storm":"%s","times":%d,"time_index":%d,"revision":%d,"shown_revision":%d,"image_scale":%.3f,"traced_paths":%d,)"
           R"("camera":"%s","azimuth_deg":%.2f,"x_m":%.1f,"y_m":%.1f,"sun_azimuth_deg":%.2f,"sun_elevation_deg":%.2f,)"
           R"("refined":%s,"error":%.4f,"error_measured":%s,"marks":%d,"pointers":%d,"view":%d,)",
           std::chrono::duration<double>(now - start_).count(), NameOf(ui.state.link),
@@ -133,12 +171,19 @@ void StatusLog::Write(const Ui& ui, int view, std::chrono::steady_clock::time_po
           JsonString(ui.state.notice), ui.state.joined_count,
           ui.state.Presents() ? "presenter" : "viewer", ui.state.Steers() ? "true" : "false",
           ui.state.looks_around ? "true" : "false", ui.state.presence.people_size(), asking,
-          ui.state.viewer_key, ui.state.scene.storm_id(), ui.time_index(), ui.state.scene_revision,
-          ui.frame.scene_revision(), camera.kind, camera.azimuth_deg, camera.x_m, camera.y_m,
-          ui.state.shown_sun.azimuth_deg(), ui.state.shown_sun.elevation_deg(),
+          ui.state.viewer_key, ui.state.scene.storm_id(), ui.time_count(), ui.time_index(),
+          ui.state.scene_revision, ui.frame.scene_revision(), accuracy.image_scale(),
+          ui.frame.modelled().traced_paths(), camera.kind, camera.azimuth_deg, camera.x_m,
+          camera.y_m, ui.state.shown_sun.azimuth_deg(), ui.state.shown_sun.elevation_deg(),
           ui.frame.refined() ? "true" : "false", accuracy.estimated_error(),
           accuracy.measured() ? "true" : "false", ui.state.marks.marks_size(),
           ui.state.pointers.pointers_size(), view) +
+      absl::StrFormat(
+          R"("tool":"%s","panel":"%s","typing":%s,"edits":%d,"undo_step_open":%s,"keys":%d,"buttons":%d,"notches":%d,)"
+          R"("pointer_x":%d,"pointer_y":%d,"drawings":%d,)",
+          NameOf(ui.choices.tool), NameOf(ui.choices.panel), ui.typing ? "true" : "false", ui.edits,
+          ui.history.IsOpen(now) ? "true" : "false", input.keys, input.buttons, input.notches,
+          input.pointer_x, input.pointer_y, input.drawings) +
       absl::StrFormat(
           R"("encoding":"%s","width_px":%d,"height_px":%d,"frames":%d,"frames_per_s":%.2f,)"
           R"("latency_ms":%.1f,"bytes_per_s":%.0f,"decode_ms":%.2f,"dropped":%d,"scale":%.2f,)"

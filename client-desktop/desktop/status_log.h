@@ -8,6 +8,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "desktop/input_tally.h"
 #include "desktop/ui.h"
 
 namespace thunderhead::desktop {
@@ -31,16 +32,21 @@ class RotatedFile {
 class StatusLog {
  public:
   static constexpr std::int64_t kMaxBytes = 1 << 20;
+  static constexpr std::chrono::milliseconds kInterval{1000};
 
   // INVALID_ARGUMENT names the path and why it cannot be written to.
   static absl::Status CheckWritable(const std::string& path);
-  // An empty path writes nothing.
-  explicit StatusLog(const std::string& path) : file_(path, kMaxBytes) {}
+  // An empty path writes nothing. Calls of Write() within `interval` of the last line write
+  // nothing.
+  StatusLog(const std::string& path, std::chrono::milliseconds interval)
+      : file_(path, kMaxBytes), interval_(interval) {}
 
-  void Write(const Ui& ui, int view, std::chrono::steady_clock::time_point now);
+  void Write(const Ui& ui, int view, const InputTally& input,
+             std::chrono::steady_clock::time_point now);
 
  private:
   RotatedFile file_;
+  const std::chrono::milliseconds interval_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point last_{};
 };

@@ -17,6 +17,7 @@ void Ui::Edit(const std::string& subject, client::SceneSync::Edit edit, Recordin
   v1::Scene after = before;
   edit(after);
   if (MessageDifferencer::Equals(before, after) || !session.Edit(std::move(edit))) return;
+  ++edits;
   if (recording == Recording::kRecorded) history.Record(before, after, subject, Clock::now());
   // Refresh() would take another storm for somebody else's choice.
   state.scene = std::move(after);
@@ -32,7 +33,7 @@ void Ui::ShowCamera(const v1::Camera& camera) {
   if (state.Steers()) {
     return Edit("camera", [camera](v1::Scene& scene) { *scene.mutable_camera() = camera; });
   }
-  session.ShowCamera(camera);
+  if (session.ShowCamera(camera)) ++edits;
   Refresh();
 }
 

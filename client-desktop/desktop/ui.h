@@ -36,6 +36,8 @@ struct Ui {
   std::string failure;   // of the last picture that could not be decoded
 
   Choices choices;
+  bool typing = false;  // a text field has the keyboard
+  int edits = 0;        // how often this window has changed the scene or its own view
   client::Playback playback;
   History history;
   std::function<void()> toggle_full_screen;

@@ -1,6 +1,7 @@
-// Starts the native client, and reads what it says of itself in its status file.
+// Starts the native client, sends it real input, and reads its state from its status file. The file gets a line after every turn
+// of the window's loop, so that tests wait for states and never for a while.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { closeSync, existsSync, fstatSync, mkdtempSync, openSync, readSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
@@ -8,13 +9,47 @@ import { fileURLToPath } from "node:url";
 
 const ROOT = fileURLToPath(new URL("../../", import.meta.url));
 export const PROGRAM = process.env.THUNDERHEAD_DESKTOP ?? `${ROOT}build/desktop/bin/thunderhead-desktop`;
-const PATIENCE_MS = 60_000;
+// The longest wait before a test counts as hung. It is no requirement on speed.
+export const HANG_LIMIT_MS = 600_000;
+const POLL_MS = 20;
+// The interface is at rest after so many drawings: kSettlingDraws in desktop/app.cc.
+const SETTLING_DRAWINGS = 6;
+// A line of the status file is shorter.
+const MOST_LINE_BYTES = 8192;
+
+// The last line of a file that is complete; undefined where there is none.
+function lastLine(path) {
+  let file;
+  try {
+    file = openSync(path, "r");
+  } catch {
+    return undefined; // not yet begun, or just renamed
+  }
+  try {
+    const { size } = fstatSync(file);
+    const tail = Buffer.alloc(Math.min(size, 2 * MOST_LINE_BYTES));
+    const read = readSync(file, tail, 0, tail.length, size - tail.length);
+    return tail.toString("utf8", 0, read).split("\n").slice(0, -1).at(-1);
+  } finally {
+    closeSync(file);
+  }
+}
+
+// What its last input and texts changed is on the screen.
+export const drawn = (status) => status.drawings >= SETTLING_DRAWINGS;
+
+// A full picture of the newest scene is on the screen.
+export const rests = (status) =>
+  status.link === "live" && status.refined && status.revision > 0 && status.shown_revision >= status.revision;
+
+// Like `rests`, and the controls know the storm's fields and times, which come on their own.
+export const ready = (status) => rests(status) && status.times > 0 && status.people > 0 && drawn(status);
 
 export function startDesktop(display, port, flags = []) {
   if (!existsSync(PROGRAM)) throw new Error(`no program at ${PROGRAM}; run ./dev build desktop`);
   const folder = mkdtempSync(join(tmpdir(), "thunderhead-desktop-"));
   const file = join(folder, "status");
-  const child = spawn(PROGRAM, [`127.0.0.1:${port}`, "--status", file, ...flags], { env: display.env });
+  const child = spawn(PROGRAM, [`127.0.0.1:${port}`, "--status", file, "--status-always", ...flags], { env: display.env });
   let said = "";
   for (const stream of [child.stdout, child.stderr]) {
     stream.on("data", (text) => {
@@ -22,29 +57,70 @@ export function startDesktop(display, port, flags = []) {
     });
   }
   const ended = new Promise((resolve) => child.once("exit", resolve));
-  // Just after it was begun anew it is empty.
-  const lines = () => (existsSync(file) ? readFileSync(file, "utf8").split("\n").slice(0, -1) : []);
-  const status = () => JSON.parse(lines().at(-1) ?? "{}");
-  return {
+  // Just after the file was begun anew the newest line is the last one of the file before.
+  const status = () => JSON.parse(lastLine(file) ?? lastLine(`${file}.1`) ?? "{}");
+  const desktop = {
     child,
     ended,
     status,
     said: () => said,
     // Waits until its status is as wanted, and returns it.
-    async until(what, holds, patienceMs = PATIENCE_MS) {
-      const deadline = Date.now() + patienceMs;
+    async until(what, holds) {
+      const deadline = Date.now() + HANG_LIMIT_MS;
       for (;;) {
         const now = status();
         if (now.t_s !== undefined && holds(now)) return now;
         if (child.exitCode !== null) throw new Error(`the program ended with ${child.exitCode}:\n${said}`);
         if (Date.now() > deadline) throw new Error(`never came: ${what}; ${JSON.stringify(now)}`);
-        await sleep(100);
+        await sleep(POLL_MS);
       }
     },
-    // The status after all that was done to it before this call: the line that comes next may have been begun before.
-    async settled() {
-      const count = lines().length;
-      return this.until("two more lines", () => lines().length >= count + 2);
+    // Sends input by `act`, waits until the window has taken it all and drawn what it changed, and returns the status then.
+    // `keys` counts the keys that are released, without Ctrl and the like, `buttons` those pressed or released, and `notches`
+    // those of the wheel. The pointer comes to `at`.
+    async input({ keys = 0, buttons = 0, notches = 0, at }, act) {
+      const before = status();
+      act();
+      const taken = (now) =>
+        now.keys >= before.keys + keys &&
+        now.buttons >= before.buttons + buttons &&
+        now.notches >= before.notches + notches &&
+        (at === undefined || (now.pointer_x === at.x && now.pointer_y === at.y));
+      return this.until("the input", (now) => taken(now) && drawn(now));
+    },
+    key(...keys) {
+      return this.input({ keys: keys.length }, () => display.xdotool("key", ...keys));
+    },
+    move(x, y) {
+      return this.input({ at: { x, y } }, () => display.xdotool("mousemove", x, y));
+    },
+    // All at once: the window draws between a press and its release, however fast they come.
+    click(x, y) {
+      return this.input({ at: { x, y }, buttons: 2 }, () => display.xdotool("mousemove", x, y, "click", 1));
+    },
+    // By the left button, in steps.
+    async drag(from, to, steps = 12) {
+      await this.input({ at: from, buttons: 1 }, () => display.xdotool("mousemove", from.x, from.y, "mousedown", 1));
+      const at = (a, b, step) => Math.round(a + ((b - a) * step) / steps);
+      const path = Array.from({ length: steps }, (_, i) => ["mousemove", at(from.x, to.x, i + 1), at(from.y, to.y, i + 1)]);
+      return this.input({ at: to, buttons: 1 }, () => display.xdotool(...path.flat(), "mouseup", 1));
+    },
+    // One notch of the wheel, up.
+    wheel() {
+      return this.input({ notches: 1 }, () => display.xdotool("click", 4));
+    },
+    // Types into the field that has the keyboard.
+    type(text) {
+      return this.input({ keys: text.length }, () => display.xdotool("type", "--", text));
+    },
+    // Types into a field with a value.
+    async fill(x, y, text) {
+      await this.click(x, y);
+      return this.input({ keys: text.length + 2 }, () => {
+        display.xdotool("key", "ctrl+a");
+        display.xdotool("type", "--", text);
+        display.xdotool("key", "Return");
+      });
     },
     async stop() {
       if (child.exitCode === null && child.signalCode === null) child.kill();
@@ -52,8 +128,5 @@ export function startDesktop(display, port, flags = []) {
       rmSync(folder, { recursive: true, force: true });
     },
   };
+  return desktop;
 }
-
-// A full picture of the newest scene is on the screen.
-export const rests = (status) =>
-  status.link === "live" && status.refined && status.revision > 0 && status.shown_revision >= status.revision;

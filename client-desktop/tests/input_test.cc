@@ -3,9 +3,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <tuple>
+#include <utility>
 
 #include "desktop/field_colors.h"
 #include "desktop/history.h"
+#include "desktop/input_tally.h"
 #include "desktop/keyboard.h"
 #include "desktop/kiosk.h"
 #include "desktop/panels/panels.h"
@@ -444,6 +447,34 @@ TEST(Scale, IsThatOfTheMonitorInQuartersWhereThatMakesSense) {
 TEST(Scale, IsOneWhereTheDesktopScalesTheWindowItself) {
   EXPECT_EQ(ScaleOfMonitor(192.0F, 2.0F), 1.0F);
   EXPECT_EQ(ScaleOfMonitor(144.0F, 1.5F), 1.0F);
+}
+
+TEST(InputTally, CountsWhatTheWindowHasTaken) {
+  InputTally tally;
+  const auto take = [&tally](Uint32 type, SDL_Scancode key = SDL_SCANCODE_UNKNOWN) {
+    SDL_Event event{};
+    event.type = type;
+    if (key != SDL_SCANCODE_UNKNOWN) event.key.keysym.scancode = key;
+    tally.Take(event);
+  };
+  for (const SDL_Scancode key : {SDL_SCANCODE_LCTRL, SDL_SCANCODE_Z, SDL_SCANCODE_RGUI}) {
+    take(SDL_KEYDOWN, key);
+    take(SDL_KEYUP, key);
+  }
+  EXPECT_EQ(tally.keys, 1) << "modifiers do not count";
+  take(SDL_MOUSEBUTTONDOWN);
+  take(SDL_MOUSEBUTTONUP);
+  EXPECT_EQ(tally.buttons, 2);
+  take(SDL_MOUSEWHEEL);
+  EXPECT_EQ(tally.notches, 1);
+  SDL_Event motion{};
+  motion.type = SDL_MOUSEMOTION;
+  std::tie(motion.motion.x, motion.motion.y) = std::pair(30, 40);
+  tally.Take(motion);
+  EXPECT_EQ(std::pair(tally.pointer_x, tally.pointer_y), std::pair(30, 40));
+  take(SDL_WINDOWEVENT);
+  take(SDL_USEREVENT);
+  EXPECT_EQ(tally.keys + tally.buttons + tally.notches, 4);
 }
 
 TEST(StatusFile, ThatCannotBeWrittenIsNamed) {

@@ -1,17 +1,14 @@
 // The window's panels, pressed by real input before the real server; a browser as the other side of a session.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { setTimeout as sleep } from "node:timers/promises";
 import { launchBrowser, rested, until } from "../../tests/e2e/driver.mjs";
 import { freePort, startServer } from "../../tests/e2e/server_process.mjs";
-import { rests, startDesktop } from "./desktop_process.mjs";
+import { drawn, HANG_LIMIT_MS, ready, rests, startDesktop } from "./desktop_process.mjs";
 import { accentIn, difference, eventually, meanColor, pixelsLike, region } from "./pixels.mjs";
 import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 1280, height: 800 };
 const WINDOW = ["--width", String(SIZE.width), "--height", String(SIZE.height), "--scale", "1"];
-
-const PAGE_PATIENCE_MS = 30_000;
 
 let display;
 let server;
@@ -23,7 +20,7 @@ before(async () => {
   serverFlags = { httpPort: await freePort(), grpcPort: await freePort() };
   server = await startServer(serverFlags);
   desktop = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--name", "Wall"]);
-  await desktop.until("the first picture", rests);
+  await desktop.until("the first picture", ready);
 });
 
 after(async () => {
@@ -44,27 +41,22 @@ test("false colours are picked where the picture shows them", async () => {
   const COLOR = { x: 120, y: 124, width: 14, height: 14 }; // of the first field
   const STORM = { x: 560, y: 330, width: 400, height: 200 };
   const shownColor = () => meanColor(region(display.pixels(), COLOR));
-  display.key("f");
-  await sleep(500);
+  await desktop.key("f");
   assert.ok(shownColor()[0] < 200, "a colour is offered that the picture does not show");
-  display.key("k");
-  await sleep(500);
-  await change("false colours", () => display.click(127, 230));
-  display.key("f");
+  await desktop.key("k");
+  await change("false colours", () => desktop.click(127, 230));
+  await desktop.key("f");
   await eventually("the default, orange, is not shown", () => shownColor()[0] > 215 && shownColor()[2] < 20);
   const before = region(display.pixels(), STORM);
-  await display.click(127, 131);
-  await sleep(500);
+  await desktop.click(127, 131);
   display.screenshot("picker");
   // Blue on the picker's bar of hues.
-  await change("a blue cloud", () => display.click(438, 360));
-  display.key("Escape");
-  await sleep(500);
+  await change("a blue cloud", () => desktop.click(438, 360));
+  await desktop.key("Escape");
   assert.ok(difference(before, region(display.pixels(), STORM)) > 0.02, "the cloud has the colour that it had");
-  display.key("f");
+  await desktop.key("f");
   await eventually("the colour in the panel is not blue", () => shownColor()[0] < 20 && shownColor()[2] > 215);
-  display.key("Escape");
-  display.key("Escape");
+  await desktop.key("Escape", "Escape");
 });
 
 // The bar about who steers, above the time line.
@@ -79,49 +71,44 @@ test("rules, control and the pointer reach a viewer's page", async () => {
     await desktop.until("two people", (now) => now.people === 2);
     const ask = page.getByTestId("ask-control");
 
-    display.key("h");
+    await desktop.key("h");
     // The check mark of the first rule, below two people.
     const mark = () => pixelsLike(region(display.pixels(), { x: 884, y: 272, width: 24, height: 24 }), [255, 209, 107]);
     await eventually("the rules are not shown", () => mark() > 20);
     display.screenshot("rules");
     // "Nobody may ask to steer", below two people.
-    await display.click(895, 318);
-    await until("control is locked on the page", () => ask.isDisabled(), PAGE_PATIENCE_MS);
-    await display.click(895, 318);
-    await until("control is free on the page", () => ask.isEnabled(), PAGE_PATIENCE_MS);
-    display.key("Escape");
+    await desktop.click(895, 318);
+    await until("control is locked on the page", () => ask.isDisabled(), HANG_LIMIT_MS);
+    await desktop.click(895, 318);
+    await until("control is free on the page", () => ask.isEnabled(), HANG_LIMIT_MS);
+    await desktop.key("Escape");
 
     await ask.click();
-    await desktop.until("a request", (now) => now.asking === 1);
-    await sleep(1000);
+    await desktop.until("a request", (now) => now.asking === 1 && drawn(now));
     // "No" is right of the button that gives.
     const refused = accentIn(display.pixels(), SESSION_BAR);
-    await display.click(refused.right + 24, refused.y);
+    await desktop.click(refused.right + 24, refused.y);
     await desktop.until("the request refused", (now) => now.asking === 0 && now.steers);
-    await until("the page may ask again", () => ask.isEnabled(), PAGE_PATIENCE_MS);
+    await until("the page may ask again", () => ask.isEnabled(), HANG_LIMIT_MS);
 
     // Unasked: who was refused must wait before asking again.
-    display.key("h");
-    await sleep(500);
-    await display.click(1186, 224);
+    await desktop.key("h");
+    await desktop.click(1186, 224);
     await desktop.until("control given", (now) => !now.steers);
-    display.key("Escape");
-    await sleep(1000);
+    await desktop.key("Escape");
     const taken = accentIn(display.pixels(), SESSION_BAR);
-    await display.click(taken.x, taken.y);
+    await desktop.click(taken.x, taken.y);
     await desktop.until("control taken back", (now) => now.steers);
 
-    display.key("d");
-    await sleep(500);
+    await desktop.key("d");
     // The last of three segments: the pointer.
-    await display.click(366, 128);
-    display.move(700, 300);
-    display.move(705, 310);
+    await desktop.click(366, 128);
+    await desktop.move(700, 300);
+    await desktop.move(705, 310);
     const pointers = () => page.getByTestId("pointer").count();
-    await until("the window's pointer on the page", async () => (await pointers()) === 1, PAGE_PATIENCE_MS);
-    display.key("Escape");
-    display.key("Escape");
-    await until("the pointer put away", async () => (await pointers()) === 0, PAGE_PATIENCE_MS);
+    await until("the window's pointer on the page", async () => (await pointers()) === 1, HANG_LIMIT_MS);
+    await desktop.key("Escape", "Escape");
+    await until("the pointer put away", async () => (await pointers()) === 0, HANG_LIMIT_MS);
   } finally {
     await browser.close();
   }
@@ -132,15 +119,14 @@ test("a notice lies beside an open panel", async () => {
   const BESIDE = { x: 420, y: 74, width: 436, height: 120 };
   const BAD = [255, 140, 122];
   const notices = (area) => pixelsLike(region(display.pixels(), area), BAD);
-  display.key("h");
-  await sleep(500);
+  await desktop.key("h");
   assert.equal(notices(BESIDE), 0);
   await server.stop("SIGKILL");
   await desktop.until("the loss", (now) => now.link === "lost");
   await eventually("no notice beside the panel", () => notices(BESIDE) > 100);
   display.screenshot("notice_beside_panel");
   assert.equal(notices(PANEL), 0, "the notice lies over the panel");
-  display.key("Escape");
+  await desktop.key("Escape");
   server = await startServer(serverFlags);
   await desktop.until("back", (now) => now.link === "live");
 });
@@ -150,23 +136,20 @@ test("at a scale of 2 panels lie beside each other, and presses hit", async () =
   const large = await startDisplay(1600, 1000);
   try {
     desktop = startDesktop(large, serverFlags.grpcPort, ["--width", "1600", "--height", "1000", "--scale", "2"]);
-    await desktop.until("the first picture", rests);
+    await desktop.until("the first picture", ready);
     // "Look" of the rail, then its second check box, then the storm's people.
-    await large.click(2 * 50, 2 * 245);
+    await desktop.click(2 * 50, 2 * 245);
     const { revision } = desktop.status();
-    await large.click(2 * 127, 2 * 230);
+    await desktop.click(2 * 127, 2 * 230);
     await desktop.until("false colours", (now) => rests(now) && now.revision > revision);
-    large.key("h");
-    await sleep(700);
+    await desktop.key("h");
     large.screenshot("scale_2");
     // The panel begins with its margin after the tool, whose right edge is the gap between them.
     const gap = { x: 2 * (100 + 306), y: 2 * 74, width: 2 * 10, height: 2 * 200 };
     assert.ok(pixelsLike(region(large.pixels(), gap), [255, 255, 255], 60) < 40, "text lies between the panels");
     const before = desktop.status();
-    await large.drag({ x: 900, y: 500 }, { x: 1000, y: 500 });
-    const after = await desktop.settled();
-    assert.equal(after.revision, before.revision, "a drag over the panel changed the scene");
-    assert.equal(after.azimuth_deg, before.azimuth_deg, "a drag over the panel turned the camera");
+    const after = await desktop.drag({ x: 900, y: 500 }, { x: 1000, y: 500 });
+    assert.equal(after.edits, before.edits, "a drag over the panel changed the scene or turned the camera");
   } finally {
     await desktop.stop();
     await large.stop();
@@ -194,11 +177,11 @@ test("W makes the window full screen, and a window again", async () => {
     desktop = startDesktop(managed, serverFlags.grpcPort, SMALL);
     await desktop.until("a picture of the window's size", sized(800, 500));
     // Keys go to the window below the pointer.
-    managed.move(400, 300);
-    managed.key("w");
+    managed.xdotool("mousemove", 400, 300);
+    managed.xdotool("key", "w");
     await desktop.until("a picture of the display's size", sized(SIZE.width, SIZE.height));
     managed.screenshot("full_screen_by_key");
-    managed.key("w");
+    managed.xdotool("key", "w");
     await desktop.until("a picture of the window's size again", sized(800, 500));
   } finally {
     await desktop.stop();
@@ -210,12 +193,12 @@ test("without --scale texts are as large as the monitor is fine", async () => {
   const fine = await startDisplay(1600, 1000, { dpi: 192 });
   try {
     desktop = startDesktop(fine, serverFlags.grpcPort, ["--width", "1600", "--height", "1000"]);
-    const { scale } = await desktop.until("the first picture", rests);
+    const { scale } = await desktop.until("the first picture", ready);
     assert.equal(scale, 2);
     // "Look" of the rail is where it is at that scale.
     const TITLE = { x: 2 * 110, y: 2 * 82, width: 2 * 60, height: 2 * 24 };
     const before = region(fine.pixels(), TITLE);
-    await fine.click(2 * 50, 2 * 245);
+    await desktop.click(2 * 50, 2 * 245);
     await eventually("no panel at twice the place", () => difference(before, region(fine.pixels(), TITLE)) > 0.08);
     fine.screenshot("scale_of_monitor");
   } finally {
@@ -237,22 +220,22 @@ test("several who ask to steer are answered one by one, in a small window too", 
   const viewers = [];
   try {
     desktop = startDesktop(small, serverFlags.grpcPort, [...shows(800, 500), "--name", "Wall"]);
-    const { viewer_key } = await desktop.until("the first picture", rests);
+    const { viewer_key } = await desktop.until("the first picture", ready);
     for (const name of NAMES) {
       const viewer = await startDisplay(640, 400);
       const flags = ["--key", viewer_key, "--name", name, ...shows(640, 400)];
-      viewers.push({ viewer, window: startDesktop(viewer, serverFlags.grpcPort, flags) });
-      await desktop.until(`${name} there`, (now) => now.people === viewers.length + 1);
-      await viewer.click(ASK.x, ASK.y);
+      const window = startDesktop(viewer, serverFlags.grpcPort, flags);
+      viewers.push({ viewer, window });
+      await window.until(`${name} there`, (now) => ready(now) && now.people === viewers.length + 1);
+      await window.click(ASK.x, ASK.y);
       await desktop.until(`${name} asking`, (now) => now.asking === viewers.length);
     }
-    await sleep(1000);
+    await desktop.until("all who ask, drawn", drawn);
     small.screenshot("several_ask");
     const rail = { x: 12, y: 250, width: 76, height: 110 };
     assert.equal(pixelsLike(region(small.pixels(), rail), ACCENT), 0, "a button lies over the tools");
     // Those who do not fit are among the people.
-    await small.click(...MORE);
-    await sleep(700);
+    await desktop.click(...MORE);
     small.screenshot("several_ask_and_people");
     const panel = { x: 418, y: 74, width: 370, height: 326 };
     assert.ok(pixelsLike(region(small.pixels(), panel), [255, 255, 255], 40) > 500, "the people are not shown");

@@ -1,6 +1,9 @@
 // Measures of a screen's pixels, and buttons found by their colour.
 import assert from "node:assert/strict";
 import { setTimeout as sleep } from "node:timers/promises";
+import { HANG_LIMIT_MS } from "./desktop_process.mjs";
+
+const POLL_MS = 50;
 
 export const brightness = ({ rgb }) => rgb.reduce((sum, value) => sum + value, 0) / rgb.length;
 // The share of pixels that differ clearly.
@@ -31,11 +34,11 @@ export function accentIn(pixels, { x, y, width, height }) {
   return { x: mean(0), y: mean(1), right: Math.max(...found.map(([column]) => column)) };
 }
 
-export async function eventually(what, holds, { seconds = 15 } = {}) {
-  const deadline = Date.now() + 1000 * seconds;
+export async function eventually(what, holds) {
+  const deadline = Date.now() + HANG_LIMIT_MS;
   while (!(await holds())) {
     assert.ok(Date.now() < deadline, what);
-    await sleep(100);
+    await sleep(POLL_MS);
   }
 }
 

@@ -128,9 +128,13 @@ class HistoryTest : public ::testing::Test {
 TEST_F(HistoryTest, OneDragIsOneStep) {
   ChangeTime(4);
   ChangeTime(5);
+  EXPECT_TRUE(history.IsOpen(now));
   Pause();
+  EXPECT_FALSE(history.IsOpen(now));
   ChangeTime(6);
+  EXPECT_TRUE(history.IsOpen(now));
   EXPECT_TRUE(Undo());
+  EXPECT_FALSE(history.IsOpen(now)) << "what comes after an undo is another step";
   EXPECT_EQ(scene.time_index(), 5U);
   EXPECT_TRUE(Undo());
   EXPECT_TRUE(MessageDifferencer::Equals(scene, AScene()));

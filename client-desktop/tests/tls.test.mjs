@@ -8,7 +8,7 @@ import { after, afterEach, before, test } from "node:test";
 import { digest, writeCertificate } from "../../tests/e2e/credentials.mjs";
 import { freePort, startServer } from "../../tests/e2e/server_process.mjs";
 import { throttledLink } from "../../tests/e2e/throttled_link.mjs";
-import { PROGRAM, rests, startDesktop } from "./desktop_process.mjs";
+import { HANG_LIMIT_MS, PROGRAM, rests, startDesktop } from "./desktop_process.mjs";
 import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 640, height: 400 };
@@ -119,7 +119,7 @@ for (const [name, { flags, link, reason }] of Object.entries(refusals)) {
 test("a file that holds no certificate ends the program with one line", () => {
   const flags = [`localhost:${serverFlags.grpcPort}`, "--tls-ca", file("tokens")];
   assert.throws(
-    () => execFileSync(PROGRAM, flags, { env: display.env, stdio: "pipe", encoding: "utf8", timeout: 20_000 }),
+    () => execFileSync(PROGRAM, flags, { env: display.env, stdio: "pipe", encoding: "utf8", timeout: HANG_LIMIT_MS }),
     ({ status, stderr }) => status > 0 && stderr.trim().split("\n").length === 1 && /holds no certificate in PEM/.test(stderr),
   );
 });

@@ -1,11 +1,11 @@
 // The state behind the panels, with a session of a service in this process.
 #include "desktop/ui.h"
 
-#include <thread>
-
 #include "client-cpp/tests/fake_service.h"
 #include "desktop/kiosk.h"
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::desktop {
 namespace {
@@ -35,13 +35,10 @@ class UiTest : public ::testing::Test {
     for (int i = 0; i < 6; ++i) ui.storms.storm.add_times();
   }
   bool Await(const std::function<bool()>& wanted) {
-    const auto deadline = std::chrono::steady_clock::now() + client::testing::kPatience;
-    while (!wanted()) {
-      if (std::chrono::steady_clock::now() > deadline) return false;
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return thunderhead::testing::WaitFor([&] {
       ui.Refresh();
-    }
-    return true;
+      return wanted();
+    });
   }
   void TurnSun() {
     ui.Edit("sun", [](v1::Scene& scene) { scene.mutable_sun()->set_azimuth_deg(10.0F); });
@@ -91,6 +88,29 @@ TEST_F(UiTest, AViewOfAKioskIsShownForItsTimeOnceItsPictureIsThere) {
   EXPECT_EQ(after(119), 1) << "it may still come";
   EXPECT_EQ(after(9), 1);
   EXPECT_EQ(after(1), 0) << "it cannot be drawn";
+}
+
+TEST_F(UiTest, AKioskWarnsOfALossThatLasts) {
+  const Kiosk kiosk({}, 10.0);
+  const Kiosk::TimePoint live{};
+  const auto warning_after = [&](auto past) { return kiosk.Warning(ui, live, live + past); };
+  EXPECT_EQ(warning_after(std::chrono::hours(1)), "") << "the link is live";
+  ui.state.link = client::Link::kLost;
+  ui.state.reason = "The server cannot be reached";
+  EXPECT_EQ(warning_after(std::chrono::milliseconds(9'999)), "") << "it may come back at once";
+  EXPECT_EQ(warning_after(std::chrono::seconds(10)),
+            "No connection to the server for less than a minute: this picture is old. "
+            "The server cannot be reached");
+  EXPECT_THAT(warning_after(std::chrono::minutes(3)), ::testing::HasSubstr("for 3 min"));
+}
+
+TEST_F(UiTest, ChangesOfTheSceneAreCounted) {
+  const int before = ui.edits;
+  TurnSun();
+  TurnSun();
+  EXPECT_EQ(ui.edits, before + 1) << "the second changes nothing";
+  ui.Undo();
+  EXPECT_EQ(ui.edits, before + 2);
 }
 
 TEST_F(UiTest, PlayFromTheStartIsNoStepEither) {

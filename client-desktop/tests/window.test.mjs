@@ -4,11 +4,10 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { setTimeout as sleep } from "node:timers/promises";
 import { canvasData, changing, dragBetween, launchBrowser, openTool, rested, until } from "../../tests/e2e/driver.mjs";
 import { freePort, startServer } from "../../tests/e2e/server_process.mjs";
-import { rests, startDesktop } from "./desktop_process.mjs";
-import { accentIn, brightness, difference, eventually, region } from "./pixels.mjs";
+import { drawn, ready, rests, startDesktop } from "./desktop_process.mjs";
+import { accentIn, brightness, difference, region } from "./pixels.mjs";
 import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 1280, height: 800 };
@@ -32,7 +31,7 @@ before(async () => {
   serverFlags = { httpPort: await freePort(), grpcPort: await freePort(), state };
   server = await startServer(serverFlags);
   desktop = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--name", "Wall"]);
-  await desktop.until("the first picture", rests);
+  await desktop.until("the first picture", ready);
 });
 
 after(async () => {
@@ -55,71 +54,69 @@ test("it opens a session of its own, steers it and fills the window with a storm
 test("a drag turns the camera, the wheel comes nearer, keys do the same", async () => {
   const before = desktop.status().azimuth_deg;
   const pictureBefore = display.pixels();
-  await display.drag(MIDDLE, { x: MIDDLE.x + 200, y: MIDDLE.y });
+  await desktop.drag(MIDDLE, { x: MIDDLE.x + 200, y: MIDDLE.y });
   // 200 of 800 pixels are a quarter of half a turn.
   const dragged = await desktop.until("a turned picture", (now) => rests(now) && apart(now.azimuth_deg, before + 45) < 1);
   assert.ok(difference(pictureBefore, display.pixels()) > 0.05, "the picture is the same");
-  // Edits within 0.7 s of each other would be undone as one.
-  await sleep(800);
-  display.key("Right");
+  // Edits that follow one another within a moment would be undone as one.
+  await desktop.until("the end of the drag's step", (now) => !now.undo_step_open);
+  await desktop.key("Right");
   await desktop.until("turned by a key", (now) => rests(now) && apart(now.azimuth_deg, dragged.azimuth_deg + 3) < 0.5);
-  const revision = desktop.status().revision;
-  await sleep(800);
-  display.xdotool("click", 4);
+  const { revision } = await desktop.until("the end of the key's step", (now) => !now.undo_step_open);
+  await desktop.wheel();
   await desktop.until("a nearer picture", (now) => rests(now) && now.revision > revision);
-  display.key("ctrl+z");
-  display.key("ctrl+z");
+  await desktop.key("ctrl+z", "ctrl+z");
   await desktop.until("undone", (now) => rests(now) && apart(now.azimuth_deg, dragged.azimuth_deg) < 0.5);
 });
 
 test("times are stepped and played by keys", async () => {
   const { time_index: last } = desktop.status();
-  display.key("comma");
+  await desktop.key("comma");
   await desktop.until("the time before", (now) => rests(now) && now.time_index === last - 1);
-  display.key("space");
+  await desktop.key("space");
   await desktop.until("another time", (now) => now.time_index !== last - 1);
-  display.key("space");
+  await desktop.key("space");
   // Played times are no steps of the history.
-  display.key("ctrl+z");
+  await desktop.key("ctrl+z");
   await desktop.until("the time before the step", (now) => rests(now) && now.time_index === last);
 });
 
 const PANELS = { camera: "m", time: "t", light: "l", look: "k", fields: "f", marks: "d" };
 const RIGHT = { storms: "o", people: "h", figures: "i", settings: "x", keys: "question" };
 
-// Where each side's panel has its title: over the sky, which hardly changes meanwhile.
+// Where each side's panel has its title.
 const TITLE = { left: { x: 110, y: 82, width: 200, height: 24 }, right: { x: 876, y: 82, width: 150, height: 24 } };
 
 test("every tool and panel opens by its key and closes by Escape", async () => {
   for (const [side, panels] of Object.entries({ left: PANELS, right: RIGHT })) {
     for (const [name, key] of Object.entries(panels)) {
-      const before = region(display.pixels(), TITLE[side]);
-      const change = () => difference(before, region(display.pixels(), TITLE[side]));
-      display.key(key);
-      await eventually(`${name} does not open`, () => change() > 0.08);
-      await sleep(300);
+      const title = () => region(display.pixels(), TITLE[side]);
+      const before = title();
+      const { tool, panel } = await desktop.key(key);
+      assert.deepEqual({ tool, panel }, { tool: "", panel: "", [side === "left" ? "tool" : "panel"]: name });
+      const open = title();
+      assert.ok(difference(before, open) > 0.08, `${name} does not open`);
       display.screenshot(name);
-      display.key("Escape");
-      await eventually(`${name} does not close`, () => change() < 0.04);
+      const closed = await desktop.key("Escape");
+      assert.deepEqual({ tool: closed.tool, panel: closed.panel }, { tool: "", panel: "" });
+      assert.ok(difference(open, title()) > 0.08, `${name} does not close`);
     }
   }
 });
 
 test("a number that is typed and left by Tab counts", async () => {
-  const before = region(display.pixels(), TITLE.left);
-  display.key("m");
-  await eventually("the panel does not open", () => difference(before, region(display.pixels(), TITLE.left)) > 0.08);
+  assert.equal((await desktop.key("m")).tool, "camera");
   // The field beside "Seen from". All that is pressed comes at once, as on a machine that stalls.
-  await sleep(300);
-  desktop.child.kill("SIGSTOP");
-  display.xdotool("mousemove", 366, 214, "click", 1, "key", "ctrl+a", "type", "--delay", 20, "123");
-  desktop.child.kill("SIGCONT");
-  await sleep(1000);
+  const { typing } = await desktop.input({ at: { x: 366, y: 214 }, buttons: 2, keys: 4 }, () => {
+    desktop.child.kill("SIGSTOP");
+    display.xdotool("mousemove", 366, 214, "click", 1, "key", "ctrl+a", "type", "--delay", 20, "123");
+    desktop.child.kill("SIGCONT");
+  });
+  assert.ok(typing, "the field has not the keyboard");
   display.screenshot("typing");
-  display.key("Tab");
+  await desktop.key("Tab");
   await desktop.until("the typed azimuth", (now) => rests(now) && apart(now.azimuth_deg, 123) < 0.5);
-  display.key("Escape");
-  display.key("Escape");
+  await desktop.key("Escape", "Escape");
 });
 
 test("a browser joins as a viewer and follows", async () => {
@@ -130,31 +127,29 @@ test("a browser joins as a viewer and follows", async () => {
     await rested(page);
     await desktop.until("two people", (now) => now.people === 2);
     const before = desktop.status().azimuth_deg;
-    await display.drag(MIDDLE, { x: MIDDLE.x - 100, y: MIDDLE.y });
-    // The picture before the drag rests, too.
-    const { azimuth_deg } = await desktop.until("a turned picture", (now) => rests(now) && apart(now.azimuth_deg, before) > 1);
+    await desktop.drag(MIDDLE, { x: MIDDLE.x - 100, y: MIDDLE.y });
+    // The whole way: pictures on the way may rest, too.
+    const turned = (now) => rests(now) && apart(now.azimuth_deg, before - 22.5) < 0.5;
+    const { azimuth_deg } = await desktop.until("a turned picture", turned);
     await until("the browser follows", async () => apart(await azimuthOf(page), azimuth_deg) < 0.5);
 
     // A line drawn in the window is seen by the browser, and the other way round.
-    display.key("d");
-    await sleep(300);
+    await desktop.key("d");
     // The second of three segments below the title.
-    await display.click(265, 128);
-    await display.drag({ x: 640, y: 380 }, { x: 820, y: 420 });
+    await desktop.click(265, 128);
+    await desktop.drag({ x: 640, y: 380 }, { x: 820, y: 420 });
     await desktop.until("a mark", (now) => now.marks === 1);
     const marksInBrowser = () => page.getByTestId("mark").count();
     await until("the mark in the browser", async () => (await marksInBrowser()) === 1);
     display.screenshot("mark");
-    display.key("Escape");
-    display.key("Escape");
+    await desktop.key("Escape", "Escape");
 
     // It asks to steer, gets control in the window, and the window follows.
     await page.getByTestId("ask-control").click();
-    await desktop.until("a request", (now) => now.asking === 1);
-    await sleep(1000);
+    await desktop.until("a request", (now) => now.asking === 1 && drawn(now));
     display.screenshot("asked");
     const give = accentIn(display.pixels(), SESSION_BAR);
-    await display.click(give.x, give.y);
+    await desktop.click(give.x, give.y);
     await desktop.until("gave control", (now) => !now.steers);
     const turnedBefore = desktop.status().azimuth_deg;
     await dragBetween(page, { x: 620, y: 300 }, { x: 720, y: 300 });
@@ -173,17 +168,28 @@ test("a browser joins as a viewer and follows", async () => {
   } finally {
     await browser.close();
   }
-  await desktop.until("alone again", (now) => now.people === 1);
+  await desktop.until("alone again", (now) => now.people === 1 && drawn(now));
+});
+
+test("--turn turns the camera by itself", async () => {
+  const other = await startDisplay(640, 400);
+  const turning = startDesktop(other, serverFlags.grpcPort, ["--width", "640", "--height", "400", "--scale", "1", "--turn", "30"]);
+  try {
+    const { azimuth_deg, frames } = await turning.until("a picture", (now) => now.frames > 0 && now.camera === "orbit");
+    const turned = (now) => now.frames > frames && apart(now.azimuth_deg, azimuth_deg) > 3;
+    await turning.until("a turned picture", turned);
+  } finally {
+    await turning.stop();
+    await other.stop();
+  }
 });
 
 test("the server is killed and restarted: the same session comes back", async () => {
   // The browser had control, and nobody has it since: "Take control".
-  await display.click(735, 677);
-  await desktop.until("control", (now) => now.steers);
-  const { joined, ...before } = await desktop.settled();
+  await desktop.click(735, 677);
+  const { joined, ...before } = await desktop.until("control", (now) => now.steers);
   await server.stop("SIGKILL");
-  await desktop.until("a lost connection", (now) => now.link === "lost");
-  await sleep(1000);
+  await desktop.until("a lost connection", (now) => now.link === "lost" && drawn(now));
   display.screenshot("lost");
   server = await startServer(serverFlags);
   const back = await desktop.until("back", (now) => rests(now) && now.joined > joined);
@@ -213,13 +219,13 @@ test("a browser presents, the window views, looks around and comes back", async 
     await changing(() => dragBetween(page, { x: 620, y: 300 }, { x: 720, y: 300 }), page);
     const azimuth = await azimuthOf(page);
     await viewer.until("it follows", (now) => apart(now.azimuth_deg, azimuth) < 0.5);
-    await display.drag(MIDDLE, { x: MIDDLE.x + 150, y: MIDDLE.y });
-    await viewer.until("it looks around", (now) => now.looks_around && apart(now.azimuth_deg, azimuth) > 10);
+    await viewer.drag(MIDDLE, { x: MIDDLE.x + 150, y: MIDDLE.y });
+    const around = (now) => now.looks_around && apart(now.azimuth_deg, azimuth) > 10 && drawn(now);
+    await viewer.until("it looks around", around);
     assert.ok(apart(await azimuthOf(page), azimuth) < 0.5, "the presenter's view moved");
-    await sleep(500);
     display.screenshot("looking_around");
     const back = accentIn(display.pixels(), SESSION_BAR);
-    await display.click(back.x, back.y);
+    await viewer.click(back.x, back.y);
     await viewer.until("back with the presenter", (now) => !now.looks_around && apart(now.azimuth_deg, azimuth) < 0.5);
   } finally {
     await browser.close();
