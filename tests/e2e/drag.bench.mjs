@@ -47,8 +47,10 @@ async function stroke(page) {
     await setTimeout(Math.max(0, STEP_MS - (Date.now() - at)));
   }
   const { moved, painted } = await page.evaluate(async () => {
-    const last = window.drag.moved.at(-1).atMs;
-    while (performance.now() < last + 2000) await new Promise(requestAnimationFrame);
+    const { dataset } = document.querySelector("[data-testid=storm-canvas]");
+    // The picture of the last movement; it is noted a frame later.
+    while (!dataset.agreed || Number(dataset.revision) < Number(dataset.agreed)) await new Promise(requestAnimationFrame);
+    for (let i = 0; i < 2; i += 1) await new Promise(requestAnimationFrame);
     return window.drag;
   });
   await page.mouse.up();
