@@ -276,8 +276,8 @@ test("a drag turns the storm, and the way back brings the first picture again", 
 test("pictures do not pile up while the storm is turned for a while", async () => {
   const start = { x: VIEWPORT.width * 0.4, y: VIEWPORT.height * 0.5 };
   await page.mouse.move(start.x, start.y);
+  const { revision } = await rested();
   await page.mouse.down();
-  const { revision } = await canvasData();
   for (let i = 0; i < 400; i += 1) {
     await page.mouse.move(start.x + 150 * Math.sin(i / 10), start.y + 40 * Math.sin(i / 17));
   }
