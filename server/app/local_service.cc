@@ -39,6 +39,7 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
 
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
   volume::StormStoreOptions options;
+  options.links = volume::EveryLink();
   options.read_ahead = 0;
   options.borders = volume::BorderData::Find(volume::kBorderFolder);
   auto opened = volume::StormStore::Open({path}, options);

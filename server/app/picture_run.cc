@@ -309,6 +309,7 @@ absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms
 
   begun_.clear();
   volume::StormStoreOptions store_options;
+  store_options.links = volume::EveryLink();
   store_options.read_ahead = 0;
   store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
   const std::shared_ptr<volume::StormStore> store = volume::CachedStormStore::Owned(

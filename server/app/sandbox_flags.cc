@@ -15,6 +15,10 @@ namespace thunderhead::app {
 void AddSandboxFlags(CLI::App& command, SandboxFlags& flags) {
   command.add_option("--untrusted", flags.untrusted,
                      "Folders whose storm files others can write: a confined process reads them");
+  command.add_option(
+      "--allow-links-to", flags.allowed_links,
+      "Folders that symbolic links in the data folders may lead to; links into the data "
+      "folders are always followed, and links in --untrusted folders never");
   command
       .add_option("--sandbox", flags.sandbox,
                   "untrusted, for the files of --untrusted, or all, for every storm file")

@@ -15,6 +15,7 @@ namespace thunderhead::app {
 
 struct SandboxFlags {
   std::vector<std::string> untrusted;
+  std::vector<std::string> allowed_links;
   std::string sandbox = "untrusted";
   double memory_mib = 4096.0;
   double seconds = 120.0;

@@ -84,7 +84,8 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
       .may_find_nothing = true,
       .on_unlisted = {},
       .on_folder = {},
-      .examples = formats.Examples()};
+      .examples = formats.Examples(),
+      .links = volume::EveryLink()};
   auto storms = volume::FindStorms(paths, search);
   if (!storms.ok()) return AsFileProblem(storms.status());
   found.storms = *std::move(storms);

@@ -45,7 +45,8 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
       .on_folder = [&result](const std::string& path) { result.folders.push_back(path); },
       .examples = options_.formats.Examples(),
       .answers = [this](const std::string& path) { return Answers(path); },
-      .found = &found_};
+      .found = &found_,
+      .links = options_.links};
   THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, FindStorms(options_.paths, search));
   const std::size_t gone = std::erase_if(known_, [this](const auto& entry) {
     const auto hangs = [&entry](const std::string& path) { return entry.first.starts_with(path); };

@@ -26,6 +26,7 @@ class CatalogueScan {
   struct Options {
     std::vector<std::string> paths;
     StormFormats formats;
+    LinkPolicy links = {};
     std::chrono::milliseconds settle{};
     // A complete file that cannot be read is tried again after this time, although it has not
     // changed: its writer may have released a lock.

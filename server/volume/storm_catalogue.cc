@@ -253,8 +253,8 @@ void AppendCanonical(const std::vector<std::string>& paths, std::vector<fs::path
 LinkRules LinkRulesOf(const std::vector<std::string>& paths, const StormSearch& search) {
   LinkRules rules;
   AppendCanonical(paths, &rules.targets);
-  AppendCanonical(search.allowed_links, &rules.targets);
-  AppendCanonical(search.untrusted, &rules.untrusted);
+  AppendCanonical(search.links.allowed, &rules.targets);
+  AppendCanonical(search.links.untrusted, &rules.untrusted);
   return rules;
 }
 
@@ -375,12 +375,14 @@ absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormForma
 }
 
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
-                                                        const StormFormats& formats) {
+                                                        const StormFormats& formats,
+                                                        const LinkPolicy& links) {
   auto storms = FindStorms(
       paths, {.describe = [&](const std::string& path) { return DescribeFile(path, formats); },
               .on_unlisted = {},
               .on_folder = {},
-              .examples = formats.Examples()});
+              .examples = formats.Examples(),
+              .links = links});
   if (storms.ok()) LogNotes(*storms);
   return storms;
 }

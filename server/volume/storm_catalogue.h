@@ -52,10 +52,7 @@ struct StormSearch {
   // The storms found by the search before, for that purpose; owned by callers who search again and
   // again, and updated by each search.
   FoundByPath* found = nullptr;
-  // Symbolic links are followed into the searched paths and into these folders, and nowhere else.
-  std::vector<std::string> allowed_links = {};
-  // Folders in which no symbolic link is followed, because others may put files there.
-  std::vector<std::string> untrusted = {};
+  LinkPolicy links = {};
 };
 
 // Describes files by the formats; a file whose metadata exhausts the memory is an error.
@@ -64,7 +61,8 @@ absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormForma
 // The storms under `paths`: those of the first path first, and those of one path in order of id.
 // The rules and errors are those of StormStore::Open.
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
-                                                        const StormFormats& formats);
+                                                        const StormFormats& formats,
+                                                        const LinkPolicy& links = {});
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormSearch& search);
 

@@ -50,6 +50,7 @@ absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::stri
   auto scan = std::make_unique<CatalogueScan>(
       CatalogueScan::Options{.paths = paths,
                              .formats = options.formats,
+                             .links = options.links,
                              .settle = options.live->settle,
                              .retry = options.live->rescan,
                              .before_file =
@@ -78,7 +79,7 @@ absl::StatusOr<std::unique_ptr<StormStore>> StormStore::Open(const std::vector<s
                                                              const StormStoreOptions& options) {
   if (options.live.has_value()) return OpenLive(paths, options);
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> storms,
-                               FindStorms(paths, options.formats));
+                               FindStorms(paths, options.formats, options.links));
   return CachedStormStore::Owned(std::make_shared<CachedStormStore>(std::move(storms), options));
 }
 

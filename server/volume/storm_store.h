@@ -86,6 +86,18 @@ struct LiveCatalogueOptions {
   std::chrono::milliseconds settle{3'000};
 };
 
+// Which symbolic links a search for storms follows. Links into the searched paths are always
+// followed.
+struct LinkPolicy {
+  std::vector<std::string> allowed;  // folders that links may lead to besides
+  std::vector<std::string>
+      untrusted;  // folders in which others may put links, which are not followed
+};
+
+// For commands that read files for the user who runs them, with that user's rights: nobody else
+// sees what a link leads to.
+inline LinkPolicy EveryLink() { return {.allowed = {"/"}, .untrusted = {}}; }
+
 struct StormStoreOptions {
   // Bytes of cached times; the newest one and those in use are kept even if they are more.
   std::size_t byte_budget = std::size_t{2} << 30;
@@ -95,6 +107,7 @@ struct StormStoreOptions {
   // A storage on which a read makes no progress for this long counts as hanging.
   std::chrono::milliseconds read_deadline{60'000};
   StormFormats formats = StormFormats::BuiltIn();
+  LinkPolicy links = {};
   // Gives a reader of the file that works in another process, for while this one's is held up by
   // another storage, or null; empty: such reads are refused.
   std::function<std::shared_ptr<const RecordReader>(const StormFile& file)> reader_apart;

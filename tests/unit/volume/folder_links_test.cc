@@ -1,0 +1,113 @@
+// Symbolic links in data folders: circles, ways out, and links that nobody can follow.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/synthetic_wrf.h"
+#include "tests/support/temporary_folder.h"
+#include "volume/storm_catalogue.h"
+
+namespace thunderhead::volume {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+
+class FolderLinks : public ::testing::Test {
+ protected:
+  FolderLinks() {
+    fs::create_directories(data_ / "sub");
+    fs::create_directories(outside_);
+    Write(data_ / "own.nc", 0);
+    Write(outside_ / "secret.nc", 600);
+  }
+
+  static void Write(const fs::path& path, double start_s) {
+    testing::SyntheticWrf storm;
+    storm.mixing_ratios["QCLOUD"] = [](const testing::WrfCell&) { return 1e-3; };
+    storm.times = {start_s == 0 ? "2013-05-20_20:00:00" : "2013-05-21_20:00:00"};
+    testing::WriteWrf(storm, path.string());
+  }
+
+  // Searches the data folder. Returns the storms' ids, and keeps what was left out and which
+  // folders were listed.
+  std::vector<std::string> Find(const LinkPolicy& links = {}) {
+    left_out_.clear();
+    folders_ = 0;
+    const StormFormats formats = StormFormats::BuiltIn();
+    const auto storms = FindStorms(
+        {data_.string()},
+        {.describe = [&](const std::string& path) { return DescribeFile(path, formats); },
+         .may_find_nothing = true,
+         .on_unlisted = [&](const std::string&,
+                            const absl::Status& why) { left_out_.emplace_back(why.message()); },
+         .on_folder = [&](const std::string&) { ++folders_; },
+         .examples = formats.Examples(),
+         .links = links});
+    std::vector<std::string> ids;
+    EXPECT_TRUE(storms.ok()) << storms.status();
+    for (const CataloguedStorm& storm : *storms) ids.push_back(storm.info.id);
+    return ids;
+  }
+
+  testing::TemporaryFolder folder_;
+  const fs::path data_ = folder_.Path() / "data";
+  const fs::path outside_ = folder_.Path() / "outside";
+  std::vector<std::string> left_out_;
+  int folders_ = 0;
+};
+
+TEST_F(FolderLinks, AFolderIsVisitedOnce) {
+  for (const char* name : {"a", "b", "c"}) fs::create_directory_symlink(".", data_ / name);
+  fs::create_directory_symlink("..", data_ / "sub" / "up");
+  EXPECT_THAT(Find(), ElementsAre("own"));
+  EXPECT_EQ(folders_, 2);
+  EXPECT_THAT(left_out_, IsEmpty());
+}
+
+TEST_F(FolderLinks, LinksOutOfTheDataFoldersAreRefusedWithTheRemedy) {
+  fs::create_directory_symlink(outside_, data_ / "sub" / "link");
+  fs::create_symlink(outside_ / "secret.nc", data_ / "secretfile.nc");
+  EXPECT_THAT(Find(), ElementsAre("own"));
+  const std::string remedy = "allow it with --allow-links-to " + outside_.string();
+  EXPECT_THAT(left_out_, UnorderedElementsAre(HasSubstr(remedy), HasSubstr(remedy)));
+}
+
+TEST_F(FolderLinks, AllowedFoldersMayBeLinkedTo) {
+  fs::create_symlink(outside_ / "secret.nc", data_ / "linked.nc");
+  EXPECT_THAT(Find({.allowed = {outside_.string()}, .untrusted = {}}),
+              UnorderedElementsAre("own", "linked"));
+  EXPECT_THAT(left_out_, IsEmpty());
+  // A folder whose name only begins like an allowed one is another.
+  EXPECT_THAT(Find({.allowed = {(folder_.Path() / "out").string()}, .untrusted = {}}),
+              ElementsAre("own"));
+}
+
+TEST_F(FolderLinks, LinksWithinTheDataFoldersAreFollowed) {
+  fs::create_symlink(data_ / "own.nc", data_ / "sub" / "same.nc");
+  EXPECT_THAT(Find(), ElementsAre("own"));
+  EXPECT_THAT(left_out_, IsEmpty());
+}
+
+TEST_F(FolderLinks, UntrustedFoldersHaveNone) {
+  fs::create_symlink(outside_ / "secret.nc", data_ / "sub" / "linked.nc");
+  fs::create_symlink(data_ / "own.nc", data_ / "sub" / "same.nc");
+  EXPECT_THAT(Find({.allowed = {outside_.string()}, .untrusted = {(data_ / "sub").string()}}),
+              ElementsAre("own"));
+  EXPECT_THAT(left_out_,
+              UnorderedElementsAre(HasSubstr("not followed"), HasSubstr("not followed")));
+}
+
+TEST_F(FolderLinks, WhatIsNoFileIsNoStorm) {
+  fs::create_symlink("/dev/zero", data_ / "zero.nc");
+  fs::create_symlink("loop", data_ / "loop");
+  fs::create_symlink("/proc/self/environ", data_ / "environ.nc");
+  EXPECT_THAT(Find({.allowed = {outside_.string()}, .untrusted = {}}), ElementsAre("own"));
+}
+
+}  // namespace
+}  // namespace thunderhead::volume
