@@ -93,7 +93,7 @@ struct LinkRules {
 };
 
 // The walk below one path that the user gave.
-struct Walk {
+struct FolderWalk {
   const StormSearch& search;
   const LinkRules& links;
   std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + kLongestWalk;
@@ -103,7 +103,7 @@ struct Walk {
 };
 
 // Notes why something below the path was left out.
-void LeaveOut(Walk& walk, const fs::path& path, const absl::Status& why) {
+void LeaveOut(FolderWalk& walk, const fs::path& path, const absl::Status& why) {
   walk.first_failure.Update(why);
   if (walk.search.on_unlisted) {
     walk.search.on_unlisted(path.string(), why);
@@ -148,7 +148,7 @@ struct Folder {
   std::vector<fs::path> folders;
 };
 
-absl::StatusOr<Folder> List(const fs::path& path, Walk& walk) {
+absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
   const base::SlowCall call(path.string());
   Folder folder;
   std::error_code error;
@@ -208,7 +208,7 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder, std::vector<StormFile>
 }
 
 // Searches a folder and those below it, each once: links can make one folder appear in many places.
-absl::Status SearchFolder(const fs::path& path, int depth, Walk& walk,
+absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
                           std::vector<NamedStorm>& storms) {
   struct stat identity {};
   if (::stat(path.c_str(), &identity) == 0 &&
@@ -258,7 +258,7 @@ LinkRules LinkRulesOf(const std::vector<std::string>& paths, const StormSearch& 
   return rules;
 }
 
-absl::Status Search(const std::string& path, Walk walk, std::vector<NamedStorm>& storms) {
+absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedStorm>& storms) {
   const StormSearch& search = walk.search;
   std::error_code error;
   if (search.may_find_nothing && fs::status(path, error).type() == fs::file_type::not_found) {
