@@ -42,6 +42,9 @@ export const drawn = (status) => status.drawings >= SETTLING_DRAWINGS;
 export const rests = (status) =>
   status.link === "live" && status.refined && status.revision > 0 && status.shown_revision >= status.revision;
 
+// Like `rests`, and no finer picture follows, where no light is traced: the last picture comes in full quality as AVIF.
+export const complete = (status) => rests(status) && status.image_scale >= 1 && status.encoding === "AVIF" && drawn(status);
+
 // Like `rests`, and the controls know the storm's fields and times, which come on their own.
 export const ready = (status) => rests(status) && status.times > 0 && status.people > 0 && drawn(status);
 
@@ -121,6 +124,13 @@ export function startDesktop(display, port, flags = []) {
         display.xdotool("type", "--", text);
         display.xdotool("key", "Return");
       });
+    },
+    // Chooses quality "Fast", in a window of scale 1. By default the server traces light while a picture rests, which would keep the
+    // processors busy during the test.
+    async chooseFast() {
+      await this.key("k");
+      await this.click(162, 131);
+      return this.key("Escape");
     },
     async stop() {
       if (child.exitCode === null && child.signalCode === null) child.kill();

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { freePort, ROOT, startServer } from "../../tests/e2e/server_process.mjs";
-import { drawn, rests, startDesktop } from "./desktop_process.mjs";
+import { complete, rests, startDesktop } from "./desktop_process.mjs";
 import { difference, eventually, pixelsLike, region } from "./pixels.mjs";
 import { startDisplay } from "./xvfb.mjs";
 
@@ -80,9 +80,7 @@ test("a view stands until it is due, whatever is pressed, and comes at once in a
   const views = [0, 1].map((at) => join(folder, `view_${at}.json`));
   kiosk = startDesktop(display, serverFlags.grpcPort, ["--kiosk", "--view-seconds", "3600", "--views", ...views]);
   const isSeen = (now) => shows(0)(now) && Math.abs(now.azimuth_deg - 45) < 0.5;
-  // The last picture of a scene comes as AVIF.
-  const complete = (now) => isSeen(now) && rests(now) && now.encoding === "AVIF" && drawn(now);
-  const { edits } = await kiosk.until("the complete picture of the view", complete);
+  const { edits } = await kiosk.until("the complete picture of the view", (now) => isSeen(now) && complete(now));
   assert.equal(edits, 1, "the view was sent again");
   const pictureBefore = display.pixels();
   await kiosk.key("Left", "Left", "x", "question", "comma");

@@ -21,6 +21,7 @@ before(async () => {
   server = await startServer(serverFlags);
   desktop = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--name", "Wall"]);
   await desktop.until("the first picture", ready);
+  await desktop.chooseFast();
 });
 
 after(async () => {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { freePort, ROOT, startServer } from "../../tests/e2e/server_process.mjs";
-import { ready, rests, startDesktop } from "./desktop_process.mjs";
+import { complete, ready, rests, startDesktop } from "./desktop_process.mjs";
 import { difference, eventually, pixelsLike, region } from "./pixels.mjs";
 import { startDisplay } from "./xvfb.mjs";
 
@@ -98,12 +98,14 @@ test("the sun stands where it is put by hand, and by the clock", async () => {
 });
 
 test("a field is switched off and on, and has another amount", async () => {
+  await desktop.until("the complete picture", complete);
   const whole = picture();
   await within("f", () => change("no cloud", () => desktop.click(127, 131)));
+  await desktop.until("the complete picture without cloud", complete);
   const without = picture();
   const apart = difference(whole, without);
   assert.ok(apart > 0.1, "the picture without cloud is the same");
-  // Traced light still comes in, and stills are compressed.
+  // The first pictures are coarser, and the last one is compressed.
   const isLike = (one) => difference(one, picture()) < apart / 4;
   await within("f", () => change("cloud", () => desktop.click(127, 131)));
   await eventually("the cloud is another one", () => isLike(whole));
@@ -114,6 +116,7 @@ test("a field is switched off and on, and has another amount", async () => {
 });
 
 test("keys go into a panel: arrows choose a control, space uses it, Enter edits a number", async () => {
+  await desktop.until("the complete picture", complete);
   const whole = picture();
   await within("f", async () => {
     await desktop.key("Tab");

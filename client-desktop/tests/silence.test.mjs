@@ -23,7 +23,7 @@ let kiosk;
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "thunderhead-silence-"));
   const view = join(folder, "view.json");
-  writeFileSync(view, JSON.stringify({ camera: { orbit: { azimuthDeg: 45 } } }));
+  writeFileSync(view, JSON.stringify({ camera: { orbit: { azimuthDeg: 45 } }, rendering: { preset: "PRESET_FAST" } }));
   display = await startDisplay(SIZE.width, SIZE.height);
   const flags = { httpPort: await freePort(), grpcPort: await freePort() };
   server = await startServer(flags);
