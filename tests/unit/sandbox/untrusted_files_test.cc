@@ -60,7 +60,7 @@ class Bytes {
   void operator()(const std::string& text) { text_ += text + '\0'; }
   template <Plain Value>
   void operator()(const std::vector<Value>& values) {
-    for (const Value& value : values) (*this)(value);
+    text_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
   }
   const std::string& Text() const { return text_; }
 

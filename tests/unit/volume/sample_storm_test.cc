@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "glm/common.hpp"
 #include "volume/storm_map.h"
@@ -43,7 +45,7 @@ struct Layer {
 };
 
 // Every layer from first principles and in double precision.
-std::vector<Layer> LayersOf(std::size_t record) {
+std::vector<Layer> ReadLayers(std::size_t record) {
   const auto ph = Raw("PH", record, kLevels + 1);
   const auto phb = Raw("PHB", record, kLevels + 1);
   const auto p = Raw("P", record, kLevels);
@@ -62,10 +64,38 @@ std::vector<Layer> LayersOf(std::size_t record) {
   return layers;
 }
 
+// What `read` gives for a record, read once for tests of one record that follow one another.
+template <typename Value, typename Read>
+const Value& Kept(std::size_t record, Read read) {
+  static std::optional<std::pair<std::size_t, Value>> kept;
+  if (!kept.has_value() || kept->first != record) {
+    kept.reset();
+    kept.emplace(record, read(record));
+  }
+  return kept->second;
+}
+
+const std::vector<Layer>& SampleLayers(std::size_t record) {
+  return Kept<std::vector<Layer>>(record, ReadLayers);
+}
+
+// The fields by the reader that is tested.
+const HydrometeorFields& SampleFields(std::size_t record) {
+  return Kept<HydrometeorFields>(record, [](std::size_t wanted) {
+    return ReadWrfTime(ReadWrfMetadata(kSample).value(), wanted, std::nullopt, {}).value();
+  });
+}
+
+// A store that has read each time once for all tests.
+StormStore& SampleStore() {
+  static const auto store = StormStore::Open({kSample}, {.read_ahead = 0}).value();
+  return *store;
+}
+
 // Mass per area of dry air in every layer.
 std::vector<double> AirMass(std::size_t record) {
   std::vector<double> mass;
-  for (const Layer& layer : LayersOf(record)) mass.push_back(layer.density * layer.thickness);
+  for (const Layer& layer : SampleLayers(record)) mass.push_back(layer.density * layer.thickness);
   return mass;
 }
 
@@ -108,16 +138,13 @@ TEST(SampleStorm, IsDescribedWithoutReadingFields) {
 // One per cent is promised. What is left is single precision: heights of 20 km are kept to 2 mm,
 // which is 1e-5 of a layer.
 TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
-  const auto metadata = ReadWrfMetadata(kSample);
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
   for (std::size_t record = 0; record < 4; ++record) {
-    const auto fields = ReadWrfTime(*metadata, record, std::nullopt, {});
-    ASSERT_TRUE(fields.ok()) << fields.status();
-    ASSERT_EQ(fields->fields.size(), 5U);
+    const HydrometeorFields& fields = SampleFields(record);
+    ASSERT_EQ(fields.fields.size(), 5U);
     const std::vector<double> air_mass = AirMass(record);
-    for (const HydrometeorField& field : fields->fields) {
+    for (const HydrometeorField& field : fields.fields) {
       const std::vector<double> expected = PathInFile(field.variable.c_str(), record, air_mass);
-      const std::vector<double> actual = PathOnGrid(*fields, field);
+      const std::vector<double> actual = PathOnGrid(fields, field);
       double worst = 0.0;
       double total = 0.0;
       for (std::size_t i = 0; i < kSampleColumns; ++i) {
@@ -162,12 +189,9 @@ double Wsm6Extinction_per_m(const std::string& variable, double content, double 
 // floats.
 TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
   constexpr std::size_t kRecord = 1;
-  const auto metadata = ReadWrfMetadata(kSample);
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
-  const auto fields = ReadWrfTime(*metadata, kRecord, std::nullopt, {});
-  ASSERT_TRUE(fields.ok()) << fields.status();
-  const std::vector<Layer> layers = LayersOf(kRecord);
-  for (const HydrometeorField& field : fields->fields) {
+  const HydrometeorFields& fields = SampleFields(kRecord);
+  const std::vector<Layer>& layers = SampleLayers(kRecord);
+  for (const HydrometeorField& field : fields.fields) {
     EXPECT_EQ(field.sizes.origin, SizeOrigin::kScheme);
     EXPECT_EQ(field.sizes.name, "WSM6");
     const auto q = Raw(field.variable.c_str(), kRecord, kLevels);
@@ -185,7 +209,7 @@ TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
     AddExtinction(field, mass_extinction, 0, extinction.size(), extinction.data());
     std::vector<double> actual(kSampleColumns, 0.0);
     for (std::size_t i = 0; i < extinction.size(); ++i) {
-      actual[i % kSampleColumns] += extinction[i] * fields->grid.spacing_m.z;
+      actual[i % kSampleColumns] += extinction[i] * fields.grid.spacing_m.z;
     }
     for (std::size_t i = 0; i < kSampleColumns; ++i) {
       // Below this a column holds nothing but traces.
@@ -198,17 +222,14 @@ TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
 // Where graupel and all else are strongest, found in the file itself.
 TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
   constexpr std::size_t kRecord = 1;
-  const auto metadata = ReadWrfMetadata(kSample);
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
-  const auto fields = ReadWrfTime(*metadata, kRecord, std::nullopt, {});
-  ASSERT_TRUE(fields.ok()) << fields.status();
-  const StormMap map = MapOf(*fields, {{0, 1, 2, 3, 4}, 512, false});
+  const HydrometeorFields& fields = SampleFields(kRecord);
+  const StormMap map = MapOf(fields, {{0, 1, 2, 3, 4}, 512, false});
   ASSERT_EQ(map.size_px, glm::ivec2(kNx, kNy));
   const std::vector<double> air_mass = AirMass(kRecord);
-  const std::vector<Layer> layers = LayersOf(kRecord);
+  const std::vector<Layer>& layers = SampleLayers(kRecord);
   std::vector<double> all(kSampleColumns, 0.0);
   for (const FieldPeak& peak : map.peaks) {
-    const std::string& variable = fields->fields[peak.index].variable;
+    const std::string& variable = fields.fields[peak.index].variable;
     const std::vector<double> path = PathInFile(variable.c_str(), kRecord, air_mass);
     for (std::size_t i = 0; i < kSampleColumns; ++i) all[i] += path[i];
     const auto at = static_cast<int>(std::ranges::max_element(path) - path.begin());
@@ -223,7 +244,7 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
     };
     const std::size_t peak_column =
         column_of(peak.position_m.y, kNy) * kNx + column_of(peak.position_m.x, kNx);
-    const double cell_m = fields->grid.spacing_m.z;
+    const double cell_m = fields.grid.spacing_m.z;
     double water = 0.0;
     double air = 0.0;
     double bottom_m = 0.0;
@@ -241,11 +262,11 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
     // here by up to 2.8 %, of ice. The air's density is its block's mean.
     EXPECT_NEAR(peak.kg_per_m3 / (water / cell_m), 1.0, 0.03) << variable;
     EXPECT_NEAR(peak.value / (water / air), 1.0, 0.03) << variable;
-    const auto& grid = fields->grid;
+    const auto& grid = fields.grid;
     const glm::ivec3 cell((peak.position_m - grid.low_corner_m) / grid.spacing_m);
     EXPECT_EQ(
         peak.kg_per_m3,
-        fields->fields[peak.index].concentration_kg_per_m3[grid.Offset(cell.x, cell.y, cell.z)])
+        fields.fields[peak.index].concentration_kg_per_m3[grid.Offset(cell.x, cell.y, cell.z)])
         << variable;
     // The largest mixing ratio of the file: the same column, within a level, and more by what the
     // mean over layers takes from a thin one, here up to 6 % of ice.
@@ -259,7 +280,7 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
     const auto column = static_cast<int>(largest % kSampleColumns);
     EXPECT_EQ(peak.position_m.x, (column % kNx - kNx / 2 + 0.5) * 1000.0) << variable;
     EXPECT_EQ(peak.position_m.y, (column / kNx - kNy / 2 + 0.5) * 1000.0) << variable;
-    EXPECT_NEAR(peak.position_m.z, height_m, fields->grid.spacing_m.z) << variable;
+    EXPECT_NEAR(peak.position_m.z, height_m, fields.grid.spacing_m.z) << variable;
   }
   for (std::size_t i = 0; i < kSampleColumns; ++i) {
     if (all[i] <= 1e-6) continue;
@@ -271,12 +292,9 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
 // cell.
 TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
   constexpr std::size_t kRecord = 1;
-  const auto metadata = ReadWrfMetadata(kSample);
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
-  const auto fields = ReadWrfTime(*metadata, kRecord, std::nullopt, {});
-  ASSERT_TRUE(fields.ok()) << fields.status();
-  ASSERT_EQ(fields->air.blocks, glm::ivec2(kAirBlocks));
-  const std::vector<Layer> layers = LayersOf(kRecord);
+  const HydrometeorFields& fields = SampleFields(kRecord);
+  ASSERT_EQ(fields.air.blocks, glm::ivec2(kAirBlocks));
+  const std::vector<Layer>& layers = SampleLayers(kRecord);
   double worst = 0.0;
   double squares = 0.0;
   std::size_t count = 0;
@@ -286,12 +304,12 @@ TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
       const double middle_m = bottom_m + layers[i].thickness / 2.0;
       bottom_m += layers[i].thickness;
       const auto z =
-          static_cast<int>((middle_m - fields->grid.low_corner_m.z) / fields->grid.spacing_m.z);
+          static_cast<int>((middle_m - fields.grid.low_corner_m.z) / fields.grid.spacing_m.z);
       const float air =
-          fields->air.At(fields->grid, static_cast<int>(column % kNx),
-                         static_cast<int>(column / kNx), std::min(z, fields->grid.cells.z - 1));
+          fields.air.At(fields.grid, static_cast<int>(column % kNx), static_cast<int>(column / kNx),
+                        std::min(z, fields.grid.cells.z - 1));
       // From the cell's middle to the layer's, with the scale height.
-      const double cell_m = fields->grid.low_corner_m.z + (z + 0.5) * fields->grid.spacing_m.z;
+      const double cell_m = fields.grid.low_corner_m.z + (z + 0.5) * fields.grid.spacing_m.z;
       const double error = air * std::exp((cell_m - middle_m) / 8000.0) / layers[i].density - 1.0;
       worst = std::max(worst, std::abs(error));
       squares += error * error;
@@ -303,13 +321,18 @@ TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
   EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.01);
 }
 
+TEST(SampleStorm, WithoutWindTellsNothingOfTheAir) {
+  const HydrometeorFields& fields = SampleFields(1);
+  EXPECT_EQ(fields.motion.source, TurbulenceSource::kGradient);
+  EXPECT_TRUE(fields.motion.turbulence.empty());
+  EXPECT_TRUE(fields.motion.ascent.empty());
+}
+
 // Peaks over all times, as known of this run.
 TEST(SampleStorm, HasThePeaksOfItsRun) {
-  const auto store = StormStore::Open({kSample}, {.read_ahead = 0});
-  ASSERT_TRUE(store.ok()) << store.status();
   std::map<std::string, float> peaks;
   for (int time = 0; time < 4; ++time) {
-    const auto fields = (*store)->Get("supercell", time, {});
+    const auto fields = SampleStore().Get("supercell", time, {});
     ASSERT_TRUE(fields.ok()) << fields.status();
     for (const HydrometeorField& field : (*fields)->fields) {
       float& peak = peaks[field.variable];
@@ -327,9 +350,7 @@ TEST(SampleStorm, HasThePeaksOfItsRun) {
 }
 
 TEST(SampleStorm, LiesOnOneGridThatIsCentredAndSmall) {
-  const auto store = StormStore::Open({kSample}, {.read_ahead = 0});
-  ASSERT_TRUE(store.ok()) << store.status();
-  const auto first = (*store)->Get("supercell", 0, {});
+  const auto first = SampleStore().Get("supercell", 0, {});
   ASSERT_TRUE(first.ok()) << first.status();
   const RegularGrid grid = (*first)->grid;
   EXPECT_EQ(grid.cells.x, kNx);
@@ -340,7 +361,7 @@ TEST(SampleStorm, LiesOnOneGridThatIsCentredAndSmall) {
   EXPECT_THAT((*first)->terrain_height_m, ::testing::Each(0.0F));
   EXPECT_EQ((*first)->terrain_height_m.size(), kSampleColumns);
   for (int time = 0; time < 4; ++time) {
-    const auto fields = (*store)->Get("supercell", time, {});
+    const auto fields = SampleStore().Get("supercell", time, {});
     ASSERT_TRUE(fields.ok()) << fields.status();
     EXPECT_EQ((*fields)->grid, grid);
     constexpr std::size_t kRawBytes = 5 * kLevels * kSampleColumns * sizeof(float);
@@ -355,14 +376,11 @@ TEST(SampleStorm, LiesOnOneGridThatIsCentredAndSmall) {
 }
 
 TEST(SampleStorm, BoxesItsCondensateTightly) {
-  const auto metadata = ReadWrfMetadata(kSample);
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
-  const auto fields = ReadWrfTime(*metadata, 0, std::nullopt, {});
-  ASSERT_TRUE(fields.ok()) << fields.status();
-  const CellBox box = fields->condensate;
-  glm::ivec3 low = fields->grid.cells;
+  const HydrometeorFields& fields = SampleFields(0);
+  const CellBox box = fields.condensate;
+  glm::ivec3 low = fields.grid.cells;
   glm::ivec3 high(0);
-  for (const HydrometeorField& field : fields->fields) {
+  for (const HydrometeorField& field : fields.fields) {
     for (std::size_t i = 0; i < field.concentration_kg_per_m3.size(); ++i) {
       if (field.concentration_kg_per_m3[i] == 0.0F) continue;
       const glm::ivec3 cell(i % kNx, i / kNx % kNy, i / kSampleColumns);
@@ -424,16 +442,6 @@ TEST(FinerSampleStorm, TellsTheMotionOfItsAir) {
     (motion.turbulence[i] > 200 ? stirred_count : calm_count) += 1.0;
   }
   EXPECT_GT(stirred / stirred_count, 1.5 * calm / calm_count);
-}
-
-TEST(SampleStorm, WithoutWindTellsNothingOfTheAir) {
-  const auto metadata = ReadWrfMetadata(std::string(kSample));
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
-  const auto fields = ReadWrfTime(*metadata, 1, std::nullopt, {});
-  ASSERT_TRUE(fields.ok()) << fields.status();
-  EXPECT_EQ(fields->motion.source, TurbulenceSource::kGradient);
-  EXPECT_TRUE(fields->motion.turbulence.empty());
-  EXPECT_TRUE(fields->motion.ascent.empty());
 }
 
 }  // namespace
