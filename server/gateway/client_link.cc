@@ -42,8 +42,9 @@ void TuneSocket(int socket) {
 }  // namespace
 
 ClientLink::ClientLink(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::context> tls,
-                       std::chrono::milliseconds write_stall_timeout)
-    : stream_(std::move(socket), std::move(tls)),
+                       std::chrono::milliseconds write_stall_timeout, const base::TimeSource& time)
+    : time_(time),
+      stream_(std::move(socket), std::move(tls), time),
       received_(kMaxReceived),
       write_stall_timeout_(write_stall_timeout),
       watch_changed_(stream_.get_executor()) {

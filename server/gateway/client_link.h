@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/time_source.h"
 #include "gateway/awaitable.h"
 #include "gateway/change_signal.h"
 #include "gateway/client_stream.h"
@@ -33,9 +34,9 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `tls` null: a plain connection.
+  // `tls` null: a plain connection. `time` must outlive the link.
   ClientLink(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
-             std::chrono::milliseconds write_stall_timeout);
+             std::chrono::milliseconds write_stall_timeout, const base::TimeSource& time);
 
   // The client's address with its port.
   const std::string& Peer() const { return peer_; }
@@ -44,7 +45,7 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
 
   void Begin(LinkUse use) {
     use_ = use;
-    used_since_ = Clock::now();
+    used_since_ = time_.Now();
   }
   LinkUse Use() const { return use_; }
   Clock::time_point UsedSince() const { return used_since_; }
@@ -58,7 +59,7 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   void ExpireIdleWrite() { stream_.expires_after(write_stall_timeout_); }
   // The same where all must be written by `end`.
   void ExpireIdleWrite(Clock::time_point end) {
-    stream_.expires_at(std::min(end, Clock::now() + write_stall_timeout_));
+    stream_.expires_at(std::min(end, time_.Now() + write_stall_timeout_));
   }
   // False if the client is gone, accepted nothing for the stall timeout, or not all by `end`.
   boost::asio::awaitable<bool> WriteAll(std::vector<boost::asio::const_buffer> buffers,
@@ -95,10 +96,11 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   void WatchOn();
   void OnWatched(boost::system::error_code error, size_t bytes);
 
+  const base::TimeSource& time_;
   std::string peer_;
   std::string network_;
   LinkUse use_ = LinkUse::kWaiting;
-  Clock::time_point used_since_ = Clock::now();
+  Clock::time_point used_since_ = time_.Now();
   ClientStream stream_;
   boost::beast::flat_buffer received_;
   std::chrono::milliseconds write_stall_timeout_;

@@ -14,14 +14,22 @@ namespace thunderhead::gateway {
 namespace net = boost::asio;
 using boost::system::error_code;
 
-ClientStream::ClientStream(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::context> tls)
-    : OptionalTls(std::move(socket), std::move(tls)), write_ended_(get_executor()) {}
+using Way = StreamDeadlines::Way;
+
+ClientStream::ClientStream(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::context> tls,
+                           const base::TimeSource& time)
+    : OptionalTls(std::move(socket), std::move(tls)),
+      time_(time),
+      deadlines_(std::make_shared<StreamDeadlines>(OptionalTls::socket(), time)),
+      write_ended_(get_executor()) {}
 
 net::awaitable<bool> ClientStream::Handshake() {
   error_code error;
   if (auto* tls = TlsStream(); tls != nullptr) {
+    deadlines_->Begin(Way::kRead);
     co_await tls->async_handshake(net::ssl::stream_base::server,
                                   net::redirect_error(net::use_awaitable, error));
+    deadlines_->End(Way::kRead);
   }
   co_return !error;
 }
@@ -30,10 +38,12 @@ net::awaitable<void> ClientStream::LingeringClose() {
   error_code error;
   socket().shutdown(net::ip::tcp::socket::shutdown_send, error);
   std::array<char, 16 << 10> ignored;
+  deadlines_->Begin(Way::kRead);
   while (!error) {
     co_await PlainStream().async_read_some(net::buffer(ignored),
                                            net::redirect_error(net::use_awaitable, error));
   }
+  deadlines_->End(Way::kRead);
   socket().close(error);
 }
 
@@ -43,6 +53,19 @@ void ClientStream::LingeringClose(streams::BytesHandler handler) {
                 [handler = std::move(handler)](const std::exception_ptr&) mutable {
                   handler(error_code(), 0);
                 });
+}
+
+void ClientStream::Read(streams::FewBuffers<net::mutable_buffer> into,
+                        streams::BytesHandler handler) {
+  deadlines_->Begin(Way::kRead);
+  const auto executor = handler.get_executor();
+  OptionalTls::Read(into, streams::BytesHandler(
+                              [deadlines = deadlines_, handler = std::move(handler)](
+                                  error_code error, std::size_t bytes) mutable {
+                                deadlines->End(Way::kRead);
+                                handler(error, bytes);
+                              },
+                              executor));
 }
 
 void ClientStream::Write(streams::FewBuffers<net::const_buffer> from,
@@ -55,9 +78,11 @@ void ClientStream::Write(streams::FewBuffers<net::const_buffer> from,
     return;
   }
   between_writes_ = false;
+  deadlines_->Begin(Way::kWrite);
   Send(from,
        streams::BytesHandler(
            [this, bytes, handler = std::move(handler)](error_code error, std::size_t sent) mutable {
+             deadlines_->End(Way::kWrite);
              between_writes_ = error || sent == bytes;
              write_ended_.Notify();
              handler(error, sent);
@@ -70,9 +95,11 @@ net::awaitable<bool> ClientStream::WriteLast(std::string bytes) {
   co_await write_ended_.AwaitTrue(between_writes_);
   net::const_buffer rest = net::buffer(bytes);
   error_code error;
+  deadlines_->Begin(Way::kWrite);
   while (!error && rest.size() > 0) {
     rest += co_await async_send_some(rest, net::redirect_error(net::use_awaitable, error));
   }
+  deadlines_->End(Way::kWrite);
   co_return !error;
 }
 

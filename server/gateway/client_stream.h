@@ -1,5 +1,5 @@
 // The bytes of one client's connection, plain or by TLS, to Asio and Beast a stream like any other:
-// with one timeout for what is begun after it is set, and counts of what went each way. Knows
+// with one deadline for what is begun after it is set, and counts of what went each way. Knows
 // neither HTTP nor gRPC. Runs on one thread.
 #pragma once
 
@@ -18,8 +18,10 @@
 #include <string>
 #include <utility>
 
+#include "base/time_source.h"
 #include "gateway/awaitable.h"
 #include "gateway/change_signal.h"
+#include "gateway/stream_deadlines.h"
 #include "streams/bytes_handler.h"
 #include "streams/optional_tls.h"
 
@@ -56,8 +58,17 @@ namespace thunderhead::gateway {
 
 class ClientStream : public streams::OptionalTls<ByteCounts> {
  public:
-  // `tls` null: plain.
-  ClientStream(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls);
+  // `tls` null: plain. The deadlines are by `time`, which must outlive the stream.
+  ClientStream(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
+               const base::TimeSource& time);
+
+  // Each replaces the deadline of the reads and writes that begin from now on. The socket is closed
+  // at the deadline of a pending one, which then fails.
+  void expires_after(base::TimeSource::Clock::duration timeout) {
+    expires_at(time_.Now() + timeout);
+  }
+  void expires_at(base::TimeSource::Clock::time_point deadline) { deadlines_->Set(deadline); }
+  void expires_never() { expires_at(base::TimeSource::Clock::time_point::max()); }
 
   // The first of all where there is TLS. False if it fails.
   boost::asio::awaitable<bool> Handshake();
@@ -76,9 +87,13 @@ class ClientStream : public streams::OptionalTls<ByteCounts> {
   void LingeringClose(streams::BytesHandler handler);
 
  private:
+  void Read(streams::FewBuffers<boost::asio::mutable_buffer> into,
+            streams::BytesHandler handler) override;
   void Write(streams::FewBuffers<boost::asio::const_buffer> from,
              streams::BytesHandler handler) override;
 
+  const base::TimeSource& time_;
+  const std::shared_ptr<StreamDeadlines> deadlines_;
   bool between_writes_ = true;  // the last one has ended, and was whole
   bool last_begun_ = false;
   ChangeSignal write_ended_;

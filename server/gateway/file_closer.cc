@@ -18,8 +18,8 @@ base::Executor::Limits Limits() {
 
 }  // namespace
 
-FileCloser::FileCloser(std::function<void(int)> close)
-    : close_(std::move(close)), threads_(Limits()) {}
+FileCloser::FileCloser(std::function<void(int)> close, const base::TimeSource& time)
+    : close_(std::move(close)), threads_(Limits(), time) {}
 
 void FileCloser::Close(base::FileDescriptor file) {
   threads_.Submit("", [close = close_, number = file.Release()](const absl::Status& status) {

@@ -8,13 +8,15 @@
 
 #include "base/executor.h"
 #include "base/file_descriptor.h"
+#include "base/time_source.h"
 
 namespace thunderhead::gateway {
 
 class FileCloser {
  public:
-  // `close` closes a descriptor.
-  explicit FileCloser(std::function<void(int)> close = ::close);
+  // `close` closes a descriptor. `time` must outlive the closer and what it closes.
+  explicit FileCloser(std::function<void(int)> close = ::close,
+                      const base::TimeSource& time = base::SteadyTime());
   FileCloser(const FileCloser&) = delete;
   FileCloser& operator=(const FileCloser&) = delete;
 

@@ -47,6 +47,11 @@ struct FileThreads::Wait {
     });
   }
 
+  bool HasEnded() {
+    const std::lock_guard lock(mutex);
+    return outcome.has_value();
+  }
+
   absl::Status End() {
     const std::lock_guard lock(mutex);
     timer = nullptr;
@@ -54,13 +59,14 @@ struct FileThreads::Wait {
   }
 };
 
-FileThreads::FileThreads(milliseconds timeout) : timeout_(timeout), threads_(LimitsFor(timeout)) {}
+FileThreads::FileThreads(milliseconds timeout, const base::TimeSource& time)
+    : timeout_(timeout), time_(time), threads_(LimitsFor(timeout), time) {}
 
 net::awaitable<absl::Status> FileThreads::Run(const net::any_io_executor& executor,
                                               const std::string& owner,
                                               std::function<void()> work) {
   if (stopped_) co_return absl::CancelledError("the gateway is going away");
-  net::steady_timer timer(executor, timeout_);
+  net::steady_timer timer(executor);
   const auto wait = std::make_shared<Wait>();
   wait->timer = &timer;
   threads_.Submit(owner, [wait, work = std::move(work)](const absl::Status& status) {
@@ -68,8 +74,13 @@ net::awaitable<absl::Status> FileThreads::Run(const net::any_io_executor& execut
     Wait::Tell(wait, status);
   });
   waits_.insert(wait.get());
+  const auto deadline = time_.Now() + timeout_;
   boost::system::error_code woken;
-  co_await timer.async_wait(net::redirect_error(net::use_awaitable, woken));
+  // A timer that has fired already cannot be cancelled, so its outcome does not say it all.
+  while (!wait->HasEnded() && !stopped_ && time_.Now() < deadline) {
+    timer.expires_at(time_.LookAgainAt(deadline));
+    co_await timer.async_wait(net::redirect_error(net::use_awaitable, woken));
+  }
   waits_.erase(wait.get());
   const absl::Status outcome = wait->End();
   co_return outcome;

@@ -11,13 +11,15 @@
 
 #include "absl/status/status.h"
 #include "base/executor.h"
+#include "base/time_source.h"
 #include "gateway/awaitable.h"
 
 namespace thunderhead::gateway {
 
 class FileThreads {
  public:
-  explicit FileThreads(std::chrono::milliseconds timeout);
+  // The timeout is by `time`, which must outlive this.
+  FileThreads(std::chrono::milliseconds timeout, const base::TimeSource& time);
   FileThreads(const FileThreads&) = delete;
   FileThreads& operator=(const FileThreads&) = delete;
 
@@ -35,6 +37,7 @@ class FileThreads {
   struct Wait;
 
   const std::chrono::milliseconds timeout_;
+  const base::TimeSource& time_;
   std::unordered_set<Wait*> waits_;
   bool stopped_ = false;
   base::Executor threads_;

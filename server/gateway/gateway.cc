@@ -82,7 +82,7 @@ class Gateway::Listener {
         tls_(std::move(tls)),
         handshakes_(site_.options.max_handshakes_per_address),
         links_(site_.options.max_connections, site_.options.max_connections_per_address,
-               site_.options.trusted_proxies) {}
+               site_.options.trusted_proxies, *site_.options.time) {}
 
   ~Listener() {
     if (!thread_.joinable()) return;
@@ -138,13 +138,13 @@ class Gateway::Listener {
 
   bool MayShakeHands(const ClientLink& link) {
     return tls_ == nullptr || site_.options.trusted_proxies.Holds(link.Peer()) ||
-           !handshakes_.Take(link.Network(), std::chrono::steady_clock::now()).has_value();
+           !handshakes_.Take(link.Network(), site_.Now()).has_value();
   }
 
   void Admit(tcp::socket socket) {
     auto tls = tls_ != nullptr ? tls_->Current() : nullptr;
-    auto link = std::make_shared<ClientLink>(std::move(socket), std::move(tls),
-                                             site_.options.write_stall_timeout);
+    auto link = std::make_shared<ClientLink>(
+        std::move(socket), std::move(tls), site_.options.write_stall_timeout, *site_.options.time);
     absl::Status refused;
     if (!MayShakeHands(*link)) {
       refused = base::TooManyHandshakes();
@@ -184,7 +184,8 @@ absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& op
   THUNDERHEAD_ASSIGN_OR_RETURN(StaticFiles files, StaticFiles::Open(options.page_directory));
   std::unique_ptr<TlsContexts> tls;
   if (!options.tls_certificate.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(tls, TlsContexts::Open(options.tls_certificate, options.tls_key));
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        tls, TlsContexts::Open(options.tls_certificate, options.tls_key, *options.time));
   }
   auto listener = std::make_unique<Listener>(
       options, std::move(files),

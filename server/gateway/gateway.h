@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/time_source.h"
 #include "base/trusted_proxies.h"
 #include "grpcpp/channel.h"
 
@@ -94,6 +95,9 @@ struct GatewayOptions {
   // call, if nothing comes for this time again. While it is held back, its machine need only
   // acknowledge the ping, which it may do 200 ms later.
   std::chrono::milliseconds websocket_ping_interval = std::chrono::seconds(15);
+
+  // Every time above is by this source, which must outlive the gateway.
+  const base::TimeSource* time = &base::SteadyTime();
 
   // Timeout of a body, of a text and of the first bytes of a file, in timeouts of a header.
   static constexpr int kHeaderTimeouts = 3;

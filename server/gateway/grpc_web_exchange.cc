@@ -108,8 +108,7 @@ net::awaitable<bool> GrpcWebExchange::WriteMessage(grpc::ByteBuffer message) {
   slices.AppendTo(buffers);
   buffers.emplace_back("\r\n", 2);
   const bool written = co_await link_.WriteAll(
-      std::move(buffers),
-      ClientLink::Clock::now() + site_.options.DeliveryTime(slices.SizeBytes()));
+      std::move(buffers), site_.Now() + site_.options.DeliveryTime(slices.SizeBytes()));
   co_return written;
 }
 
@@ -118,7 +117,7 @@ net::awaitable<bool> GrpcWebExchange::WriteTrailers(const Metadata& trailers) {
   const std::string end = absl::StrFormat("%x\r\n%s\r\n0\r\n\r\n", frame.size(), frame);
   std::vector<net::const_buffer> buffers = {net::buffer(end)};
   const bool written = co_await link_.WriteAll(
-      std::move(buffers), ClientLink::Clock::now() + site_.options.DeliveryTime(end.size()));
+      std::move(buffers), site_.Now() + site_.options.DeliveryTime(end.size()));
   co_return written;
 }
 

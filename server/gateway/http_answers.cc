@@ -74,7 +74,7 @@ net::awaitable<bool> HttpAnswers::SendText(const Request& request, http::status 
 }
 
 ClientLink::Clock::time_point HttpAnswers::EndOfSending(std::uint64_t bytes) const {
-  return ClientLink::Clock::now() + site_.options.DeliveryTime(bytes);
+  return site_.Now() + site_.options.DeliveryTime(bytes);
 }
 
 std::string HttpAnswers::OwnerOf(const Request& request) const {

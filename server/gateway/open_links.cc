@@ -48,7 +48,7 @@ bool OpenLinks::MakeRoom(const ClientLink& newcomer) {
 }
 
 bool OpenLinks::CloseLeastNeeded(const std::string* network) {
-  const auto now = ClientLink::Clock::now();
+  const auto now = time_.Now();
   std::shared_ptr<ClientLink> least;
   for (const std::shared_ptr<ClientLink>& link : links_) {
     if (network != nullptr && link->Network() != *network) continue;
@@ -67,7 +67,7 @@ void OpenLinks::StopAll() {
 
 void OpenLinks::TellOfRefusal(const ClientLink& newcomer) {
   ++untold_;
-  const auto now = ClientLink::Clock::now();
+  const auto now = time_.Now();
   if (now - told_at_ < kTellingPause) return;
   spdlog::warn(
       "refused {} connections of browsers, the last of {}: {} are open, of one address at most {}",

@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "base/time_source.h"
 #include "base/trusted_proxies.h"
 #include "gateway/client_link.h"
 
@@ -16,9 +17,13 @@ namespace thunderhead::gateway {
 
 class OpenLinks {
  public:
-  // Those of `proxies` may have as many as there may be in all.
-  OpenLinks(size_t most, size_t most_per_address, base::TrustedProxies proxies)
-      : most_(most), most_per_address_(most_per_address), proxies_(std::move(proxies)) {}
+  // Those of `proxies` may have as many as there may be in all. `time` must outlive this.
+  OpenLinks(size_t most, size_t most_per_address, base::TrustedProxies proxies,
+            const base::TimeSource& time)
+      : most_(most),
+        most_per_address_(most_per_address),
+        proxies_(std::move(proxies)),
+        time_(time) {}
 
   // Closes a connection for `newcomer` where there are as many as there may be. False if none can
   // be closed.
@@ -35,6 +40,7 @@ class OpenLinks {
   const size_t most_;
   const size_t most_per_address_;
   const base::TrustedProxies proxies_;
+  const base::TimeSource& time_;
   std::unordered_set<std::shared_ptr<ClientLink>> links_;
   ClientLink::Clock::time_point told_at_{};
   uint64_t untold_ = 0;

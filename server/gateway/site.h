@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/line_limit.h"
+#include "base/time_source.h"
 #include "gateway/file_closer.h"
 #include "gateway/file_threads.h"
 #include "gateway/gateway.h"
@@ -15,16 +16,18 @@
 namespace thunderhead::gateway {
 
 struct Site {
+  base::TimeSource::Clock::time_point Now() const { return options.time->Now(); }
+
   GatewayOptions options;
   std::shared_ptr<const StaticFiles> files;  // their threads may outlive the site
   HttpPolicy policy;
   grpc::GenericStub stub;
   // Apart, so that a storage of results that hangs leaves the page alone.
-  FileThreads page_threads{options.file_timeout};
-  FileThreads kept_threads{options.file_timeout};
+  FileThreads page_threads{options.file_timeout, *options.time};
+  FileThreads kept_threads{options.file_timeout, *options.time};
   base::LineLimit failed_reads{1};  // lines of the log about them
-  std::shared_ptr<FileCloser> file_closer = std::make_shared<FileCloser>();
-  UnsentAnswers unsent_answers{options.max_unsent_bytes};
+  std::shared_ptr<FileCloser> file_closer = std::make_shared<FileCloser>(::close, *options.time);
+  UnsentAnswers unsent_answers{options.max_unsent_bytes, *options.time};
 };
 
 }  // namespace thunderhead::gateway

@@ -42,17 +42,19 @@ struct TlsContexts::State {
 };
 
 absl::StatusOr<std::unique_ptr<TlsContexts>> TlsContexts::Open(std::string certificate,
-                                                               std::string key) {
+                                                               std::string key,
+                                                               const base::TimeSource& time) {
   std::shared_ptr<State> state(
       new State{.certificate = std::move(certificate), .key = std::move(key)});
   state->stamps = state->StampsNow();
   THUNDERHEAD_RETURN_IF_ERROR(state->Load());
-  return std::unique_ptr<TlsContexts>(new TlsContexts(state));
+  return std::unique_ptr<TlsContexts>(new TlsContexts(state, time));
 }
 
-TlsContexts::TlsContexts(const std::shared_ptr<State>& state)
+TlsContexts::TlsContexts(const std::shared_ptr<State>& state, const base::TimeSource& time)
     : state_(state),
-      looks_(base::Looks::Every(kPause, state->certificate, [state] { state->Look(); })) {}
+      looks_(base::Looks::Every(
+          kPause, state->certificate, [state] { state->Look(); }, time)) {}
 
 absl::Status TlsContexts::State::Load() {
   auto context = std::make_shared<ssl::context>(ssl::context::tls_server);

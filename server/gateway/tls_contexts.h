@@ -9,15 +9,16 @@
 
 #include "absl/status/statusor.h"
 #include "base/looks.h"
+#include "base/time_source.h"
 
 namespace thunderhead::gateway {
 
 class TlsContexts {
  public:
   // PEM files: the chain, the server's own certificate first, and its key. INVALID_ARGUMENT if they
-  // cannot be read or do not belong together.
-  static absl::StatusOr<std::unique_ptr<TlsContexts>> Open(std::string certificate,
-                                                           std::string key);
+  // cannot be read or do not belong together. `time` must outlive it.
+  static absl::StatusOr<std::unique_ptr<TlsContexts>> Open(
+      std::string certificate, std::string key, const base::TimeSource& time = base::SteadyTime());
 
   // The context of the newest files that could be loaded.
   std::shared_ptr<boost::asio::ssl::context> Current();
@@ -25,7 +26,7 @@ class TlsContexts {
  private:
   struct State;
 
-  explicit TlsContexts(const std::shared_ptr<State>& state);
+  TlsContexts(const std::shared_ptr<State>& state, const base::TimeSource& time);
 
   const std::shared_ptr<State> state_;
   const std::unique_ptr<base::Looks> looks_;

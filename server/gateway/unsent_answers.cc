@@ -17,7 +17,7 @@ constexpr std::chrono::seconds kFairTime{5};
 struct UnsentAnswers::Answer {
   ClientLink& link;
   size_t bytes;  // 0 once the link was closed for others
-  Clock::time_point since = Clock::now();
+  Clock::time_point since;
   uint64_t sent_before = link.SentBytes();
 
   bool CanBeSpared(Clock::time_point now) const { return bytes > 0 && now - since > kFairTime; }
@@ -29,7 +29,7 @@ struct UnsentAnswers::Answer {
 
 std::shared_ptr<const void> UnsentAnswers::Take(ClientLink& link, size_t bytes) {
   if (bytes > max_bytes_ - bytes_ && !MakeRoom(bytes)) return nullptr;
-  auto* const answer = new Answer{link, bytes};
+  auto* const answer = new Answer{link, bytes, time_.Now()};
   bytes_ += bytes;
   answers_.insert(answer);
   return {answer, [this](Answer* ended) {
@@ -40,7 +40,7 @@ std::shared_ptr<const void> UnsentAnswers::Take(ClientLink& link, size_t bytes) 
 }
 
 bool UnsentAnswers::MakeRoom(size_t bytes) {
-  const auto now = Clock::now();
+  const auto now = time_.Now();
   size_t spared = 0;
   for (const Answer* answer : answers_) spared += answer->CanBeSpared(now) ? answer->bytes : 0;
   // Nobody is cut off in vain.

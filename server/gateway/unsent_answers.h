@@ -6,13 +6,16 @@
 #include <memory>
 #include <unordered_set>
 
+#include "base/time_source.h"
 #include "gateway/client_link.h"
 
 namespace thunderhead::gateway {
 
 class UnsentAnswers {
  public:
-  explicit UnsentAnswers(size_t max_bytes) : max_bytes_(max_bytes) {}
+  // `time` must outlive this.
+  UnsentAnswers(size_t max_bytes, const base::TimeSource& time)
+      : max_bytes_(max_bytes), time_(time) {}
   UnsentAnswers(const UnsentAnswers&) = delete;
   UnsentAnswers& operator=(const UnsentAnswers&) = delete;
 
@@ -27,6 +30,7 @@ class UnsentAnswers {
   bool MakeRoom(size_t bytes);
 
   const size_t max_bytes_;
+  const base::TimeSource& time_;
   size_t bytes_ = 0;
   std::unordered_set<Answer*> answers_;
 };

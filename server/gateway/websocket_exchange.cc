@@ -60,25 +60,23 @@ net::awaitable<void> WebSocketExchange::Run(const Request& request,
 }
 
 net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
-  // The watch takes the place of the stream's and the WebSocket's own timeouts, which would drop
-  // a client that is held back, or that is slow to take in a large message.
-  link_->Stream().expires_never();
-  websocket::stream_base::timeout timeout = {site_.options.idle_timeout,
-                                             websocket::stream_base::none(), false};
-  socket_.set_option(timeout);
+  // The stream and the watch limit the time, not the WebSocket's own timeouts: they would drop a
+  // client that is held back, or that is slow to take in a large message.
+  socket_.set_option(websocket::stream_base::timeout{websocket::stream_base::none(),
+                                                     websocket::stream_base::none(), false});
+  link_->Stream().expires_after(site_.options.idle_timeout);
   socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
     response.set(boost::beast::http::field::sec_websocket_protocol, kWebSocketSubprotocol);
   }));
   error_code error;
   co_await socket_.async_accept(request, net::redirect_error(net::use_awaitable, error));
   if (error) co_return false;
-  timeout.handshake_timeout = websocket::stream_base::none();
-  socket_.set_option(timeout);
+  link_->Stream().expires_never();
   reader_.Limit(site_.options.max_message_bytes);
   socket_.binary(true);
   // Otherwise each message would be sent in frames of 4 KiB.
   socket_.auto_fragment(false);
-  accepted_at_ = PeerLiveness::Clock::now();
+  accepted_at_ = site_.Now();
   co_return true;
 }
 
@@ -147,7 +145,7 @@ net::awaitable<bool> WebSocketExchange::WriteTrailers(const Metadata& trailers) 
 
 net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffer>& buffers) {
   is_writing_ = true;
-  write_end_ = PeerLiveness::Clock::now() + site_.options.DeliveryTime(net::buffer_size(buffers));
+  write_end_ = site_.Now() + site_.options.DeliveryTime(net::buffer_size(buffers));
   error_code error;
   co_await socket_.async_write(buffers, net::redirect_error(net::use_awaitable, error));
   is_writing_ = false;
@@ -211,15 +209,14 @@ net::awaitable<error_code> WebSocketExchange::ForwardMessage() {
 net::awaitable<void> WebSocketExchange::Watch() {
   const GatewayOptions& options = site_.options;
   PeerLiveness liveness(
-      {options.websocket_ping_interval, options.write_stall_timeout, kCloseTimeout},
-      PeerLiveness::Clock::now());
+      {options.websocket_ping_interval, options.write_stall_timeout, kCloseTimeout}, site_.Now());
   const milliseconds period =
       std::clamp(std::min({options.websocket_ping_interval, options.write_stall_timeout,
                            options.header_timeout}) /
                      4,
                  kFastestWatch, kSlowestWatch);
   while (link_->Stream().socket().is_open()) {
-    watch_timer_.expires_after(period);
+    watch_timer_.expires_at(options.time->LookAgainAt(site_.Now() + period));
     error_code woken;
     co_await watch_timer_.async_wait(net::redirect_error(net::use_awaitable, woken));
     if (link_->Stream().socket().is_open()) Judge(liveness);
@@ -227,7 +224,7 @@ net::awaitable<void> WebSocketExchange::Watch() {
 }
 
 void WebSocketExchange::Judge(PeerLiveness& liveness) {
-  const auto now = PeerLiveness::Clock::now();
+  const auto now = site_.Now();
   // Beast itself answers a close frame, and closes a connection that breaks the protocol. Its
   // reader returns only when the TCP connection has ended too.
   if (!socket_.is_open()) BeginClosing();
@@ -267,7 +264,7 @@ void WebSocketExchange::BeginClosing() {
 
 void WebSocketExchange::GoAway() {
   EndWith({websocket::close_code::going_away, "the server is going away"});
-  leave_by_ = std::chrono::steady_clock::now() + kLeaveTimeout;
+  leave_by_ = site_.Now() + kLeaveTimeout;
 }
 
 void WebSocketExchange::Abandon() {

@@ -71,7 +71,8 @@ class OptionalTls {
     return Begin<&OptionalTls::Send>(buffers, std::forward<Token>(token));
   }
 
-  void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
+  // Called by async_read_some; a stream that limits the time of its reads overrides it.
+  virtual void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
   void Send(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
   // Called by async_write_some; sends, unless a stream that keeps count of its writes overrides it.
   virtual void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);

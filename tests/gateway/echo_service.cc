@@ -28,16 +28,26 @@ grpc::Status FailureOf(const FailRequest& request) {
 }
 
 // Writes `count` responses with a pause before each, then finishes with `end`.
-class Counter final : public grpc::ServerWriteReactor<CountResponse> {
+class Counter final : public grpc::ServerWriteReactor<CountResponse>, private HeldCall {
  public:
-  Counter(EchoRecord& record, CountRequest request, grpc::Status end)
-      : record_(record), request_(std::move(request)), end_(std::move(end)) {
+  Counter(EchoRecord& record, HeldCalls& held, CountRequest request, grpc::Status end)
+      : record_(record), held_(held), request_(std::move(request)), end_(std::move(end)) {
     ++record_.started;
+    held_.Add(this);
     StartSendInitialMetadata();
     Next();
   }
 
  private:
+  void Release() override {
+    {
+      const std::lock_guard lock(mutex_);
+      released_ = true;
+      if (!std::exchange(is_held_, false)) return;
+    }
+    Next();
+  }
+
   void OnWriteDone(bool ok) override {
     if (!ok) {
       Finish(grpc::Status::CANCELLED);
@@ -50,9 +60,14 @@ class Counter final : public grpc::ServerWriteReactor<CountResponse> {
     ++record_.cancelled;
     const std::lock_guard lock(mutex_);
     cancelled_ = true;
-    alarm_.Cancel();
+    if (std::exchange(is_held_, false)) {
+      Finish(grpc::Status::CANCELLED);
+    } else {
+      alarm_.Cancel();
+    }
   }
   void OnDone() override {
+    held_.Remove(this);
     ++record_.done;
     delete this;
   }
@@ -63,6 +78,8 @@ class Counter final : public grpc::ServerWriteReactor<CountResponse> {
       Finish(cancelled_ ? grpc::Status::CANCELLED : end_);
       return;
     }
+    is_held_ = !released_ && request_.has_hold_after() && next_ == request_.hold_after();
+    if (is_held_) return;
     const auto pause = std::chrono::milliseconds(request_.interval_ms());
     alarm_.Set(std::chrono::system_clock::now() + pause, [this](bool expired) {
       if (!expired) {
@@ -77,10 +94,13 @@ class Counter final : public grpc::ServerWriteReactor<CountResponse> {
   }
 
   EchoRecord& record_;
+  HeldCalls& held_;
   const CountRequest request_;
   const grpc::Status end_;
   std::mutex mutex_;  // between a cancellation and the next alarm
   bool cancelled_ = false;
+  bool is_held_ = false;
+  bool released_ = false;
   grpc::Alarm alarm_;
   CountResponse response_;
   uint32_t next_ = 0;
@@ -175,7 +195,7 @@ grpc::ServerUnaryReactor* EchoService::Say(grpc::CallbackServerContext* context,
 
 grpc::ServerWriteReactor<CountResponse>* EchoService::Count(grpc::CallbackServerContext*,
                                                             const CountRequest* request) {
-  return new Counter(record_, *request, grpc::Status::OK);
+  return new Counter(record_, held_, *request, grpc::Status::OK);
 }
 
 grpc::ServerWriteReactor<CountResponse>* EchoService::Fail(grpc::CallbackServerContext* context,
@@ -183,7 +203,7 @@ grpc::ServerWriteReactor<CountResponse>* EchoService::Fail(grpc::CallbackServerC
   context->AddTrailingMetadata("failed-after", absl::StrCat(request->messages()));
   CountRequest count;
   count.set_count(request->messages());
-  return new Counter(record_, count, FailureOf(*request));
+  return new Counter(record_, held_, count, FailureOf(*request));
 }
 
 grpc::ServerUnaryReactor* EchoService::FailOnce(grpc::CallbackServerContext* context,
@@ -253,7 +273,8 @@ EchoSite::~EchoSite() {
 }
 
 void EchoSite::StopServer() {
-  server_->Shutdown(std::chrono::system_clock::now() + std::chrono::seconds(5));
+  // Cancels the calls at once.
+  server_->Shutdown(std::chrono::system_clock::now());
 }
 
 }  // namespace thunderhead::gateway::test

@@ -3,6 +3,8 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,9 +24,38 @@ struct EchoRecord {
   std::atomic<int> done = 0;
 };
 
+// A call that waits until the test releases it.
+class HeldCall {
+ public:
+  virtual ~HeldCall() = default;
+  virtual void Release() = 0;
+};
+
+// The calls that may be held. Safe from any thread.
+class HeldCalls {
+ public:
+  void Add(HeldCall* call) {
+    const std::lock_guard lock(mutex_);
+    calls_.insert(call);
+  }
+  void Remove(HeldCall* call) {
+    const std::lock_guard lock(mutex_);
+    calls_.erase(call);
+  }
+  void ReleaseAll() {
+    const std::lock_guard lock(mutex_);
+    for (HeldCall* const call : calls_) call->Release();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<HeldCall*> calls_;
+};
+
 class EchoService final : public Echo::CallbackService {
  public:
   EchoRecord& Record() { return record_; }
+  HeldCalls& Held() { return held_; }
 
   grpc::ServerUnaryReactor* Say(grpc::CallbackServerContext* context, const SayRequest* request,
                                 SayResponse* response) override;
@@ -44,6 +75,7 @@ class EchoService final : public Echo::CallbackService {
 
  private:
   EchoRecord record_;
+  HeldCalls held_;
 };
 
 // The service, its server and a gateway to it, by a Unix socket as in the program.
@@ -53,6 +85,8 @@ class EchoSite {
   ~EchoSite();
 
   EchoRecord& Record() { return service_.Record(); }
+  // Lets the calls continue that are held by CountRequest.hold_after.
+  void Release() { service_.Held().ReleaseAll(); }
   const Gateway& Front() const { return *gateway_; }
   uint16_t Port() const { return gateway_->Port(); }
   void StopGateway() { gateway_.reset(); }

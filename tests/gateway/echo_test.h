@@ -1,24 +1,64 @@
 // A fixture with a gateway to the test service, which is started when a test first asks for it.
 #pragma once
 
+#include <chrono>
 #include <memory>
 
 #include "gtest/gtest.h"
 #include "tests/gateway/echo_service.h"
+#include "tests/gateway/raw_client.h"
+#include "tests/gateway/watched_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::gateway::test {
 
 class EchoTest : public ::testing::Test {
  protected:
+  // No limit of time is reached in a test, however slow the machine is. A test of one sets it, and
+  // mostly drives it by time_.
+  EchoTest() {
+    constexpr std::chrono::hours kNever{24};
+    options_.idle_timeout = kNever;
+    options_.header_timeout = kNever;
+    options_.file_timeout = kNever;
+    options_.write_stall_timeout = kNever;
+    options_.websocket_ping_interval = kNever;
+  }
+
   EchoSite& Site() {
     if (site_ == nullptr) site_ = EchoSite::Start(options_);
     return *site_;
   }
   EchoRecord& Record() { return Site().Record(); }
 
-  GatewayOptions options_;
+  // Puts the gateway's limits of time under time_.
+  void DriveTime() { options_.time = &time_; }
+  // Lets time pass until `condition()` is true.
+  template <typename Condition>
+  bool WaitWhileTimePasses(Condition condition) {
+    return testing::WaitFor([&] {
+      time_.Advance(std::chrono::seconds(1));
+      return condition();
+    });
+  }
+  WatchedTime::Clock::duration Since(WatchedTime::Clock::time_point begin) const {
+    return time_.Now() - begin;
+  }
 
- private:
+  // The gateway and the server have handled another client's call meanwhile.
+  void LetOthersCall() { EXPECT_EQ(Call(Site().Port(), "Say", "").Trailer("grpc-status"), "0"); }
+  // Waits until handlers write no more responses, however many other calls are handled.
+  void AwaitHandlersHeldBack() {
+    constexpr int kCalls = 50;
+    int before = -1;
+    while (before != Record().written) {
+      before = Record().written;
+      for (int i = 0; i < kCalls; ++i) LetOthersCall();
+    }
+  }
+
+  WatchedTime time_;
+  GatewayOptions options_;
   std::unique_ptr<EchoSite> site_;
 };
 

@@ -18,7 +18,7 @@ namespace net = boost::asio;
 
 TEST(FileThreadsTest, AWholeClassMayHaveOneAddress) {
   net::io_context io;
-  FileThreads threads(std::chrono::seconds(20));
+  FileThreads threads(std::chrono::hours(24), base::SteadyTime());
   std::promise<void> go;
   const std::shared_future<void> gone = go.get_future().share();
   int served = 0;

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/gateway/echo_service.h"
+#include "tests/gateway/echo_test.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/gateway/websocket_client.h"
 #include "tests/support/temporary_folder.h"
@@ -26,11 +26,9 @@ namespace thunderhead::gateway::test {
 namespace {
 
 namespace http = boost::beast::http;
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 using ::testing::HasSubstr;
 
-class HungFilesTest : public ::testing::Test {
+class HungFilesTest : public EchoTest {
  protected:
   HungFilesTest() {
     std::ofstream(folder_.File("index.html")) << "<html>storm</html>";
@@ -38,7 +36,10 @@ class HungFilesTest : public ::testing::Test {
     options_.page_directory = folder_.Path().string();
     EXPECT_EQ(mkfifo(hung_.c_str(), 0600), 0);
     options_.find_kept_file = [this](std::string_view path) -> std::optional<KeptFile> {
-      if (path == "/results/hung/0") return KeptFile{hung_, "hung"};
+      if (path == "/results/hung/0") {
+        ++asked_;
+        return KeptFile{hung_, "hung"};
+      }
       if (path == "/results/fine/0") return KeptFile{folder_.File("result.png"), "fine"};
       return std::nullopt;
     };
@@ -50,67 +51,76 @@ class HungFilesTest : public ::testing::Test {
     close(storage);
   }
 
-  EchoSite& Site() {
-    if (site_ == nullptr) site_ = EchoSite::Start(options_);
-    return *site_;
-  }
-  // Asks without waiting for the answer.
-  std::unique_ptr<RawClient> AskHung() {
-    auto client = std::make_unique<RawClient>(Site().Port());
-    client->Send("GET /results/hung/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    return client;
+  // So many clients ask, and the gateway has their requests.
+  std::vector<std::unique_ptr<RawClient>> AskHung(int count) {
+    std::vector<std::unique_ptr<RawClient>> clients;
+    for (int i = 0; i < count; ++i) {
+      clients.push_back(std::make_unique<RawClient>(Site().Port()));
+      clients.back()->Send("GET /results/hung/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    }
+    EXPECT_TRUE(testing::WaitFor([&] { return asked_ == count; }));
+    return clients;
   }
   Response Ask(const std::string& target) { return RawClient(Site().Port()).Ask("GET", target); }
 
   testing::TemporaryFolder folder_;
   const std::string hung_ = folder_.File("hung.png");
-  GatewayOptions options_;
-  std::unique_ptr<EchoSite> site_;
+  std::atomic<int> asked_{0};
 };
 
 TEST_F(HungFilesTest, OnlyWhoWantsThemWaits) {
+  DriveTime();
   WebSocketClient viewer(Site().Port());
   const std::string message("\0\x0a\x05storm", 8);
-  std::vector<std::unique_ptr<RawClient>> hung;
-  for (int i = 0; i < 4; ++i) hung.push_back(AskHung());
-  std::this_thread::sleep_for(milliseconds(100));
-  const auto start = steady_clock::now();
+  const auto hung = AskHung(4);
   viewer.Send(message);
   EXPECT_TRUE(viewer.Receive().has_value());
   EXPECT_EQ(Ask("/").body(), "<html>storm</html>");
   EXPECT_EQ(Call(Site().Port(), "Say", "").Trailer("grpc-status"), "0");
-  EXPECT_LT(steady_clock::now() - start, milliseconds(1000));
-  // As many as there are threads hang, and yet another result comes.
-  EXPECT_EQ(Ask("/results/fine/0").body(), "picture");
-  EXPECT_LT(steady_clock::now() - start, milliseconds(5000));
+  // As many as there are threads hang, and yet another result comes once they have hung for a
+  // while.
+  RawClient fine(Site().Port());
+  fine.Send("GET /results/fine/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_TRUE(WaitWhileTimePasses([&] { return fine.HasInput(); }));
+  EXPECT_EQ(fine.Read().body(), "picture");
+  for (const auto& client : hung) EXPECT_FALSE(client->HasInput());
   viewer.Vanish();
 }
 
 TEST_F(HungFilesTest, WhoWantsThemIsToldToTryAgain) {
-  options_.file_timeout = milliseconds(200);
+  DriveTime();
+  options_.file_timeout = std::chrono::seconds(10);
+  const auto begin = time_.Now();
   // More than may hang at once.
-  std::vector<std::unique_ptr<RawClient>> hung;
-  for (int i = 0; i < 40; ++i) hung.push_back(AskHung());
-  const auto start = steady_clock::now();
+  const auto hung = AskHung(40);
   for (const auto& client : hung) {
+    EXPECT_TRUE(WaitWhileTimePasses([&] { return client->HasInput(); }));
+    EXPECT_GE(Since(begin), options_.file_timeout);
     const Response answer = client->Read();
     EXPECT_EQ(answer.result(), http::status::service_unavailable);
     EXPECT_EQ(answer["Retry-After"], "10");
     EXPECT_THAT(answer.body(), HasSubstr("does not answer"));
   }
-  EXPECT_LT(steady_clock::now() - start, milliseconds(3000));
   EXPECT_EQ(Ask("/").body(), "<html>storm</html>");
 }
 
 TEST_F(HungFilesTest, TheGatewayEndsWithoutThem) {
-  options_.file_timeout = std::chrono::seconds(60);
-  const auto hung = AskHung();
-  std::this_thread::sleep_for(milliseconds(100));
-  const auto start = steady_clock::now();
-  site_->StopGateway();
+  // Static, as a thread that is left behind may still read it.
+  static WatchedTime time;
+  options_.time = &time;
+  const auto hung = AskHung(1);
+  std::atomic<bool> is_stopped{false};
+  std::thread stop([&] {
+    site_->StopGateway();
+    is_stopped = true;
+  });
   // It leaves the thread behind after a few seconds.
-  EXPECT_LT(steady_clock::now() - start, std::chrono::seconds(20));
-  EXPECT_TRUE(hung->IsEnded());
+  EXPECT_TRUE(testing::WaitFor([&] {
+    time.Advance(std::chrono::seconds(1));
+    return is_stopped.load();
+  }));
+  stop.join();
+  EXPECT_TRUE(hung.front()->IsEnded());
 }
 
 TEST_F(HungFilesTest, WhoCannotBeSentItsBeginningIsToldToTryAgain) {

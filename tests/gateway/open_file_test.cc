@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <fstream>
 #include <future>
 #include <memory>
@@ -12,9 +11,6 @@
 
 namespace thunderhead::gateway::test {
 namespace {
-
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 
 class OpenFileTest : public ::testing::Test {
  protected:
@@ -52,10 +48,8 @@ TEST_F(OpenFileTest, WhoLetsItGoDoesNotWaitForAStorageThatHangs) {
         until.wait();
         close(number);
       });
-  const auto start = steady_clock::now();
-  // More than there are threads.
+  // More than there are threads. Without threads of the closer, the first would never end.
   for (int i = 0; i < 40; ++i) Open(closer);
-  EXPECT_LT(steady_clock::now() - start, milliseconds(500));
   answers.set_value();
 }
 

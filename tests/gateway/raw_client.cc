@@ -1,5 +1,6 @@
 #include "tests/gateway/raw_client.h"
 
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <boost/asio/connect.hpp>
@@ -7,11 +8,11 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/read.hpp>
-#include <chrono>
 #include <limits>
 #include <stdexcept>
 
 #include "absl/strings/str_cat.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::gateway::test {
 namespace {
@@ -20,8 +21,6 @@ namespace net = boost::asio;
 namespace http = boost::beast::http;
 using boost::system::error_code;
 using net::ip::tcp;
-
-constexpr std::chrono::seconds kRawPatience{10};
 
 void ThrowOn(const error_code& error, const char* what) {
   if (error) throw std::runtime_error(absl::StrCat(what, ": ", error.message()));
@@ -58,7 +57,7 @@ RawClient::RawClient(uint16_t port, int receive_buffer_bytes) : stream_(io_) {
 template <typename Start>
 error_code RawClient::Await(Start start) {
   error_code result;
-  stream_.expires_after(kRawPatience);
+  stream_.expires_after(testing::kHangLimit);
   start([&result](error_code error, size_t) { result = error; });
   io_.restart();
   io_.run();
@@ -158,6 +157,11 @@ error_code RawClient::ReadInto(std::string* all) {
     all->append(bytes, count);
   }
   return error;
+}
+
+bool RawClient::HasInput() {
+  pollfd state = {stream_.socket().native_handle(), POLLIN, 0};
+  return buffer_.size() > 0 || ::poll(&state, 1, 0) == 1;
 }
 
 void RawClient::SendNow(const std::string& bytes) {

@@ -1,5 +1,5 @@
 // An HTTP/1.1 client that sends exactly the given bytes, and parses gRPC-Web without a library.
-// Every wait ends after ten seconds.
+// Every wait ends after testing::kHangLimit.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -44,6 +44,8 @@ class RawClient {
   bool IsEnded();
   // All bytes that the server sends before the connection ends.
   std::string ReadToEnd();
+  // True if bytes of the server, or its end of the connection, wait to be read.
+  bool HasInput();
   // Sends what the kernel takes at once; also while another thread waits for the server.
   void SendNow(const std::string& bytes);
   void ShutdownSending();

@@ -2,15 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "base/error_details.h"
 #include "tests/gateway/echo_test.h"
-#include "tests/gateway/eventually.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/gateway/websocket_client.h"
 
@@ -85,7 +82,7 @@ TEST_F(RefusalsTest, WhatIsTooLargeIsTold) {
   RawClient endless(Port());
   endless.Send("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100'000, 'x'));
   EXPECT_EQ(endless.Read().result(), http::status::request_header_fields_too_large);
-  EXPECT_TRUE(Eventually([&] { return Told().size() == 3; }));
+  EXPECT_TRUE(testing::WaitFor([&] { return Told().size() == 3; }));
   EXPECT_THAT(Told(), ElementsAre("Message MESSAGE_TOO_LARGE", "Message MESSAGE_TOO_LARGE",
                                   "Request HEADER_TOO_LARGE"));
 }

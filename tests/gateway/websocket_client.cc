@@ -1,9 +1,17 @@
 #include "tests/gateway/websocket_client.h"
 
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+
+#include <boost/asio/post.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
+#include <chrono>
 #include <stdexcept>
 
 #include "absl/strings/str_cat.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::gateway::test {
 namespace {
@@ -12,10 +20,6 @@ namespace net = boost::asio;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 using net::ip::tcp;
-using std::chrono::milliseconds;
-
-// ThreadSanitizer takes seconds for a message of 1 MiB: it examines every suppressed race in gRPC.
-constexpr std::chrono::seconds kPatience{60};
 
 }  // namespace
 
@@ -32,6 +36,10 @@ WebSocketClient::WebSocketClient(uint16_t port, const Options& options) : socket
         request.set("Sec-WebSocket-Protocol", "grpc-websocket.v1");
         for (const auto& [name, value] : options.headers) request.set(name, value);
       }));
+  socket_.control_callback([this](websocket::frame_type kind, boost::beast::string_view) {
+    // What is posted runs after the answer is sent.
+    if (kind == websocket::frame_type::ping) net::post(io_, [this] { ++pings_answered_; });
+  });
   socket_.read_message_max(0);
   socket_.binary(true);
   websocket::response_type response;
@@ -44,7 +52,7 @@ WebSocketClient::WebSocketClient(uint16_t port, const Options& options) : socket
 
 template <typename Done>
 void WebSocketClient::RunUntil(const Done& done) {
-  const auto patience = std::chrono::steady_clock::now() + kPatience;
+  const auto patience = std::chrono::steady_clock::now() + testing::kHangLimit;
   io_.restart();
   while (!done()) {
     if (io_.stopped()) io_.restart();
@@ -81,13 +89,15 @@ void WebSocketClient::SendText(const std::string& message) {
   socket_.binary(true);
 }
 
-int WebSocketClient::SendUntilHeldBack(const std::string& message, int most) {
+int WebSocketClient::SendUntilHeldBack(const std::string& message, int most,
+                                       const std::function<void()>& elsewhere) {
+  constexpr int kTurns = 50;
   for (int sent = 0; sent < most; ++sent) {
     SendLater(message);
-    const auto patience = std::chrono::steady_clock::now() + milliseconds(500);
-    while (is_writing_ && std::chrono::steady_clock::now() < patience) {
-      if (io_.stopped()) io_.restart();
-      io_.run_one_until(patience);
+    for (int turn = 0; is_writing_ && turn < kTurns; ++turn) {
+      io_.restart();
+      io_.poll();
+      if (is_writing_) elsewhere();
     }
     if (is_writing_) return sent;
   }
@@ -129,6 +139,23 @@ void WebSocketClient::Close() {
   socket_.async_close(websocket::close_code::normal, [&](error_code) { done = true; });
   RunUntil([&] { return done; });
   has_ended_ = true;
+}
+
+int WebSocketClient::UnreadBytes() {
+  int bytes = 0;
+  ::ioctl(socket_.next_layer().socket().native_handle(), FIONREAD, &bytes);
+  return bytes;
+}
+
+void WebSocketClient::Acknowledge() {
+  const int on = 1;
+  ::setsockopt(socket_.next_layer().socket().native_handle(), IPPROTO_TCP, TCP_QUICKACK, &on,
+               sizeof(on));
+}
+
+bool WebSocketClient::HasHungUp() {
+  pollfd state = {socket_.next_layer().socket().native_handle(), POLLRDHUP, 0};
+  return ::poll(&state, 1, 0) == 1;
 }
 
 bool WebSocketClient::IsCut() {

@@ -1,15 +1,16 @@
 // A WebSocket client for tests, with nothing of grpc-websocket.v1 but the subprotocol's name. It
 // reads, and answers pings and closing, only within Receive() and the like. Every wait ends after
-// a minute.
+// testing::kHangLimit.
 #pragma once
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket/stream.hpp>
-#include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -35,8 +36,10 @@ class WebSocketClient {
   // Sends a message while Receive() runs.
   void SendLater(const std::string& message);
   void SendText(const std::string& message);
-  // Sends a message until the server accepts none for 500 ms; returns how many it accepted.
-  int SendUntilHeldBack(const std::string& message, int most);
+  // Sends a message until the server accepts none however often it does something else, which
+  // `elsewhere` makes it do; returns how many it accepted.
+  int SendUntilHeldBack(const std::string& message, int most,
+                        const std::function<void()>& elsewhere);
   // The next message; none if the connection has ended, with CloseCode().
   std::optional<std::string> Receive();
   // Reads all messages until the connection ends.
@@ -52,6 +55,16 @@ class WebSocketClient {
   // True if the connection ends within the wait, though this client answers nothing.
   bool IsCut();
 
+  // Pings that were answered. From any thread.
+  int PingsAnswered() const { return pings_answered_; }
+  // Bytes that the kernel keeps for this client.
+  int UnreadBytes();
+  // Acknowledges the bytes that the kernel has received, which it does up to 200 ms later
+  // otherwise.
+  void Acknowledge();
+  // True if the server has ended the connection.
+  bool HasHungUp();
+
  private:
   template <typename Done>
   void RunUntil(const Done& done);
@@ -63,6 +76,7 @@ class WebSocketClient {
   std::deque<std::string> unsent_;
   bool is_writing_ = false;
   bool has_ended_ = false;
+  std::atomic<int> pings_answered_{0};
 };
 
 }  // namespace thunderhead::gateway::test
