@@ -19,15 +19,22 @@ namespace v1 = thunderhead::v1;
 constexpr int kUsage = 64;
 constexpr int kUnavailable = 69;
 constexpr int kCannotCreate = 73;
-constexpr std::chrono::minutes kPatience{2};
+constexpr std::chrono::minutes kPatience{10};
 
-// Keeps the JPEG of the first refined frame. Its methods are called on the session's thread.
+// Returns true for a picture in full quality. On a slow machine the first one at rest has fewer
+// rays.
+bool IsFull(const v1::Frame& frame) {
+  return frame.refined() && (!frame.has_accuracy() || frame.accuracy().image_scale() >= 1.0F);
+}
+
+// Keeps the JPEG of the first frame in full quality. Its methods are called on the session's
+// thread.
 class FirstPicture final : public client::SessionListener {
  public:
   void Changed() override {}
   void StreamBegan() override {}
   void Received(v1::Frame frame, std::size_t /*bytes*/) override {
-    if (!frame.refined()) return;
+    if (!IsFull(frame)) return;
     const std::lock_guard lock(mutex_);
     if (!jpeg_.empty()) return;
     jpeg_ = frame.jpeg();
@@ -66,6 +73,8 @@ int main(int argc, char** argv) {
   options.name = "save_picture";
   options.scene.mutable_output()->set_width_px(640);
   options.scene.mutable_output()->set_height_px(400);
+  // Otherwise traced paths correct the picture while it rests, and the first one may have some.
+  options.scene.mutable_rendering()->mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_OFF);
   FirstPicture picture;
   client::Session session(*connection, options, picture);  // joins on a thread of its own
   const std::string jpeg = picture.Await();

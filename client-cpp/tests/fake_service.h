@@ -12,12 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/wait_for.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 #include "thunderhead_client/connection.h"
 
 namespace thunderhead::client::testing {
 
-inline constexpr std::chrono::seconds kPatience{15};
+inline constexpr auto kPatience = thunderhead::testing::kHangLimit;
 
 class FakeService final : public v1::ThunderheadService::Service {
  public:

@@ -8,15 +8,17 @@
 
 #include <atomic>
 #include <cstring>
+#include <mutex>
 
 #include "gtest/gtest.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::client {
 namespace {
 
 constexpr int kWidth = 64;
 constexpr int kHeight = 48;
-constexpr auto kPatience = std::chrono::seconds(15);
+using thunderhead::testing::WaitFor;
 
 // A grey picture of that level.
 std::string JpegOf(std::uint8_t level, int width = kWidth, int height = kHeight) {
@@ -82,25 +84,26 @@ class PictureFlowTest : public ::testing::Test {
  protected:
   // Waits for a picture of at least that sequence; those before it are taken and dropped.
   std::unique_ptr<Picture> Await(std::uint64_t sequence) {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    while (std::chrono::steady_clock::now() < deadline) {
-      auto picture = flow.Take();
-      if (picture != nullptr && picture->frame.sequence() >= sequence) return picture;
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return nullptr;
+    std::unique_ptr<Picture> picture;
+    const bool came = WaitFor([&] {
+      picture = flow.Take();
+      return picture != nullptr && picture->frame.sequence() >= sequence;
+    });
+    return came ? std::move(picture) : nullptr;
   }
-  void AwaitFailure() {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    while (failures == 0 && lost == 0 && std::chrono::steady_clock::now() < deadline) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+  bool AwaitFailure() {
+    return WaitFor([&] { return failures > 0 || lost > 0; });
   }
 
   std::atomic<int> readies{0};
   std::atomic<int> lost{0};
   std::atomic<int> failures{0};
-  PictureFlow flow{{[this] { ++readies; }, [this](const v1::Frame&) { ++lost; },
+  std::mutex decoding;  // held: the decoder waits after the picture that it has made ready
+  PictureFlow flow{{[this] {
+                      ++readies;
+                      const std::lock_guard waits(decoding);
+                    },
+                    [this](const v1::Frame&) { ++lost; },
                     [this](const std::string&) { ++failures; }}};
 };
 
@@ -120,8 +123,8 @@ TEST_F(PictureFlowTest, TheNewestOfManyIsShownAndTheOthersAreCounted) {
   constexpr std::uint64_t kCount = 200;
   for (std::uint64_t i = 1; i <= kCount; ++i)
     flow.Offer(JpegFrame(i, static_cast<std::uint8_t>(i)), 1);
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  // Nothing was taken meanwhile: what waits is the newest.
+  // Nothing is taken meanwhile: all but the newest are dropped, before or after they are decoded.
+  ASSERT_TRUE(WaitFor([&] { return flow.dropped() == kCount - 1 && readies > 0; }));
   const auto picture = flow.Take();
   ASSERT_NE(picture, nullptr);
   EXPECT_EQ(picture->frame.sequence(), kCount);
@@ -129,16 +132,17 @@ TEST_F(PictureFlowTest, TheNewestOfManyIsShownAndTheOthersAreCounted) {
 }
 
 TEST_F(PictureFlowTest, VideoIsDecodedInOrderHoweverFewArePainted) {
-  // All at once, and while the decoder is busy with something large, so that they wait for it.
+  // All at once, and while the decoder is busy, so that they wait for it.
   Encoder encoder;
   std::vector<v1::Frame> frames;
   for (int i = 0; i < 20; ++i)
     frames.push_back(encoder.Next(static_cast<std::uint8_t>(60 + 5 * i)));
-  v1::Frame large;
-  large.set_jpeg(JpegOf(90, 6000, 4000));
-  flow.Offer(large, 1);
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  for (v1::Frame& frame : frames) flow.Offer(std::move(frame), 1);
+  {
+    const std::lock_guard busy(decoding);
+    flow.Offer(JpegFrame(0, 90), 1);
+    ASSERT_TRUE(WaitFor([&] { return readies > 0; }));
+    for (v1::Frame& frame : frames) flow.Offer(std::move(frame), 1);
+  }
   const auto picture = Await(20);
   ASSERT_NE(picture, nullptr);
   EXPECT_EQ(picture->encoding, "VP9");
@@ -150,7 +154,7 @@ TEST_F(PictureFlowTest, VideoWithoutItsKeyFrameIsLost) {
   Encoder encoder;
   encoder.Next(60);
   flow.Offer(encoder.Next(70), 1);
-  AwaitFailure();
+  ASSERT_TRUE(AwaitFailure());
   EXPECT_EQ(lost, 1);
   EXPECT_EQ(failures, 0);
 }
@@ -160,7 +164,7 @@ TEST_F(PictureFlowTest, ABrokenPictureFailsAndTheNextIsShown) {
   broken.set_sequence(1);
   broken.set_jpeg("no JPEG at all");
   flow.Offer(broken, 1);
-  AwaitFailure();
+  ASSERT_TRUE(AwaitFailure());
   EXPECT_EQ(failures, 1);
   flow.Offer(JpegFrame(2, 90), 1);
   EXPECT_NE(Await(2), nullptr);
@@ -168,7 +172,7 @@ TEST_F(PictureFlowTest, ABrokenPictureFailsAndTheNextIsShown) {
 
 TEST_F(PictureFlowTest, WhatWaitsOfAnOldCallIsDropped) {
   flow.Offer(JpegFrame(9, 90), 1);
-  while (readies == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(WaitFor([&] { return readies > 0; }));
   flow.StartStream();
   EXPECT_EQ(flow.Take(), nullptr);
 }

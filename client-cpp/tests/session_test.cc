@@ -78,6 +78,11 @@ class SessionTest : public ::testing::Test {
     }
     return newest;
   }
+  // The most cameras or pointers that may have been sent: the first at once, then 30 a second.
+  static long MostSince(std::chrono::steady_clock::time_point began) {
+    const std::chrono::duration<double> past = std::chrono::steady_clock::now() - began;
+    return 1 + static_cast<long>(past.count() * 30.0);
+  }
   static SceneSync::Edit SunTo(float azimuth_deg) {
     return [=](v1::Scene& scene) { scene.mutable_sun()->set_azimuth_deg(azimuth_deg); };
   }
@@ -140,7 +145,11 @@ TEST_F(SessionTest, WhileAnswersAreLateTheNewestEditWins) {
   for (int i = 0; i < 500; ++i) session->Edit(SunTo(static_cast<float>(i % 360)));
   EXPECT_EQ(session->State().scene.sun().azimuth_deg(), 139.0F);
   ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  // Another scene that is to be sent goes at the latest between these two.
+  for (const long later : {1, 2}) {
+    session->SetName("A later request");
+    ASSERT_TRUE(AwaitCount(v1::InteractRequest::kSetName, later));
+  }
   EXPECT_LE(Count(service.All(), v1::InteractRequest::kUpdateScene), 4);
 }
 
@@ -328,11 +337,13 @@ TEST_F(SessionTest, EndsWithoutWaitingForAServerThatHangs) {
     over.get_future().wait();
     return grpc::Status::OK;
   };
-  session = std::make_unique<Session>(service.Connect(), SessionOptions(), listener);
+  SessionOptions options;
+  options.patience = kPatience;  // whoever waits for it hangs
+  session = std::make_unique<Session>(service.Connect(), options, listener);
   asked.get_future().wait();
   const auto began = std::chrono::steady_clock::now();
   session.reset();
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
+  EXPECT_LT(std::chrono::steady_clock::now() - began, kPatience);
   over.set_value();
 }
 
@@ -357,13 +368,14 @@ TEST_F(SessionTest, WhoDoesNotSteerLooksAroundAndFollowsAgain) {
   Begin();
   service.SendPresence(3);
   ASSERT_TRUE(listener.Await([&] { return session->State().presence.steering_viewer_id() == 3; }));
+  const auto began = std::chrono::steady_clock::now();
   EXPECT_TRUE(session->ShowCamera(HomeCamera(v1::Camera::kTopDown)));
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kDetach, 1));
   for (int i = 0; i < 100; ++i) session->ShowCamera(HomeCamera(v1::Camera::kSpotter));
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kMoveCamera, 1));
   session->Follow();
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kFollow, 1));
-  EXPECT_LT(Count(service.All(), v1::InteractRequest::kMoveCamera), 10);
+  EXPECT_LE(Count(service.All(), v1::InteractRequest::kMoveCamera), MostSince(began));
   EXPECT_FALSE(session->State().looks_around);
 }
 
@@ -384,11 +396,12 @@ TEST_F(SessionTest, PointersAreThinnedAndMarksAreNot) {
   ASSERT_TRUE(listener.Await([&] { return session->State().MayMark(); }));
   v1::Ray ray;
   ray.mutable_direction()->set_x(1.0F);
+  const auto began = std::chrono::steady_clock::now();
   for (int i = 0; i < 100; ++i) session->Point(ray);
   for (int i = 0; i < 5; ++i) session->AddMark({ray, ray});
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kAddMark, 5));
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kPoint, 1));
-  EXPECT_LT(Count(service.All(), v1::InteractRequest::kPoint), 10);
+  EXPECT_LE(Count(service.All(), v1::InteractRequest::kPoint), MostSince(began));
 }
 
 TEST_F(SessionTest, TheTokenIsShownAndReadAgainForEachCall) {
@@ -411,7 +424,7 @@ TEST(Connection, BadFilesAndAddressesAreNamed) {
               ::testing::HasSubstr("'localhost' is no HOST:PORT"));
   EXPECT_THAT(std::string(Connection::Open({"a:1", "/no/ca.pem", ""}).status().message()),
               ::testing::HasSubstr("/no/ca.pem"));
-  EXPECT_THAT(std::string(Connection::Open({"a:1", "", "/no/token"}).status().message()),
+  EXPECT_THAT(std::string(Connection::Open({"localhost:1", "", "/no/token"}).status().message()),
               ::testing::HasSubstr("/no/token"));
 }
 

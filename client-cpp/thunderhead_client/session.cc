@@ -10,7 +10,6 @@ namespace {
 
 using Stub = v1::ThunderheadService::Stub;
 
-constexpr std::chrono::seconds kSessionPatience{20};
 // A call that lasted so long was sound: the next loss begins with a short delay.
 constexpr std::chrono::seconds kSound{5};
 
@@ -135,7 +134,7 @@ std::optional<Session::Outcome> Session::Open() {
   }
   v1::CreateSessionResponse response;
   grpc::Status status =
-      connection_->Call(&Stub::CreateSession, request, &response, kSessionPatience, calls_);
+      connection_->Call(&Stub::CreateSession, request, &response, options_.patience, calls_);
   const std::string refusal = status.error_message();
   const bool began_anew = RefusesScene(status.error_code());
   if (began_anew) {
@@ -143,7 +142,7 @@ std::optional<Session::Outcome> Session::Open() {
     v1::Scene plain;
     *plain.mutable_output() = request.scene().output();
     *request.mutable_scene() = std::move(plain);
-    status = connection_->Call(&Stub::CreateSession, request, &response, kSessionPatience, calls_);
+    status = connection_->Call(&Stub::CreateSession, request, &response, options_.patience, calls_);
   }
   if (!status.ok()) {
     const Link link = IsLocked(status.error_code()) ? Link::kRefused : Link::kLost;
@@ -244,7 +243,7 @@ std::optional<v1::InteractRequest> Session::NextRequest(Call& call, Clock::time_
 }
 
 Session::Clock::time_point Session::WakeAt(const Call& call) const {
-  Clock::time_point wake = Clock::now() + kSessionPatience;
+  Clock::time_point wake = Clock::now() + options_.patience;
   if (!call.joined) return wake;
   if (const auto due = outbox_.WakeAt()) wake = std::min(wake, *due);
   if (const auto due = sync_.WakeAt()) wake = std::min(wake, *due);
@@ -261,7 +260,7 @@ void Session::Watch(Call& call) {
   std::unique_lock lock(mutex_);
   while (!call.over && !ends_) {
     const auto now = Clock::now();
-    const bool late = !call.joined && now - call.began > kSessionPatience;
+    const bool late = !call.joined && now - call.began > options_.patience;
     if (late || failures >= kFailedChecks) {
       call.farewell = Outcome{Link::kLost, "The server cannot be reached"};
       call.context.TryCancel();

@@ -33,6 +33,8 @@ struct SessionOptions {
   v1::Window window;
   // Opens a session of its own in place of a joined one that is gone, and never stops trying.
   bool never_gives_up = false;
+  // Timeout of opening a session, and of joining one.
+  std::chrono::seconds patience{20};
 };
 
 // Calls come on the session's thread, one at a time.
