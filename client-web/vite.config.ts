@@ -21,5 +21,11 @@ export default defineConfig({
       },
     },
   },
-  test: { include: ["test/**/*.test.ts"], environment: "node" },
+  test: {
+    include: ["test/**/*.test.ts"],
+    environment: "node",
+    // Limits against hangs. They say nothing about speed.
+    testTimeout: 600_000,
+    hookTimeout: 600_000,
+  },
 });

@@ -349,8 +349,12 @@ describe("pictures of a job", () => {
   test("who gives up waits no longer", async () => {
     const { calls } = callsTo([0]);
     const giving = new AbortController();
-    const pictures = calls.picturesOfJob("j1", 3, giving.signal, new BackOff(() => 1));
-    setTimeout(() => giving.abort(), 20);
+    // The delay is drawn just before the wait begins.
+    const backOff = new BackOff(() => {
+      queueMicrotask(() => giving.abort());
+      return 1;
+    });
+    const pictures = calls.picturesOfJob("j1", 3, giving.signal, backOff);
     await expect(bytesOf(pictures)).rejects.toThrow();
   });
 });
