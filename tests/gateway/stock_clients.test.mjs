@@ -25,8 +25,11 @@ const { BadRequestSchema, ErrorInfoSchema, RetryInfoSchema } = await generated("
 globalThis.XMLHttpRequest = xhr2.XMLHttpRequest ?? xhr2;
 const grpcWeb = (await import("grpc-web")).default;
 
+// A longer wait counts as hung.
+const HANG_LIMIT_MS = 600_000;
+
 async function eventually(condition) {
-  const patience = Date.now() + 60_000;
+  const patience = Date.now() + HANG_LIMIT_MS;
   while (Date.now() < patience) {
     if (await condition()) return;
     await sleep(10);
@@ -42,6 +45,14 @@ async function recordAtRest(server) {
     return record.done === record.started;
   });
   return record;
+}
+
+// Makes the call with longer and longer deadlines until one leaves it the time to reach its handler.
+async function longEnough(server, before, call) {
+  for (let timeoutMs = 500; (await server.record()).started === before.started; timeoutMs *= 2) {
+    assert.ok(timeoutMs < HANG_LIMIT_MS, "no call reached its handler");
+    await call(timeoutMs);
+  }
 }
 
 async function failureOf(promise) {
@@ -92,13 +103,15 @@ for (const [name, createTransport] of Object.entries(transports)) {
     test("messages arrive when they are sent", async () => {
       const before = await recordAtRest(server);
       let seen = 0;
-      for await (const _ of client.count({ count: 2, intervalMs: 3000 })) {
+      const leave = new AbortController();
+      for await (const _ of client.count({ count: 2, holdAfter: 1 }, { signal: leave.signal })) {
         seen += 1;
-        // The second is sent 3 s later.
+        // The server holds the second back.
         assert.equal((await server.record()).done, before.done, "the first came with the last");
         break;
       }
       assert.equal(seen, 1);
+      leave.abort();
     });
 
     test("an error has its code, message, details and trailers", async () => {
@@ -181,9 +194,14 @@ for (const [name, createTransport] of Object.entries(transports)) {
 
     test("a deadline ends the call on both sides", async () => {
       const before = await recordAtRest(server);
-      const error = await failureOf(client.wait({}, { timeoutMs: 4000 }));
-      assert.equal(error.code, Code.DeadlineExceeded);
-      await eventually(async () => (await server.record()).cancelled === before.cancelled + 1);
+      await longEnough(server, before, async (timeoutMs) => {
+        const error = await failureOf(client.wait({}, { timeoutMs }));
+        assert.equal(error.code, Code.DeadlineExceeded);
+      });
+      await eventually(async () => {
+        const { started, cancelled, done } = await server.record();
+        return done === started && cancelled - before.cancelled === started - before.started;
+      });
     });
 
     test("leaving a stream cancels it", async () => {
@@ -196,7 +214,7 @@ for (const [name, createTransport] of Object.entries(transports)) {
           }
           for await (const _ of client.count({ count: 1, intervalMs: 3_600_000 }, {
             signal: leave.signal,
-            onHeader: () => setTimeout(() => leave.abort(), 100),
+            onHeader: () => leave.abort(),
           })) {
             assert.fail("nothing was to come");
           }
@@ -244,16 +262,17 @@ describe("grpc-web", () => {
       (message) => toBinary(request, message),
       (bytes) => fromBinary(response, bytes),
     );
-  // The callback reports the call's end; the status is a separate event.
+  // The callback reports the call's end; the status of one that succeeds is a separate event, before or after it.
   const call = (descriptor, request, metadata = {}) =>
     new Promise((resolve) => {
       const outcome = {};
       const url = `${server.url}${descriptor.getName()}`;
-      const stream = client.rpcCall(url, request, metadata, descriptor, (error, response) => {
-        Object.assign(outcome, { error, response });
-        setTimeout(() => resolve(outcome), 20);
-      });
-      stream.on("status", (status) => Object.assign(outcome, { status }));
+      const note = (part) => {
+        Object.assign(outcome, part);
+        if (outcome.error || ("response" in outcome && "status" in outcome)) resolve(outcome);
+      };
+      const stream = client.rpcCall(url, request, metadata, descriptor, (error, response) => note({ error, response }));
+      stream.on("status", (status) => note({ status }));
     });
 
   test("a unary call comes back", async () => {
@@ -282,10 +301,15 @@ describe("grpc-web", () => {
 
   test("a deadline ends the call", async () => {
     const wait = method("Wait", WaitRequestSchema, SayResponseSchema);
-    const deadline = String(Date.now() + 4000);
-    const { error } = await call(wait, create(WaitRequestSchema), { deadline });
-    assert.equal(error.code, 4);
-    await eventually(async () => (await server.record()).cancelled === 1);
+    await longEnough(server, await recordAtRest(server), async (timeoutMs) => {
+      const deadline = String(Date.now() + timeoutMs);
+      const { error } = await call(wait, create(WaitRequestSchema), { deadline });
+      assert.equal(error.code, 4);
+    });
+    await eventually(async () => {
+      const record = await server.record();
+      return record.done === record.started && record.cancelled === record.started;
+    });
   });
 });
 
