@@ -327,7 +327,9 @@ void Jobs::RemoveDropped(const std::vector<ResultFile>& dropped) {
 }
 
 void Jobs::BeginPictures(Lock& lock) {
-  while (started_ && !draining_ && in_hand_.size() < limits_.max_in_hand &&
+  // Pictures that wait to be written count even when the pause is over: writing may take longer
+  // than the pause, and each turn would begin more of them.
+  while (started_ && !draining_ && in_hand_.size() < limits_.max_in_hand && unwritten_.empty() &&
          paused_until_ <= Now()) {
     const std::optional<PicturePlace> picture = board_.Begin(Now());
     if (!picture.has_value()) return;

@@ -281,7 +281,7 @@ class UnwrittenPictures : public ::testing::Test {
   static bool Await(const Condition& condition) {
     return WaitFor([&] {
       if (condition()) return true;
-      Time().Advance(std::chrono::milliseconds(50));
+      Time().Advance(std::chrono::milliseconds(200));
       return false;
     });
   }
@@ -312,8 +312,7 @@ TEST_F(UnwrittenPictures, AreKeptUntilTheyCanBeWrittenAndNotDrawnAgain) {
   // Several attempts to write up to four pictures.
   for (int i = 0; i < 12; ++i) {
     const int refused = refused_;
-    Time().Advance(std::chrono::seconds(6));
-    ASSERT_TRUE(WaitFor([&] { return refused_ > refused; }));
+    ASSERT_TRUE(Await([&] { return refused_ > refused; }));
   }
   EXPECT_LE(begun_, 4) << "none is begun while none can be written";
   EXPECT_EQ(jobs_->Load().result_bytes, 0U);
