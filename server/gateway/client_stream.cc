@@ -1,6 +1,8 @@
 #include "gateway/client_stream.h"
 
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <utility>
@@ -15,6 +17,21 @@ namespace net = boost::asio;
 using boost::system::error_code;
 
 using Way = StreamDeadlines::Way;
+
+namespace {
+
+bool Takes(const ClientStream::Take& take, const streams::FewBuffers<net::mutable_buffer>& read,
+           std::size_t bytes) {
+  if (!take) return true;
+  for (const net::mutable_buffer& buffer : read) {
+    const std::size_t here = std::min(bytes, buffer.size());
+    if (here > 0 && !take({static_cast<const std::byte*>(buffer.data()), here})) return false;
+    bytes -= here;
+  }
+  return true;
+}
+
+}  // namespace
 
 ClientStream::ClientStream(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::context> tls,
                            const base::TimeSource& time)
@@ -59,13 +76,16 @@ void ClientStream::Read(streams::FewBuffers<net::mutable_buffer> into,
                         streams::BytesHandler handler) {
   deadlines_->Begin(Way::kRead);
   const auto executor = handler.get_executor();
-  OptionalTls::Read(into, streams::BytesHandler(
-                              [deadlines = deadlines_, handler = std::move(handler)](
-                                  error_code error, std::size_t bytes) mutable {
-                                deadlines->End(Way::kRead);
-                                handler(error, bytes);
-                              },
-                              executor));
+  auto read = [take = take_, into, deadlines = deadlines_, handler = std::move(handler)](
+                  error_code error, std::size_t bytes) mutable {
+    deadlines->End(Way::kRead);
+    if (!error && !Takes(*take, into, bytes)) {
+      handler(net::error::connection_aborted, 0);
+    } else {
+      handler(error, bytes);
+    }
+  };
+  OptionalTls::Read(into, streams::BytesHandler(std::move(read), executor));
 }
 
 void ClientStream::Write(streams::FewBuffers<net::const_buffer> from,

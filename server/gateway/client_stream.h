@@ -13,8 +13,10 @@
 #include <boost/system/error_code.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -75,6 +77,12 @@ class ClientStream : public streams::OptionalTls<ByteCounts> {
 
   const ByteCounts& Counts() { return PlainStream().rate_policy(); }
 
+  using Take = std::function<bool(std::span<const std::byte>)>;
+
+  // From now on `take` is given what each read brings, decrypted. The read fails if it returns
+  // false. Null ends this.
+  void WatchReads(Take take) { *take_ = std::move(take); }
+
   // Sends `bytes` after what is being sent, as the last of all: whatever is written later is taken
   // and not sent. False if the connection has ended.
   boost::asio::awaitable<bool> WriteLast(std::string bytes);
@@ -94,6 +102,8 @@ class ClientStream : public streams::OptionalTls<ByteCounts> {
 
   const base::TimeSource& time_;
   const std::shared_ptr<StreamDeadlines> deadlines_;
+  // A read may end after the stream.
+  const std::shared_ptr<Take> take_ = std::make_shared<Take>();
   bool between_writes_ = true;  // the last one has ended, and was whole
   bool last_begun_ = false;
   ChangeSignal write_ended_;

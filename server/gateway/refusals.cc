@@ -31,6 +31,12 @@ absl::Status AnswersNotTaken() {
       {.reason = "ANSWERS_NOT_TAKEN"});
 }
 
+absl::Status TooManyEmptyFrames() {
+  return base::WithDetails(
+      absl::ResourceExhaustedError("too many control frames or empty frames came on a WebSocket"),
+      {.reason = "TOO_MANY_EMPTY_FRAMES"});
+}
+
 void TellOfRefusal(const GatewayOptions& options, const std::string& peer, const char* act,
                    const absl::Status& why) {
   if (options.on_refusal) options.on_refusal({peer, act, why});

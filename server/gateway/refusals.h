@@ -13,6 +13,7 @@ absl::Status OriginNotAllowed();
 absl::Status HeaderTooLarge();
 absl::Status MessageTooLarge();
 absl::Status AnswersNotTaken();
+absl::Status TooManyEmptyFrames();
 
 void TellOfRefusal(const GatewayOptions& options, const std::string& peer, const char* act,
                    const absl::Status& why);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gateway/call_header.h"
+#include "gateway/frame_counter.h"
 #include "gateway/message_slices.h"
 #include "gateway/refusals.h"
 #include "gateway/websocket_protocol.h"
@@ -57,6 +58,7 @@ net::awaitable<void> WebSocketExchange::Run(const Request& request,
   Abandon();
   link_->SetFarewell(nullptr);
   co_await changed_.AwaitTrue(tasks_ended_);
+  link_->Stream().WatchReads(nullptr);
 }
 
 net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
@@ -77,6 +79,15 @@ net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
   // Otherwise each message would be sent in frames of 4 KiB.
   socket_.auto_fragment(false);
   accepted_at_ = site_.Now();
+  link_->Stream().WatchReads(
+      [this, frames = FrameCounter(accepted_at_)](std::span<const std::byte> bytes) mutable {
+        if (frames.Take(bytes, site_.Now())) return true;
+        if (is_closing_) return false;
+        is_flooded_ = true;
+        TellOfRefusal(site_.options, client_, "Message", TooManyEmptyFrames());
+        EndWith({websocket::close_code::policy_error, "too many frames without content"});
+        return false;
+      });
   co_return true;
 }
 
@@ -154,7 +165,14 @@ net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffe
 
 net::awaitable<void> WebSocketExchange::Close() {
   BeginClosing();
-  if (!close_reason_.has_value() || !socket_.is_open()) {
+  if (is_flooded_) {
+    // Beast takes the failed read for the end of the connection, so the close frame is written
+    // here.
+    link_->Stream().expires_after(kLeaveTimeout);
+    co_await link_->Stream().WriteLast(CloseFrame(*close_reason_));
+    co_await changed_.AwaitTrue(reader_ended_);
+    co_await link_->Stream().LingeringClose();
+  } else if (!close_reason_.has_value() || !socket_.is_open()) {
     // Beast's reader answers a client that closes, and closes one that breaks the protocol.
     co_await changed_.AwaitTrue(reader_ended_);
   } else if (reader_ended_) {

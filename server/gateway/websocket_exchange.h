@@ -84,6 +84,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   bool is_pinging_ = false;
   bool is_held_back_ = false;
   bool is_closing_ = false;
+  bool is_flooded_ = false;  // with frames that carry nothing
   std::optional<CloseReason> close_reason_;
   std::optional<std::chrono::steady_clock::time_point> leave_by_;
 

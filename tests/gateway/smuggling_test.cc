@@ -13,7 +13,7 @@ namespace {
 const std::string kPost = "POST /thunderhead.gateway.test.Echo/Say HTTP/1.1\r\n";
 const std::string kType = "Content-Type: application/grpc-web\r\n";
 const std::string kHost = "Host: localhost\r\n";
-const std::string kNext = "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
+const std::string kNext = "GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
 
 class SmugglingTest : public EchoTest {
  protected:
@@ -21,14 +21,16 @@ class SmugglingTest : public EchoTest {
   std::string AnswersTo(const std::string& bytes) {
     RawClient client(Site().Port());
     client.SendUntilClosed(bytes);
-    client.ShutdownSending();
     return client.ReadToEnd();
   }
 
   void ExpectRefused(const std::string& bytes) {
     const std::string answers = AnswersTo(bytes + kNext);
-    EXPECT_TRUE(answers.starts_with("HTTP/1.1 400")) << bytes << answers;
-    EXPECT_EQ(answers.find("HTTP/1.", 1), std::string::npos) << "a second answer: " << answers;
+    EXPECT_TRUE(answers.starts_with("HTTP/1.1 400") || answers.starts_with("HTTP/1.0 400"))
+        << bytes << answers;
+    // The text of an answer names versions of HTTP, too, but ends in a full stop and a line break.
+    EXPECT_EQ(answers.find(".\nHTTP/1."), std::string::npos) << "a second answer: " << answers;
+    EXPECT_TRUE(answers.ends_with(".\n")) << answers;
   }
 };
 
@@ -71,11 +73,12 @@ TEST_F(SmugglingTest, APortThatIsNoNumberIsRefused) {
 }
 
 TEST_F(SmugglingTest, APlainRequestIsAnswered) {
-  const std::string answers =
-      AnswersTo(kPost + "Host: localhost:8080\r\n" + kType +
-                "Transfer-Encoding: Chunked\r\n\r\n5\r\n" + Frame("") + "\r\n0\r\n\r\n" + kNext);
-  EXPECT_TRUE(answers.starts_with("HTTP/1.1 200")) << answers;
-  EXPECT_TRUE(answers.ends_with("ok\n")) << answers;
+  // A client that ends its side of the connection ends its call, so this one does not.
+  RawClient client(Site().Port());
+  client.Send(kPost + "Host: localhost:8080\r\n" + kType +
+              "Transfer-Encoding: Chunked\r\n\r\n5\r\n" + Frame("") + "\r\n0\r\n\r\n" + kNext);
+  EXPECT_EQ(ParseResult(client.Read()).Trailer("grpc-status"), "0");
+  EXPECT_EQ(client.Read().body(), "ok\n");
 }
 
 TEST_F(SmugglingTest, AForeignOriginMayNotPostEvenWithoutAPreflight) {
