@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (pipe(ends) != 0) std::abort();
   if (write(ends[1], data + 1, size - 1) != static_cast<ssize_t>(size - 1)) std::abort();
   close(ends[1]);
-  Receiver reply(ends[0], std::chrono::milliseconds(1000), kAllowance);
+  Receiver reply(ends[0], std::chrono::minutes(10), kAllowance);
   if (data[0] % 2 == 0) {
     volume::StormFile file;
     Visit(reply, file);
