@@ -20,16 +20,7 @@
 namespace thunderhead::load {
 namespace {
 
-// The storm may have to be read for the first frame.
-constexpr double kJoinPatience_s = 60.0;
-constexpr double kLeavePatience_s = 5.0;
-constexpr double kPatience_s = 60.0;  // with other calls
-// Before the period begins, so that it holds no first times.
-constexpr double kWarmUp_s = 1.0;
 constexpr double kTurnSpeed_deg_per_s = 15.0;
-// How long a passing viewer stays.
-constexpr double kVisit_s = 2.0;
-constexpr double kSampling_s = 1.0;
 constexpr double kTick_s = 0.05;
 
 double OwnCpu_s() {
@@ -53,9 +44,9 @@ absl::StatusOr<v1::CreateSessionResponse> CreateSession(Transport& transport,
   request.mutable_scene()->mutable_output()->set_height_px(
       static_cast<std::uint32_t>(options.height_px));
   request.mutable_scene()->mutable_camera()->mutable_orbit();
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const std::string answer,
-      transport.Call("CreateSession", request.SerializeAsString(), {kPatience_s}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string answer,
+                               transport.Call("CreateSession", request.SerializeAsString(),
+                                              {options.times.call_patience_s}));
   v1::CreateSessionResponse session;
   if (!session.ParseFromString(answer)) {
     return absl::InternalError("the server's answer to CreateSession is malformed");
@@ -121,7 +112,7 @@ class RunningLoad {
 
   // Waits until each viewer that reads has a frame or has ended.
   absl::Status AwaitFrames() {
-    const double until_s = Now_s() + kJoinPatience_s;
+    const double until_s = Now_s() + options_.times.join_patience_s;
     const auto settled = [](const auto& viewer) {
       return viewer->kind() == ViewerKind::kStalled || viewer->HasFrame() || viewer->HasEnded();
     };
@@ -138,13 +129,14 @@ class RunningLoad {
     if (!errors.empty()) {
       return absl::UnavailableError(absl::StrCat("no viewer got a frame: ", errors.begin()->first));
     }
-    return absl::DeadlineExceededError(absl::StrCat("no viewer got a frame within ",
-                                                    static_cast<int>(kJoinPatience_s), " seconds"));
+    return absl::DeadlineExceededError(
+        absl::StrCat("no viewer got a frame within ",
+                     static_cast<int>(options_.times.join_patience_s), " seconds"));
   }
 
   // Turns the camera for the warming up and the period.
   void Steer() {
-    period_.begin_s = Now_s() + kWarmUp_s;
+    period_.begin_s = Now_s() + options_.times.warm_up_s;
     period_.end_s = period_.begin_s + options_.seconds;
     next_visit_s_ = period_.begin_s;
     const double step_s =
@@ -169,7 +161,7 @@ class RunningLoad {
           stills_.Begin();
         }
         Sample();
-        next_sample_s += kSampling_s;
+        next_sample_s += options_.times.sampling_s;
         Tell((now_s - period_.begin_s) / options_.seconds);
       }
       LetPass(now_s);
@@ -181,13 +173,19 @@ class RunningLoad {
     own_cpu_s_ = OwnCpu_s() - own_cpu_s;
   }
 
-  // Lets passing viewers leave and come again, one after another, each after its visit.
+  // Lets passing viewers leave and come again, one after another, each after its visit. One without
+  // a frame stays for longer, unless its patience is over.
   void LetPass(double now_s) {
     if (options_.passing == 0 || now_s < next_visit_s_) return;
-    next_visit_s_ = std::max(next_visit_s_, now_s) + kVisit_s / options_.passing;
     // They are the last of the viewers.
     const auto passing = static_cast<std::size_t>(options_.passing);
-    viewers_[viewers_.size() - passing + visits_++ % passing]->ComeAgain(transport_, viewer_key_);
+    Viewer& next = *viewers_[viewers_.size() - passing + visits_ % passing];
+    if (next.WaitsForFirstFrame() && now_s < next.joined_at_s() + options_.times.join_patience_s) {
+      return;
+    }
+    next_visit_s_ = std::max(next_visit_s_, now_s) + options_.times.visit_s / options_.passing;
+    ++visits_;
+    next.ComeAgain(transport_, viewer_key_);
   }
 
   void Sample() {
@@ -202,16 +200,21 @@ class RunningLoad {
   }
 
   void Tell(double share) {
-    Progress told{.share = share};
+    Progress told{.share = share, .visits = visits_};
+    std::optional<std::uint64_t> least;
     const ViewerKind counted = MainKind();
     int viewers = 0;
     std::uint64_t frames = 0;
     for (const auto& viewer : viewers_) {
       if (viewer->HasFrame()) ++told.joined;
+      if (viewer->kind() == counted || viewer->kind() == ViewerKind::kLooking) {
+        least = std::min(least.value_or(viewer->MeasuredFrames()), viewer->MeasuredFrames());
+      }
       if (viewer->kind() != counted) continue;
       ++viewers;
       frames += viewer->Frames();
     }
+    told.least_frames = least.value_or(0);
     const double now_s = Now_s();
     told.frames_per_s = static_cast<double>(frames - told_frames_) / (now_s - told_s_) / viewers;
     told_frames_ = frames;
@@ -223,7 +226,7 @@ class RunningLoad {
   void Leave() {
     for (const auto& viewer : viewers_) viewer->Leave();
     presenter_.Leave();
-    const double until_s = Now_s() + kLeavePatience_s;
+    const double until_s = Now_s() + options_.times.leave_patience_s;
     while (Now_s() < until_s && !(AllEnded() && presenter_.HasEnded())) {
       SleepUntil(Now_s() + kTick_s);
     }
@@ -238,7 +241,8 @@ class RunningLoad {
   void Close() {
     v1::CloseSessionRequest request;
     request.set_session_id(session_id_);
-    const auto closed = transport_.Call("CloseSession", request.SerializeAsString(), {kPatience_s});
+    const auto closed = transport_.Call("CloseSession", request.SerializeAsString(),
+                                        {options_.times.call_patience_s});
     if (!closed.ok()) {
       errors_.Add(absl::StrCat("closing the session: ", closed.status().ToString()));
     }
@@ -270,7 +274,7 @@ class RunningLoad {
   Period period_;
   std::vector<ProcessSample> samples_;
   double own_cpu_s_ = 0.0;
-  std::size_t visits_ = 0;  // that have ended
+  std::size_t visits_ = 0;  // of passing viewers, that have ended
   double next_visit_s_ = 0.0;
   std::uint64_t told_frames_ = 0;
   double told_s_ = Now_s();

@@ -26,6 +26,8 @@ void Viewer::Join(Transport& transport, const std::string& key, double kbit_per_
   options.reads = kind() != ViewerKind::kStalled;
   if (kind() == ViewerKind::kThrottled) options.kbit_per_s = kbit_per_s;
   waits_since_s_ = Now_s();
+  joined_at_s_ = *waits_since_s_;
+  frames_before_ = frames_;
   link_ = transport.Interact(*this, options);
   link_->Send(request.SerializeAsString());
 }
@@ -78,6 +80,7 @@ void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::
   record_.frames.push_back({now_s, response->scene_revision});
   if (measuring) {
     ++record_.frame_count;
+    ++measured_frames_;
     record_.frame_bytes += bytes;
   }
   ++frames_;

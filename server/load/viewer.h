@@ -35,6 +35,12 @@ class Viewer final : public Listener {
   ViewerKind kind() const { return record_.kind; }
   bool HasFrame() const { return frames_ > 0; }
   std::uint64_t Frames() const { return frames_; }
+  // Those while `measuring` was true.
+  std::uint64_t MeasuredFrames() const { return measured_frames_; }
+  // True until the first frame since it joined last has come, or the call has ended.
+  bool WaitsForFirstFrame() const { return !ended_ && frames_ == frames_before_; }
+  // When it joined last.
+  double joined_at_s() const { return joined_at_s_; }
   bool HasEnded() const { return ended_; }
   // Once stopped.
   const ViewerRecord& record() const { return record_; }
@@ -49,6 +55,9 @@ class Viewer final : public Listener {
   Errors& errors_;
   ViewerRecord record_;
   std::atomic<std::uint64_t> frames_{0};
+  std::atomic<std::uint64_t> measured_frames_{0};
+  std::uint64_t frames_before_ = 0;  // it joined last
+  double joined_at_s_ = 0.0;
   bool takes_video_ = false;
   v1::Camera own_camera_;
   std::optional<double> waits_since_s_;  // for its first frame

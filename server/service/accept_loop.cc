@@ -50,7 +50,8 @@ int AcceptLoop::DoChore() {
   }
   const auto wait = std::chrono::ceil<std::chrono::milliseconds>(time.LookAgainAt(chore_due_) -
                                                                  base::TimeSource::Clock::now());
-  return std::max(0, static_cast<int>(wait.count()));
+  constexpr std::int64_t kLongestWait_ms = 60'000;
+  return static_cast<int>(std::clamp<std::int64_t>(wait.count(), 0, kLongestWait_ms));
 }
 
 void AcceptLoop::Run() {

@@ -46,8 +46,6 @@ constexpr int kHandshakeTimeoutMs = 10'000;
 constexpr int kIdleConnectionMs = 60'000;
 // Of services whose calls hold a thread each, which is reflection alone; further calls are refused.
 constexpr int kMaxCallThreads = 16;
-// Time for running calls to end by themselves before they are cancelled.
-constexpr std::chrono::seconds kShutdownGrace{2};
 
 std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
   if (files.certificate.empty()) return grpc::InsecureServerCredentials();
@@ -86,6 +84,7 @@ class RunningServer final : public Server {
         door_(options.door != nullptr ? options.door : OpenDoor()),
         limits_(LimitsOf(options)),
         job_files_(options.job_files),
+        shutdown_grace_(options.shutdown_grace),
         connection_calls_(std::make_shared<ConnectionCalls>(*options.time)),
         sessions_(SessionsOf(options), {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
         executor_(options.executor),
@@ -239,7 +238,7 @@ class RunningServer final : public Server {
     local_.reset();
     port_.reset();
     if (server_ != nullptr) {
-      server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
+      server_->Shutdown(std::chrono::system_clock::now() + shutdown_grace_);
       server_->Wait();
     }
     // Last, because calls wait for it.
@@ -254,6 +253,7 @@ class RunningServer final : public Server {
   const std::shared_ptr<access::Door> door_;
   const Limits limits_;
   const JobFiles job_files_;
+  const std::chrono::seconds shutdown_grace_;
   const std::shared_ptr<ConnectionCalls> connection_calls_;
   mutable session::Sessions sessions_;
   Drain drain_;

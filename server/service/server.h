@@ -4,6 +4,7 @@
 
 #include <grpcpp/channel.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +49,8 @@ struct ServerOptions {
   // Of blocking work: reading fields, making clouds. The storm store reads one after another, so a
   // few threads are enough.
   base::Executor::Limits executor;
+  // For running calls to end by themselves before a server that shuts down cancels them.
+  std::chrono::seconds shutdown_grace{2};
 };
 
 // The load of a server now.

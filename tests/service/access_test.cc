@@ -8,6 +8,7 @@
 #include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <map>
 #include <memory>
 #include <set>
@@ -24,7 +25,10 @@
 #include "tests/service/fake_service.h"
 #include "tests/service/guarded_service.h"
 #include "tests/service/interacting.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/running_time.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 #include "thunderhead/v1/job.grpc.pb.h"
 
 namespace thunderhead::testing {
@@ -76,7 +80,7 @@ std::optional<std::chrono::milliseconds> RetryOf(const grpc::Status& status) {
 }
 
 TEST(AccessTest, EveryRoleMayCallWhatTheTableSays) {
-  GuardedService guarded({}, {.wrong_tokens_per_second = 0});
+  GuardedService guarded(Patient(), {.wrong_tokens_per_second = 0});
   std::vector<const google::protobuf::MethodDescriptor*> methods;
   for (const char* name :
        {v1::ThunderheadService::service_full_name(), v1::RenderJobService::service_full_name()}) {
@@ -137,7 +141,7 @@ TEST(AccessTest, RefusalsAndPrivilegedActsAreAudited) {
 
 // Each refusal has its line, whichever call it ends.
 TEST(AccessTest, RefusalsOfAnyCallAreAudited) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.limits.max_viewers_per_session = 0;
   GuardedService guarded(options);
   const auto created = guarded.Create();
@@ -180,7 +184,7 @@ TEST(AccessTest, RefusalsOfAnyCallAreAudited) {
 
 // Requests that one viewer has waiting neither fill the queue nor take all threads.
 TEST(AccessTest, AViewerWhoAsksWithoutAPauseHoldsUpOnlyItself) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.executor.max_waiting_each = 4;
   GuardedService guarded(options);
   v1::DescribeStormRequest describe;
@@ -202,7 +206,7 @@ TEST(AccessTest, AViewerWhoAsksWithoutAPauseHoldsUpOnlyItself) {
   for (int i = 0; i < 3; ++i) viewers.emplace_back(ask);
   EXPECT_TRUE(guarded.service().store->reading.AwaitWaiting(3));
   for (int i = 0; i < 9; ++i) viewers.emplace_back(ask);
-  for (int i = 0; i < 1000 && refused < 5; ++i) std::this_thread::sleep_for(milliseconds(5));
+  EXPECT_TRUE(WaitFor([&] { return refused >= 5; }));
   EXPECT_EQ(refused, 5);
   EXPECT_TRUE(guarded.Call("presenter", &Stub::DescribeStorm, describe, &described).ok())
       << "the time is in memory, and a thread is free for others";
@@ -268,16 +272,22 @@ TEST(AccessTest, AViewersTokenDoesNotPresentByThePresentersKey) {
 }
 
 TEST(AccessTest, WhoNeverJoinsIsCutOff) {
-  service::ServerOptions options;
-  options.limits.join_timeout = milliseconds(100);
+  RunningTime time;
+  service::ServerOptions options = Patient(time);
+  options.limits.join_timeout = std::chrono::hours(1);
   GuardedService guarded(options);
-  HandCall silent(guarded.stub(), "viewer");
-  EXPECT_EQ(silent.End().error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
-  // Who has joined stays.
+  // Who has joined stays, also when those are cut off who come later and do not join.
   const auto created = guarded.Create();
   HandCall joined(guarded.stub(), "presenter");
   joined.Join(created.session_id());
-  std::this_thread::sleep_for(milliseconds(300));
+  HandCall silent(guarded.stub(), "viewer");
+  std::future<grpc::Status> end = std::async(std::launch::async, [&] { return silent.End(); });
+  // The server may learn of the call after the time was moved.
+  ASSERT_TRUE(WaitFor([&] {
+    time.Advance(options.limits.join_timeout);
+    return end.wait_for(milliseconds(0)) == std::future_status::ready;
+  }));
+  EXPECT_EQ(end.get().error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
   v1::InteractRequest rules;
   rules.mutable_set_rules()->mutable_rules()->set_control_locked(true);
   rules.set_request_id(7);
@@ -285,7 +295,7 @@ TEST(AccessTest, WhoNeverJoinsIsCutOff) {
 }
 
 TEST(AccessTest, AnIdentityHasNoMoreSessionsThanItsShare) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.sessions.max_sessions = 10;
   options.sessions.max_sessions_per_owner = 3;
   GuardedService guarded(options);
@@ -307,7 +317,8 @@ TEST(AccessTest, AnIdentityHasNoMoreSessionsThanItsShare) {
 }
 
 TEST(AccessTest, RequestsAreLimited) {
-  GuardedService guarded({}, {.requests_per_second = 5.0});
+  ManualTime time;
+  GuardedService guarded(Patient(time), {.requests_per_second = 5.0});
   v1::ListStormsResponse storms;
   grpc::Status status;
   int taken = 0;
@@ -316,16 +327,18 @@ TEST(AccessTest, RequestsAreLimited) {
     if (!status.ok()) break;
     ++taken;
   }
-  EXPECT_GE(taken, 10);
-  EXPECT_LT(taken, 20);
+  EXPECT_EQ(taken, 10) << "of two seconds";
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_TRUE(RetryOf(status).has_value());
   // Another identity has limits of its own.
   EXPECT_TRUE(guarded.Call("operator", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
+  time.Advance(*RetryOf(status));
+  EXPECT_TRUE(guarded.Call("viewer", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
 }
 
 TEST(AccessTest, MessagesOfACallAreLimited) {
-  GuardedService guarded({}, {.requests_per_second = 5.0});
+  ManualTime time;
+  GuardedService guarded(Patient(time), {.requests_per_second = 5.0});
   const auto created = guarded.Create();
   HandCall call(guarded.stub(), "viewer");
   call.Join(created.viewer_key());
@@ -337,7 +350,7 @@ TEST(AccessTest, MessagesOfACallAreLimited) {
 }
 
 TEST(AccessTest, ViewersOfASessionAreLimitedAndPresentersComeIn) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.limits.max_viewers_per_session = 2;
   GuardedService guarded(options);
   const auto created = guarded.Create();
@@ -356,7 +369,7 @@ TEST(AccessTest, ViewersOfASessionAreLimitedAndPresentersComeIn) {
 
 // By either call, whether or not they get pictures.
 TEST(AccessTest, ViewersByOldAndNewCallsAreCountedTogether) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.limits.max_viewers_per_session = 2;
   GuardedService guarded(options);
   const auto created = guarded.Create();
@@ -385,20 +398,16 @@ TEST(AccessTest, ViewersByOldAndNewCallsAreCountedTogether) {
   // Who leaves makes room.
   watching->TryCancel();
   watch->Finish();
-  const auto end = std::chrono::steady_clock::now() + kPatience;
-  bool joined = false;
-  while (!joined && std::chrono::steady_clock::now() < end) {
-    HandCall next(guarded.stub(), "viewer");
-    joined = next.Join(created.viewer_key()).has_joined();
-  }
-  EXPECT_TRUE(joined);
+  EXPECT_TRUE(WaitFor(
+      [&] { return HandCall(guarded.stub(), "viewer").Join(created.viewer_key()).has_joined(); }));
 }
 
 TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
-  service::ServerOptions options;
+  RunningTime time;
+  service::ServerOptions options = Patient(time);
   options.limits.max_pixels = 64 * 36;
   options.limits.max_samples = 64 * 36 * 16;
-  options.limits.max_render_time = milliseconds(200);
+  options.limits.max_render_time = std::chrono::hours(1);
   GuardedService guarded(options);
   v1::RenderImageRequest request;
   *request.mutable_scene() = SmallScene();
@@ -417,16 +426,23 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
   EXPECT_TRUE(machine.drawing.AwaitWaiting(1));
   grpc::Status status;
   std::thread second([&] { status = render(); });
-  std::this_thread::sleep_for(milliseconds(500));
+  EXPECT_TRUE(WaitFor([&] { return guarded.service().server().Load().pictures == 2; }));
+  time.Advance(2 * options.limits.max_render_time);
   machine.drawing.Open();
   first.join();
   second.join();
   EXPECT_TRUE(status.ok()) << status.error_message();
-  machine.ms_per_mega_sample = 20'000.0;  // 0.7 s
-  status = render();
+  // Several pieces, of which the first takes too long.
+  machine.ms_per_mega_sample = 1'000.0;
+  machine.drawing.Close();
+  std::thread slow([&] { status = render(); });
+  EXPECT_TRUE(machine.drawing.AwaitWaiting(1));
+  time.Advance(2 * options.limits.max_render_time);
+  machine.drawing.Open();
+  slow.join();
   machine.ms_per_mega_sample = 0.0;
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(status.error_message(), HasSubstr("not ready after the 200 ms"));
+  EXPECT_THAT(status.error_message(), HasSubstr("not ready after the 3600000 ms"));
   request.mutable_scene()->mutable_rendering()->mutable_light_volume()->set_slices(17);
   status = render();
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
@@ -449,7 +465,8 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
     SCOPED_TRACE(trusted);
     std::mutex mutex;
     std::vector<std::string> lines;
-    service::ServerOptions options;
+    ManualTime time;
+    service::ServerOptions options = Patient(time);
     options.address = "127.0.0.1:0";
     options.door = std::make_shared<access::Door>(
         access::TrustEverybody(), std::make_shared<access::Audit>([&](const std::string& line) {
@@ -457,7 +474,7 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
           lines.push_back(line);
         }),
         access::QuotaLimits{.requests_per_second = 1.0},
-        trusted ? *base::TrustedProxies::Parse({"127.0.0.0/8"}) : base::TrustedProxies());
+        trusted ? *base::TrustedProxies::Parse({"127.0.0.0/8"}) : base::TrustedProxies(), time);
     FakeService service(options);
     const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
         absl::StrCat("127.0.0.1:", service.server().Port()), grpc::InsecureChannelCredentials()));
@@ -485,7 +502,8 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
 }
 
 TEST(AccessTest, ATokenThatIsTakenAwayEndsStreamsAndTheAuditSaysSo) {
-  GuardedService guarded;
+  RunningTime time;
+  GuardedService guarded(Patient(time));
   const v1::CreateSessionResponse session = guarded.Create();
   const auto viewer = [] {
     auto context = std::make_unique<grpc::ClientContext>();
@@ -507,6 +525,8 @@ TEST(AccessTest, ATokenThatIsTakenAwayEndsStreamsAndTheAuditSaysSo) {
   v1::WatchFramesResponse event;
   ASSERT_TRUE(frames->Read(&event));
   guarded.TakeAwayToken("viewer");
+  // It is looked at once a second.
+  time.Advance(std::chrono::seconds(2));
 
   // Frames come only while something changes, and somebody takes them.
   v1::UpdateSceneRequest update;
@@ -523,13 +543,12 @@ TEST(AccessTest, ATokenThatIsTakenAwayEndsStreamsAndTheAuditSaysSo) {
     sun.set_azimuth_deg(sun.azimuth_deg() + 1.0F);
     v1::UpdateSceneResponse updated;
     guarded.Call("presenter", &Stub::UpdateScene, update, &updated);
-    std::this_thread::sleep_for(milliseconds(20));
   } while (frames->Read(&event));
   EXPECT_EQ(frames->Finish().error_code(), grpc::StatusCode::UNAUTHENTICATED);
 
   v1::InteractRequest alive;
   alive.mutable_alive();
-  while (interact->Write(alive)) std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_TRUE(WaitFor([&] { return !interact->Write(alive); }));
   while (interact->Read(&joined)) {
   }
   EXPECT_EQ(interact->Finish().error_code(), grpc::StatusCode::UNAUTHENTICATED);
@@ -591,7 +610,7 @@ TEST(AccessTest, HealthNeedsNoTokenAndNoCallThatStaysOpen) {
 
 // Opens calls until one is refused, and gives them back.
 TEST(AccessTest, AFloodOfStreamsIsRefusedAndOthersGoOn) {
-  GuardedService guarded({}, {.max_streams_per_identity = 100, .requests_per_second = 0});
+  GuardedService guarded(Patient(), {.max_streams_per_identity = 100, .requests_per_second = 0});
   const auto created = guarded.Create();
   std::vector<std::unique_ptr<HandCall>> calls;
   for (int i = 0; i < 100; ++i) {
@@ -608,13 +627,8 @@ TEST(AccessTest, AFloodOfStreamsIsRefusedAndOthersGoOn) {
   EXPECT_TRUE(presenter.Join(created.session_id()).has_joined());
   calls.clear();
   // The server learns of it a little later.
-  const auto patience = std::chrono::steady_clock::now() + kPatience;
-  bool joins = false;
-  while (!joins && std::chrono::steady_clock::now() < patience) {
-    HandCall later(guarded.stub(), "viewer");
-    joins = later.Join(created.viewer_key()).has_joined();
-  }
-  EXPECT_TRUE(joins);
+  EXPECT_TRUE(WaitFor(
+      [&] { return HandCall(guarded.stub(), "viewer").Join(created.viewer_key()).has_joined(); }));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "absl/strings/str_cat.h"
 #include "access/audit.h"
@@ -15,14 +14,33 @@
 #include "store/state_file.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/untaking_client.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/running_time.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 #include "thunderhead/v1/job.grpc.pb.h"
 
 namespace thunderhead::testing {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
+// Of a client for what it asked for.
+constexpr std::chrono::minutes kDelivery{2};
+
+service::ServerOptions Deliver(const base::TimeSource& time) {
+  service::ServerOptions options = Patient(time);
+  options.address = "127.0.0.1:0";
+  options.limits.delivery_time = kDelivery;
+  return options;
+}
+
+// Moves the time until the server has reset the client's call, whose answer may become ready after
+// the time was first moved.
+bool AwaitReset(UntakingClient& client, RunningTime& time) {
+  return WaitFor([&] {
+    time.Advance(kDelivery);
+    return client.IsReset();
+  });
+}
 
 class PictureDelivery : public ::testing::TestWithParam<const char*> {
  protected:
@@ -32,35 +50,40 @@ class PictureDelivery : public ::testing::TestWithParam<const char*> {
     request.set_in_chunks(true);
     return request.SerializeAsString();
   }
-  static bool AwaitPictures(FakeService& fake, int pictures, std::chrono::seconds patience) {
-    const auto until = steady_clock::now() + patience;
-    while (fake.server().Load().pictures != pictures && steady_clock::now() < until) {
-      std::this_thread::sleep_for(milliseconds(5));
-    }
-    return fake.server().Load().pictures == pictures;
+  static bool AwaitPictures(FakeService& fake, int pictures) {
+    return WaitFor([&] { return fake.server().Load().pictures == pictures; });
   }
 };
 
 TEST_P(PictureDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
-  service::ServerOptions options;
-  options.address = "127.0.0.1:0";
-  options.limits.delivery_time = milliseconds(500);
-  FakeService fake(options);
+  RunningTime time;
+  FakeService fake(Deliver(time));
   UntakingClient client(fake.server().Port());
   client.Call(GetParam(), Asking());
-  ASSERT_TRUE(AwaitPictures(fake, 1, std::chrono::seconds(5)));
-  EXPECT_TRUE(client.IsReset(milliseconds(10'000)));
-  EXPECT_TRUE(AwaitPictures(fake, 0, std::chrono::seconds(5)))
-      << "the picture and its memory are given back";
+  ASSERT_TRUE(AwaitPictures(fake, 1));
+  // Drawing goes by the same time.
+  ASSERT_TRUE(WaitFor([&] { return fake.machine->Log().size() == 1; }));
+  ASSERT_TRUE(WaitFor([&] { return fake.server().Load().turn_s == 0.0; }));
+  EXPECT_TRUE(AwaitReset(client, time));
+  EXPECT_TRUE(AwaitPictures(fake, 0)) << "the picture and its memory are given back";
 }
 
 TEST_P(PictureDelivery, ItHasItsTime) {
-  service::ServerOptions options;
-  options.address = "127.0.0.1:0";
-  FakeService fake(options);
+  ManualTime time;
+  FakeService fake(Deliver(time));
   UntakingClient client(fake.server().Port());
   client.Call(GetParam(), Asking());
-  EXPECT_FALSE(client.IsReset(milliseconds(1500)));
+  ASSERT_TRUE(AwaitPictures(fake, 1));
+  ASSERT_TRUE(WaitFor([&] { return fake.machine->Log().size() == 1; }));
+  time.Advance(kDelivery - std::chrono::seconds(1));
+  // Deadlines are looked at all the time meanwhile.
+  v1::ListStormsResponse storms;
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(Call(fake.stub(), &v1::ThunderheadService::Stub::ListStorms,
+                     v1::ListStormsRequest(), &storms)
+                    .ok());
+  }
+  EXPECT_FALSE(client.IsReset());
   EXPECT_EQ(fake.server().Load().pictures, 1) << "it waits for its client";
 }
 
@@ -70,9 +93,8 @@ INSTANTIATE_TEST_SUITE_P(Calls, PictureDelivery,
 
 TEST(JobDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
   const TemporaryFolder folder;
-  service::ServerOptions options;
-  options.address = "127.0.0.1:0";
-  options.limits.delivery_time = milliseconds(500);
+  RunningTime time;
+  service::ServerOptions options = Deliver(time);
   auto file = store::StateFile::Open(folder.File("state.db"));
   ASSERT_TRUE(file.ok()) << file.status();
   options.jobs.store = *store::SqliteJobStore::In(*file);
@@ -95,91 +117,82 @@ TEST(JobDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
 
   UntakingClient watcher(fake.server().Port());
   watcher.Call("RenderJobService/WatchRenderJob", watch.SerializeAsString());
-  EXPECT_TRUE(watcher.IsReset(milliseconds(10'000)));
+  EXPECT_TRUE(AwaitReset(watcher, time));
   v1::FetchRenderResultRequest fetch;
   fetch.set_job_id(created.job().id());
   UntakingClient fetcher(fake.server().Port());
   fetcher.Call("RenderJobService/FetchRenderResult", fetch.SerializeAsString());
-  EXPECT_TRUE(fetcher.IsReset(milliseconds(10'000)));
+  EXPECT_TRUE(AwaitReset(fetcher, time));
 }
 
 class ViewerDelivery : public ::testing::Test {
  protected:
-  ViewerDelivery() {
-    options_.address = "127.0.0.1:0";
-    options_.limits.delivery_time = milliseconds(500);
-  }
-
   v1::CreateSessionResponse Create() {
     v1::CreateSessionRequest request;
     *request.mutable_scene() = SmallScene();
     v1::CreateSessionResponse response;
     EXPECT_TRUE(
-        Call(fake_->stub(), &v1::ThunderheadService::Stub::CreateSession, request, &response).ok());
+        Call(fake_.stub(), &v1::ThunderheadService::Stub::CreateSession, request, &response).ok());
     return response;
   }
   bool AwaitViewers(int viewers) {
-    for (int i = 0; i < 2000 && fake_->server().Load().viewers != viewers; ++i) {
-      std::this_thread::sleep_for(milliseconds(5));
-    }
-    return fake_->server().Load().viewers == viewers;
+    return WaitFor([&] { return fake_.server().Load().viewers == viewers; });
   }
 
-  service::ServerOptions options_;
-  std::unique_ptr<FakeService> fake_;
+  RunningTime time_;
+  FakeService fake_{Deliver(time_)};
 };
 
 TEST_F(ViewerDelivery, WhoTakesNoFramesIsCancelledAfterAWhile) {
-  fake_ = std::make_unique<FakeService>(options_);
   v1::WatchFramesRequest watch;
   watch.set_session_id(Create().viewer_key());
-  UntakingClient viewer(fake_->server().Port());
+  UntakingClient viewer(fake_.server().Port());
   viewer.Call("ThunderheadService/WatchFrames", watch.SerializeAsString());
   EXPECT_TRUE(AwaitViewers(1));
-  EXPECT_TRUE(viewer.IsReset(milliseconds(10'000)));
+  EXPECT_TRUE(AwaitReset(viewer, time_));
   EXPECT_TRUE(AwaitViewers(0));
 }
 
 TEST_F(ViewerDelivery, WhoTakesNothingOfAnInteractIsCancelledAfterAWhile) {
-  fake_ = std::make_unique<FakeService>(options_);
   v1::InteractRequest join;
   join.mutable_join()->set_session_key(Create().viewer_key());
-  UntakingClient viewer(fake_->server().Port());
+  UntakingClient viewer(fake_.server().Port());
   viewer.Call("ThunderheadService/Interact", join.SerializeAsString(),
               UntakingClient::Stream::kStaysOpen);
-  EXPECT_TRUE(viewer.IsReset(milliseconds(10'000)));
+  EXPECT_TRUE(AwaitReset(viewer, time_));
 }
 
 TEST_F(ViewerDelivery, WhoTakesFramesStaysForLongerThanOneHasTime) {
-  options_.limits.delivery_time = milliseconds(100);
-  fake_ = std::make_unique<FakeService>(options_);
   const auto session = Create();
-  Watcher viewer(fake_->stub(), session.viewer_key());
-  for (int i = 0; i < 20; ++i) {
-    std::this_thread::sleep_for(milliseconds(50));
-    EXPECT_EQ(fake_->server().Load().viewers, 1);
+  Watcher viewer(fake_.stub(), session.viewer_key());
+  ASSERT_TRUE(viewer.AwaitFrame(1, false));
+  for (int i = 0; i < 10; ++i) {
+    // The next frame is written once this one is known to be taken, so no frame sees two moves.
+    time_.Advance(kDelivery / 2);
+    v1::Scene scene = SmallScene();
+    scene.mutable_sun()->set_azimuth_deg(static_cast<float>(i));
+    ASSERT_TRUE(viewer.AwaitFrame(fake_.Update(session.session_id(), scene), false));
+    EXPECT_EQ(fake_.server().Load().viewers, 1);
   }
 }
 
 class AnswerDelivery : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(AnswerDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
-  service::ServerOptions options;
-  options.address = "127.0.0.1:0";
-  options.limits.delivery_time = milliseconds(500);
-  FakeService fake(options);
+  RunningTime time;
+  FakeService fake(Deliver(time));
   UntakingClient client(fake.server().Port());
   v1::DescribeStormRequest request;
   request.set_storm_id("anvil");
   client.Call(std::string("ThunderheadService/") + GetParam(), request.SerializeAsString());
-  EXPECT_TRUE(client.IsReset(milliseconds(10'000)));
+  EXPECT_TRUE(AwaitReset(client, time));
 }
 
 // The first has an executor's turn between its request and its answer, as a map and a probe have.
 INSTANTIATE_TEST_SUITE_P(Calls, AnswerDelivery, ::testing::Values("DescribeStorm", "ListStorms"));
 
 TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.address = "127.0.0.1:0";
   access::QuotaLimits limits;
   limits.max_streams_per_identity = 3;
@@ -188,11 +201,10 @@ TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
   FakeService fake(options);
   UntakingClient client(fake.server().Port());
   for (int i = 0; i < 5; ++i) client.Call("ThunderheadService/ListStorms", "");
-  EXPECT_TRUE(client.AwaitRefused(2, std::chrono::seconds(10)));
+  EXPECT_TRUE(WaitFor([&] { return client.Refused() >= 2; }));
   UntakingClient other(fake.server().Port());
   other.Call("ThunderheadService/ListStorms", "");
-  EXPECT_TRUE(other.AwaitRefused(1, std::chrono::seconds(10)))
-      << "of one identity, however it calls";
+  EXPECT_TRUE(WaitFor([&] { return other.Refused() >= 1; })) << "of one identity, however it calls";
   // Those that are given up leave room.
   client.Leave();
   const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
@@ -202,8 +214,7 @@ TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
     return Call(*stub, &v1::ThunderheadService::Stub::ListStorms, v1::ListStormsRequest(), &storms)
         .ok();
   };
-  for (int i = 0; i < 1000 && !lists(); ++i) std::this_thread::sleep_for(milliseconds(5));
-  EXPECT_TRUE(lists());
+  EXPECT_TRUE(WaitFor(lists));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include "telemetry/metrics.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
+#include "tests/support/running_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -34,18 +36,19 @@ class DrainTest : public ::testing::Test {
 
   // gRPC lets go of a call some time after its client has the answer.
   bool AwaitPictures(int count) {
-    for (int i = 0; i < 500; ++i) {
-      if (service_.server().Load().pictures == count) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+    return WaitFor([&] { return service_.server().Load().pictures == count; });
+  }
+
+  bool AwaitNoTurn() {
+    return WaitFor([&] { return service_.server().Load().turn_s == 0.0; });
   }
 
   static std::uint64_t Refusals(const char* reason) {
     return telemetry::Counted().refusals.Of(reason).Value();
   }
 
-  FakeService service_;
+  RunningTime time_;
+  FakeService service_{Patient(time_)};
 };
 
 TEST_F(DrainTest, DeliversThePictureThatWasBegunAndRefusesTheNext) {
@@ -104,35 +107,29 @@ TEST_F(DrainTest, SessionsGoOnForThoseWhoStay) {
 }
 
 TEST_F(DrainTest, ATurnThatTakesLongIsSeen) {
-  EXPECT_LT(service_.server().Load().turn_s, 5.0);
+  EXPECT_TRUE(AwaitNoTurn());
   service_.machine->drawing.Close();
   std::thread caller([&] { Render(); });
   ASSERT_TRUE(service_.machine->drawing.AwaitWaiting(1));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_GT(service_.server().Load().turn_s, 0.25);
+  time_.Advance(std::chrono::minutes(1));
+  EXPECT_GE(service_.server().Load().turn_s, 60.0);
   service_.machine->drawing.Open();
   caller.join();
-  for (int i = 0; i < 500 && service_.server().Load().turn_s > 0.0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_EQ(service_.server().Load().turn_s, 0.0) << "nothing is to be done";
+  EXPECT_TRUE(AwaitNoTurn()) << "nothing is to be done";
 }
 
 TEST_F(DrainTest, ALaneThatMakesNoProgressIsSeen) {
-  EXPECT_LT(service_.server().Load().stalled_s, 5.0);
+  EXPECT_EQ(service_.server().Load().stalled_s, 0.0);
   service_.store->reading.Close();
   std::thread caller([&] { Render(); });
-  for (int i = 0; i < 500 && service_.server().Load().stalled_s < 0.3; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_GE(service_.server().Load().stalled_s, 0.3);
-  EXPECT_LT(service_.server().Load().turn_s, 0.1) << "it is no turn of drawing";
+  ASSERT_TRUE(service_.store->reading.AwaitWaiting(1));
+  time_.Advance(std::chrono::minutes(1));
+  EXPECT_GE(service_.server().Load().stalled_s, 60.0);
+  EXPECT_TRUE(AwaitNoTurn()) << "it is no turn of drawing";
   service_.store->reading.Open();
   caller.join();
-  for (int i = 0; i < 500 && service_.server().Load().stalled_s > 0.0; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_EQ(service_.server().Load().stalled_s, 0.0) << "nothing is to be done";
+  EXPECT_TRUE(WaitFor([&] { return service_.server().Load().stalled_s == 0.0; }))
+      << "nothing is to be done";
 }
 
 TEST_F(DrainTest, FramesAndTheirLatencyAreCounted) {
@@ -154,9 +151,7 @@ TEST_F(DrainTest, FramesAndTheirLatencyAreCounted) {
   v1::Scene scene = SmallScene();
   scene.mutable_sun()->set_azimuth_deg(123.0F);
   person.AwaitFrame(service_.Update(key, scene));
-  for (int i = 0; i < 500 && latencies() == latencies_before; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
+  EXPECT_TRUE(WaitFor([&] { return latencies() > latencies_before; }));
   EXPECT_EQ(latencies(), latencies_before + 1) << "the first frame of a revision";
   EXPECT_GT(counted.frames_sent.Value(), sent_before);
   EXPECT_GT(counted.frame_bytes_sent.Value(), bytes_before + 100);

@@ -400,7 +400,8 @@ TEST(StatusTableTest, BytesThatAreNoUtf8AreReplaced) {
     EXPECT_EQ(Decode(status).reason, "INTERNAL");
     return status.error_message();
   };
-  EXPECT_EQ(sent("plain\n, ä ☀ 🌩"), "plain\n, ä ☀ 🌩");
+  EXPECT_EQ(sent("plain, ä ☀ 🌩"), "plain, ä ☀ 🌩");
+  EXPECT_EQ(sent("plain\n"), "plain?") << "a control character";
   EXPECT_EQ(sent("Gew\xf6lk"), "Gew?lk") << "Latin-1";
   EXPECT_EQ(sent("\xc3"), "?") << "cut off";
   EXPECT_EQ(sent("\xc0\xaf"), "??") << "longer than needed";

@@ -5,10 +5,30 @@
 
 #include "base/status.h"
 #include "gtest/gtest.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 
 using Stub = v1::ThunderheadService::Stub;
+
+service::ServerOptions Patient(const base::TimeSource& time) {
+  service::ServerOptions options;
+  options.time = &time;
+  options.shutdown_grace = kHangLimit;
+  options.limits.max_render_time = kYears;
+  options.limits.delivery_time = kYears;
+  options.limits.join_timeout = kYears;
+  options.limits.unused_connection = kYears;
+  options.sessions.idle_timeout = kYears;
+  options.sessions.watched_idle_timeout = kYears;
+  options.sessions.roster_timeouts = {.answer = kYears,
+                                      .away = kYears,
+                                      .come_back = kYears,
+                                      .come_back_to_new_server = kYears,
+                                      .sign_of_life = kYears,
+                                      .sign_of_life_in_all = kYears};
+  return options;
+}
 
 FakeService::FakeService(service::ServerOptions options) {
   auto server = service::Server::Start(options, store, FakeFrameSources(machine));

@@ -12,16 +12,24 @@
 #include <thread>
 #include <vector>
 
+#include "base/time_source.h"
 #include "service/server.h"
 #include "tests/service/fake_engine.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::testing {
 
+// Longer than any test moves its time.
+inline constexpr std::chrono::hours kYears{24 * 365 * 20};
+
+// Options of a server that goes by `time`, which must outlive it. No timeout ends anything, however
+// slow the machine is and however far a test moves the time, except those that the test sets.
+service::ServerOptions Patient(const base::TimeSource& time = base::SteadyTime());
+
 // A server on fakes and a stub to it.
 class FakeService {
  public:
-  explicit FakeService(service::ServerOptions options = {});
+  explicit FakeService(service::ServerOptions options = Patient());
   ~FakeService();
 
   service::Server& server() { return *server_; }

@@ -35,7 +35,8 @@ inline std::string Sha256OfToken(const std::string& text) {
 // A service that knows a token of each role.
 class GuardedService {
  public:
-  explicit GuardedService(service::ServerOptions options = {}, access::QuotaLimits quotas = {}) {
+  explicit GuardedService(service::ServerOptions options = Patient(),
+                          access::QuotaLimits quotas = {}) {
     const std::string path = folder_.File("tokens");
     {
       std::ofstream file(path);
@@ -48,7 +49,8 @@ class GuardedService {
       const std::lock_guard lock(mutex_);
       lines_.push_back(line);
     });
-    options.door = std::make_shared<access::Door>(*access::TrustTokens(path), audit, quotas);
+    options.door = std::make_shared<access::Door>(*access::TrustTokens(path), audit, quotas,
+                                                  base::TrustedProxies(), *options.time);
     service_.emplace(options);
   }
 

@@ -1,8 +1,10 @@
 // Sessions that outlive the server, on fakes: the next server on the same store has them again.
 #include <algorithm>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 
 #include "base/patient_calls.h"
 #include "gmock/gmock.h"
@@ -12,6 +14,9 @@
 #include "telemetry/metrics.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/running_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -30,7 +35,11 @@ class FakeSessionStore final : public session::SessionStore {
     saving.Pass();
     const std::lock_guard lock(mutex_);
     if (!failure_.ok()) return failure_;
-    for (const SessionRecord& record : records) records_[record.id] = record;
+    last_saved_.clear();
+    for (const SessionRecord& record : records) {
+      records_[record.id] = record;
+      last_saved_.insert(record.keys.presenter);
+    }
     ++saves_;
     changed_.notify_all();
     return absl::OkStatus();
@@ -67,6 +76,12 @@ class FakeSessionStore final : public session::SessionStore {
     return saves_;
   }
 
+  // Returns the presenters' keys of the sessions that were saved last.
+  std::set<std::string> LastSaved() {
+    const std::lock_guard lock(mutex_);
+    return last_saved_;
+  }
+
   // Waits until `wanted` is true for the records.
   bool Await(const std::function<bool(const std::map<std::string, SessionRecord>&)>& wanted) {
     std::unique_lock lock(mutex_);
@@ -80,6 +95,7 @@ class FakeSessionStore final : public session::SessionStore {
   std::condition_variable changed_;
   std::map<std::string, SessionRecord> records_;
   absl::Status failure_;
+  std::set<std::string> last_saved_;
   int saves_ = 0;
 };
 
@@ -127,7 +143,8 @@ class KeptSessionsTest : public ::testing::Test {
   }
 
   const std::shared_ptr<FakeSessionStore> store_ = std::make_shared<FakeSessionStore>();
-  service::ServerOptions options_;
+  RunningTime time_;
+  service::ServerOptions options_ = Patient(time_);
   std::unique_ptr<FakeService> service_;
 };
 
@@ -377,17 +394,24 @@ TEST_F(KeptSessionsTest, ChangesAreSavedWhileTheServerRunsAndOnlyThey) {
     return scene.ParseFromString(records.begin()->second.scene) &&
            scene.sun().azimuth_deg() == 77.0F;
   }));
+  Create();  // before its answer comes, all that has changed is saved
   const int saves = store_->Saves();
-  std::this_thread::sleep_for(3 * session::SessionKeeper::kPause);
-  EXPECT_EQ(store_->Saves(), saves) << "nothing has changed";
-  // A drag of many scenes is few saves: one in each pause, however slow the machine is.
-  const auto began = std::chrono::steady_clock::now();
-  for (int i = 0; i < 100; ++i) {
-    TurnSun(created.session_id(), static_cast<float>(i));
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  const auto pauses = (std::chrono::steady_clock::now() - began) / session::SessionKeeper::kPause;
-  EXPECT_LE(store_->Saves() - saves, pauses + 2);
+  time_.Advance(3 * session::SessionKeeper::kPause);
+  const auto other = Create();
+  EXPECT_EQ(store_->Saves(), saves + 1) << "nothing else has changed";
+  EXPECT_THAT(store_->LastSaved(), ElementsAre(other.session_id()));
+  // A drag of many scenes is few saves: one in each pause.
+  time_.Stop();
+  for (int i = 0; i < 100; ++i) TurnSun(created.session_id(), static_cast<float>(i));
+  EXPECT_LE(store_->Saves() - saves, 2) << "one may have begun before the time stopped";
+  time_.Advance(session::SessionKeeper::kPause);
+  ASSERT_TRUE(store_->Await([&](const auto& records) {
+    return std::ranges::any_of(records, [](const auto& record) {
+      v1::Scene scene;
+      return scene.ParseFromString(record.second.scene) && scene.sun().azimuth_deg() == 99.0F;
+    });
+  }));
+  EXPECT_LE(store_->Saves() - saves, 3);
 }
 
 TEST_F(KeptSessionsTest, RevisionsGoOnOverSeveralRestarts) {
@@ -426,16 +450,19 @@ TEST_F(KeptSessionsTest, SessionsThatAreTooOldAreDropped) {
 }
 
 TEST_F(KeptSessionsTest, ARestoredSessionHasItsFullTimeToBeComeBackToAndNoMore) {
-  options_.sessions.idle_timeout = std::chrono::seconds(2);
+  options_.sessions.idle_timeout = std::chrono::hours(1);
   service_.reset();
   const auto created = (Start(), Create());
   service_.reset();
   store_->Change([](SessionRecord& record) { record.last_used -= std::chrono::hours(1); });
-  const auto began = std::chrono::steady_clock::now();
   Start();
-  EXPECT_EQ(store_->Records().size(), 1U);
-  ASSERT_TRUE(store_->Await([](const auto& records) { return records.empty(); }));
-  EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(1900));
+  time_.Advance(std::chrono::minutes(50));
+  const auto later = Create();
+  EXPECT_EQ(store_->Records().size(), 2U);
+  time_.Advance(std::chrono::minutes(10));
+  EXPECT_TRUE(store_->Await([&](const auto& records) {
+    return records.size() == 1 && records.begin()->second.keys.presenter == later.session_id();
+  }));
 }
 
 TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItIsTooOld) {
@@ -473,18 +500,21 @@ TEST_F(KeptSessionsTest, AStoreThatFailsIsLoggedOnceAndTriedAgain) {
   const auto failures = telemetry::Counted().session_save_failures.Value();
   store_->FailWith(absl::UnavailableError("the disk is full"));
   const auto created = Create();
-  std::this_thread::sleep_for(3 * session::SessionKeeper::kPause);
+  EXPECT_TRUE(WaitFor([&] {
+    time_.Advance(session::SessionKeeper::kPause);
+    return telemetry::Counted().session_save_failures.Value() >= failures + 3;
+  }));
   const std::string logged = ::testing::internal::GetCapturedStdout();
   EXPECT_THAT(logged, HasSubstr("trying again: the disk is full"));
   EXPECT_EQ(std::ranges::count(logged, '\n'), 1) << logged;
-  EXPECT_GE(telemetry::Counted().session_save_failures.Value(), failures + 2);
   store_->FailWith(absl::OkStatus());
   EXPECT_TRUE(store_->Await([](const auto& records) { return records.size() == 1; }));
 }
 
 TEST_F(KeptSessionsTest, AStoreThatHangsRefusesWhatItWouldHaveToKeep) {
+  constexpr std::chrono::hours kStorePatience{1};
   options_.session_store = store::WithPatience(
-      store_, std::make_shared<base::PatientCalls>(std::chrono::milliseconds(200)), "/state");
+      store_, std::make_shared<base::PatientCalls>(kStorePatience, time_), "/state");
   Start();
   const auto stays = Create();
   const auto goes = Create();
@@ -492,7 +522,12 @@ TEST_F(KeptSessionsTest, AStoreThatHangsRefusesWhatItWouldHaveToKeep) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = SmallScene();
   v1::CreateSessionResponse response;
-  const grpc::Status refused = Call(service_->stub(), &Stub::CreateSession, request, &response);
+  std::future<grpc::Status> creating = std::async(std::launch::async, [&] {
+    return Call(service_->stub(), &Stub::CreateSession, request, &response);
+  });
+  ASSERT_TRUE(store_->saving.AwaitWaiting(1));
+  time_.Advance(kStorePatience);
+  const grpc::Status refused = creating.get();
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::UNAVAILABLE) << refused.error_message();
   EXPECT_THAT(refused.error_message(), HasSubstr("the state folder /state does not answer"));
   EXPECT_EQ(ReasonOf(refused), "STORAGE_HANGS");
@@ -511,13 +546,17 @@ TEST(SessionRecordTest, AWatchedSessionIsInUse) {
   struct SilentViewer : session::Viewer {
     void Wake() override {}
   };
-  session::Sessions sessions({}, {[] {}, [] {}});
+  ManualTime time;
+  session::SessionsOptions options;
+  options.time = &time;
+  session::Sessions sessions(options, {[] {}, [] {}});
   const auto session = *sessions.Create();
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  time.Advance(std::chrono::minutes(1));
   const auto now = std::chrono::system_clock::now();
-  EXPECT_LT(session->Record().last_used, now - std::chrono::milliseconds(40));
+  EXPECT_LT(session->Record().last_used,
+            std::chrono::system_clock::now() - std::chrono::seconds(59));
   ASSERT_TRUE(session->hub().Join(std::make_shared<SilentViewer>()).ok());
-  EXPECT_GE(session->Record().last_used, now - std::chrono::milliseconds(1));
+  EXPECT_GE(session->Record().last_used, now);
 }
 
 TEST(StoredSceneTest, OlderScenesGetTheDefaultsOfWhatTheirWriterDidNotKnow) {

@@ -5,18 +5,19 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <future>
 #include <memory>
 #include <stop_token>
 #include <string>
 #include <thread>
 
-#include "base/stopwatch.h"
 #include "base/whole_file.h"
 #include "gateway/gateway.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/figure.h"
 #include "tests/support/self_signed.h"
 #include "tests/support/temporary_folder.h"
 
@@ -29,13 +30,25 @@ using ::testing::Ge;
 using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::Le;
+using ::testing::Lt;
 using ::testing::Not;
 using ::testing::Pair;
 
 enum class By { kGrpc, kWebSocket };
 
+// Until a test stops the load.
+constexpr double kForEver_s = 1e6;
+
+// A machine that is slow makes nothing fail.
+constexpr LoadTimes kTimes{.warm_up_s = 0.1,
+                           .sampling_s = 0.05,
+                           .visit_s = 0.5,
+                           .join_patience_s = 600.0,
+                           .leave_patience_s = 600.0,
+                           .call_patience_s = 600.0};
+
 service::ServerOptions OnFreePort() {
-  service::ServerOptions options;
+  service::ServerOptions options = testing::Patient();
   options.address = "127.0.0.1:0";
   return options;
 }
@@ -47,10 +60,11 @@ class LoadTest : public ::testing::TestWithParam<By> {
     EXPECT_TRUE(gateway.ok()) << gateway.status();
     gateway_ = *std::move(gateway);
     options_.viewers = 3;
-    options_.seconds = 1.5;
+    options_.seconds = kForEver_s;
     options_.width_px = 64;
     options_.height_px = 36;
-    options_.steer_hz = 10.0;
+    options_.steer_hz = 50.0;
+    options_.times = kTimes;
   }
 
   int Port() const {
@@ -70,6 +84,27 @@ class LoadTest : public ::testing::TestWithParam<By> {
                      progress);
   }
 
+  // Runs until each viewer that reads all it gets has so many frames.
+  absl::StatusOr<Report> RunFor(std::uint64_t frames) {
+    return RunUntil([frames](const Progress& progress) { return progress.least_frames >= frames; });
+  }
+
+  absl::StatusOr<Report> RunUntil(const std::function<bool(const Progress&)>& enough) {
+    std::stop_source stop;
+    return Run(
+        [&](const Progress& progress) {
+          if (enough(progress)) stop.request_stop();
+        },
+        stop.get_token());
+  }
+
+  // The most that throttled viewers can get of a rate: also the message that was on its way when
+  // the period began.
+  double MostKbit(const Report& report) const {
+    return 1.5 * options_.kbit_per_s +
+           2.0 * 8e-3 * report.throttled.bytes_per_frame / report.seconds;
+  }
+
   void StopServer() {
     gateway_.reset();
     service_.reset();
@@ -82,17 +117,17 @@ class LoadTest : public ::testing::TestWithParam<By> {
 };
 
 TEST_P(LoadTest, HasAllFigures) {
-  const auto report = Run();
+  const auto report = RunFor(10);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->healthy.viewers, 3);
-  EXPECT_THAT(report->healthy.fps_min, Gt(5.0));
+  EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
   EXPECT_THAT(report->healthy.fps_median, Ge(report->healthy.fps_min));
   ASSERT_TRUE(report->healthy.latency_ms.has_value());
   EXPECT_THAT(report->healthy.latency_ms->p50, Gt(0.0));
   EXPECT_THAT(report->healthy.latency_ms->p95, Ge(report->healthy.latency_ms->p50));
   EXPECT_THAT(report->healthy.latency_ms->p99, Ge(report->healthy.latency_ms->p95));
-  EXPECT_THAT(report->healthy.kbit_per_viewer, Gt(1.0));
+  EXPECT_THAT(report->healthy.kbit_per_viewer, Gt(0.0));
   EXPECT_THAT(report->healthy.bytes_per_frame, Gt(100.0));
   EXPECT_EQ(report->healthy_first.count, 3);
   // The server is this process.
@@ -108,15 +143,13 @@ TEST_P(LoadTest, HasAllFigures) {
   EXPECT_THAT(ToJson(*report), Not(HasSubstr("null, \"p95\"")));
 }
 
-TEST_P(LoadTest, AClassSeesTheSamePictureWithinASecond) {
+TEST_P(LoadTest, AClassSeesTheSamePicture) {
   options_.viewers = 30;
-  options_.seconds = 2.0;
-  const auto report = Run();
+  const auto report = RunFor(5);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->healthy.viewers, 30);
-  ASSERT_TRUE(report->healthy.spread_ms.has_value());
-  EXPECT_THAT(report->healthy.spread_ms->p99, Le(1000.0)) << ToText(*report);
+  EXPECT_TRUE(report->healthy.spread_ms.has_value()) << ToText(*report);
 }
 
 TEST_P(LoadTest, LeavesNoSessionBehind) {
@@ -140,26 +173,25 @@ TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
   options_.stalled = 2;
   options_.throttled = 1;
   options_.kbit_per_s = 16.0;
-  const auto report = Run();
+  const auto report = RunFor(20);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->healthy.viewers, 3);
-  EXPECT_THAT(report->healthy.fps_min, Gt(5.0)) << ToText(*report);
   EXPECT_EQ(report->stalled, 2);
   EXPECT_EQ(report->throttled.viewers, 1);
-  EXPECT_THAT(report->throttled.fps_median, Le(0.7 * report->healthy.fps_min)) << ToText(*report);
+  EXPECT_THAT(report->throttled.kbit_per_viewer, Le(MostKbit(*report))) << ToText(*report);
 }
 
 TEST_P(LoadTest, WhoLooksAroundGetsPicturesOfTheOwnViewAndTheOthersTheSessions) {
   options_.looking = 2;
-  const auto report = Run();
+  // More than the two that may be unacknowledged.
+  const auto report = RunFor(5);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->healthy.viewers, 1);
   EXPECT_EQ(report->looking.viewers, 2);
-  // More than the two that may be unacknowledged.
-  EXPECT_THAT(report->looking.fps_min, Gt(2.0)) << ToText(*report);
-  EXPECT_THAT(report->healthy.fps_min, Gt(2.0)) << ToText(*report);
+  EXPECT_THAT(report->looking.fps_min, Gt(2.0 / report->seconds)) << ToText(*report);
+  EXPECT_THAT(report->healthy.fps_min, Gt(2.0 / report->seconds)) << ToText(*report);
   EXPECT_EQ(report->looking_first.count, 2U);
   EXPECT_FALSE(report->looking.latency_ms.has_value());
   EXPECT_THAT(ToText(*report), HasSubstr("looking around: 2\n"));
@@ -168,40 +200,41 @@ TEST_P(LoadTest, WhoLooksAroundGetsPicturesOfTheOwnViewAndTheOthersTheSessions) 
 
 TEST_P(LoadTest, ARateWithoutANumberThrottlesAllViewers) {
   Throttle(16.0, std::nullopt, options_);
-  std::atomic<double> shown_fps{0.0};
-  const auto report = Run([&](const Progress& progress) {
-    shown_fps = std::max(shown_fps.load(), progress.frames_per_s);
+  double shown_fps = 0.0;
+  const auto report = RunUntil([&](const Progress& progress) {
+    shown_fps = std::max(shown_fps, progress.frames_per_s);
+    return progress.least_frames >= 2;
   });
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->healthy.viewers, 0);
   EXPECT_EQ(report->throttled.viewers, 3);
-  EXPECT_THAT(report->throttled.kbit_per_viewer, AllOf(Gt(1.0), Le(1.5 * 16.0))) << ToText(*report);
+  EXPECT_THAT(report->throttled.kbit_per_viewer, AllOf(Gt(0.0), Le(MostKbit(*report))))
+      << ToText(*report);
   EXPECT_EQ(report->throttled_first.count, 3U);
-  EXPECT_THAT(shown_fps.load(), AllOf(Gt(0.0), Le(1000.0)));
+  EXPECT_THAT(shown_fps, Gt(0.0));
+  EXPECT_TRUE(std::isfinite(shown_fps));
 }
 
 TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {
   options_.passing = 40;
-  options_.seconds = 3.0;
-  const auto report = Run();
+  const auto report = RunUntil([](const Progress& progress) { return progress.visits >= 60; });
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->passing, 40);
-  // 40 who came at first, and each again after two seconds; one without a frame is an error.
+  // One without a frame is an error.
   EXPECT_THAT(report->passing_first.count, Ge(60U)) << ToText(*report);
 }
 
 TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
-  options_.seconds = 60.0;
   std::jthread stopping;
   const auto report = Run([&](const Progress& progress) {
-    if (progress.share > 0.01 && !stopping.joinable())
+    if (progress.least_frames > 0 && !stopping.joinable())
       stopping = std::jthread([&] { StopServer(); });
   });
   ASSERT_TRUE(report.ok()) << report.status();
   // It does not wait for the end, and has the figures so far.
-  EXPECT_THAT(report->seconds, Le(30.0));
+  EXPECT_THAT(report->seconds, Lt(kForEver_s));
   EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
   // Three viewers and the presenter; closing the session fails too.
   EXPECT_THAT(report->ErrorCount(), Ge(4)) << ToText(*report);
@@ -209,33 +242,19 @@ TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
 }
 
 TEST_P(LoadTest, InterruptedHasTheFiguresSoFar) {
-  options_.seconds = 60.0;
-  std::stop_source stop;
-  const auto report = Run(
-      [&](const Progress& progress) {
-        if (progress.share > 0.01) stop.request_stop();
-      },
-      stop.get_token());
+  const auto report = RunFor(1);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
-  EXPECT_THAT(report->seconds, Le(30.0));
+  EXPECT_THAT(report->seconds, Lt(kForEver_s));
   EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
 }
 
 TEST_P(LoadTest, InterruptedWaitsForNoStill) {
-  options_.seconds = 60.0;
-  // A minute for the picture, some milliseconds for a frame.
-  service_->machine->ms_per_mega_sample = 2.0;
+  // Hours for the picture, some milliseconds for a frame.
+  service_->machine->ms_per_mega_sample = 100.0;
   options_.stills = {.count = 1, .width_px = 4096, .height_px = 2048, .slices = 4096};
-  std::stop_source stop;
-  const base::Stopwatch stopwatch;
-  const auto report = Run(
-      [&](const Progress& progress) {
-        if (progress.share > 0.01) stop.request_stop();
-      },
-      stop.get_token());
+  const auto report = RunFor(1);
   ASSERT_TRUE(report.ok()) << report.status();
-  EXPECT_LT(stopwatch.ElapsedMs(), 40'000.0);
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_THAT(ToText(*report), HasSubstr("stills: 1 asked for at once, 0 came"));
 }
@@ -280,6 +299,31 @@ TEST_P(LoadTest, AcknowledgingAfterLeavingIsNoError) {
   EXPECT_TRUE(end.ok()) << end;
 }
 
+// How well a server on fakes serves a class, which depends on the machine.
+class LoadBenchmark : public LoadTest {};
+
+TEST_P(LoadBenchmark, AClassAndSlowViewers) {
+  options_.viewers = 30;
+  options_.stalled = 2;
+  options_.throttled = 1;
+  options_.kbit_per_s = 16.0;
+  options_.seconds = 5.0;
+  options_.times = {};
+  const auto report = Run();
+  ASSERT_TRUE(report.ok()) << report.status();
+  testing::Figure("frames of a healthy viewer, least", report->healthy.fps_min, "1/s");
+  testing::Figure("frames of a throttled viewer, median", report->throttled.fps_median, "1/s");
+  if (report->healthy.spread_ms.has_value()) {
+    testing::Figure("from the first viewer who shows a picture to the last, 99th percentile",
+                    report->healthy.spread_ms->p99, "ms");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Transports, LoadBenchmark, ::testing::Values(By::kGrpc, By::kWebSocket),
+                         [](const auto& by) {
+                           return by.param == By::kGrpc ? "Grpc" : "WebSocket";
+                         });
+
 INSTANTIATE_TEST_SUITE_P(Transports, LoadTest, ::testing::Values(By::kGrpc, By::kWebSocket),
                          [](const auto& by) {
                            return by.param == By::kGrpc ? "Grpc" : "WebSocket";
@@ -299,20 +343,25 @@ TEST(SecureLoad, ComesByTlsToWhomItTrustsOnly) {
   const int port = (*gateway)->Port();
   LoadOptions options;
   options.viewers = 2;
-  options.seconds = 1.0;
+  options.seconds = kForEver_s;
+  options.times = kTimes;
   options.width_px = 64;
   options.height_px = 36;
   const auto run = [&](const std::string& host, const std::string& roots) {
     const auto transport = MakeSecureWebSocketTransport(host, port, {.tls_roots = roots});
     if (!transport.ok()) return absl::StatusOr<Report>(transport.status());
-    return load::Run(options, **transport, std::nullopt, {}, [](auto&) {});
+    std::stop_source stop;
+    return load::Run(options, **transport, std::nullopt, stop.get_token(),
+                     [&](const Progress& progress) {
+                       if (progress.least_frames >= 2) stop.request_stop();
+                     });
   };
   const std::string roots = *base::ReadWholeFile(certificate);
   for (const std::string host : {"127.0.0.1", "localhost"}) {
     const auto report = run(host, roots);
     ASSERT_TRUE(report.ok()) << report.status();
     EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
-    EXPECT_THAT(report->healthy.fps_min, Gt(1.0));
+    EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
   }
   // The machine does not vouch for it, and it is not the one that it is asked for.
   const auto stranger = run("127.0.0.1", "");

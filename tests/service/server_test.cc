@@ -7,6 +7,7 @@
 #include "gtest/gtest.h"
 #include "service/status_table.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -61,7 +62,7 @@ std::string Ask(const std::shared_ptr<grpc::Channel>& channel, const std::string
 }
 
 TEST(ServerTest, HealthIsServingInProcessAndOnItsPort) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.address = "127.0.0.1:0";
   FakeService service(options);
   ASSERT_GT(service.server().Port(), 0);
@@ -97,7 +98,7 @@ TEST(ServerTest, ReflectionListsTheService) {
 }
 
 TEST(ServerTest, TakenPortIsAnError) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.address = "127.0.0.1:0";
   FakeService first(options);
   options.address = "127.0.0.1:" + std::to_string(first.server().Port());
@@ -135,12 +136,9 @@ TEST(ServerTest, ShutdownEndsStreamsAndPicturesWithUnavailable) {
   std::thread first([&] { render(1, &drawn); });
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
   std::thread second([&] { render(2, &waited); });
-  for (int i = 0; i < 500 && service.server().Load().pictures < 2; ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  EXPECT_EQ(service.server().Load().pictures, 2);
-  // To its place in the queue; it is read when it is begun.
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_TRUE(WaitFor([&] { return service.server().Load().pictures == 2; }));
+  // It is read when it is begun.
+  EXPECT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 1; }));
   std::thread shutdown([&] { service.server().Shutdown(); });
   const grpc::Status ended = watcher.End();
   service.machine->drawing.Open();

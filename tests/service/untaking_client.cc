@@ -12,9 +12,6 @@
 namespace thunderhead::testing {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
-
 // Frames' types, and flags.
 constexpr char kData = 0;
 constexpr char kHeaders = 1;
@@ -57,8 +54,6 @@ UntakingClient::UntakingClient(int port) : socket_(::socket(AF_INET, SOCK_STREAM
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   EXPECT_EQ(connect(socket_.Get(), reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-  const timeval patience{0, 20'000};
-  setsockopt(socket_.Get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
   // SETTINGS_INITIAL_WINDOW_SIZE is 0.
   Send("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + Frame(kSettings, 0, 0, std::string("\0\4\0\0\0\0", 6)));
 }
@@ -75,30 +70,31 @@ void UntakingClient::Call(const std::string& method, const std::string& message,
   stream_ += 2;
 }
 
-template <typename Condition>
-bool UntakingClient::Await(milliseconds patience, const Condition& condition) {
-  const auto until = steady_clock::now() + patience;
-  while (!condition() && !closed_ && steady_clock::now() < until) {
+void UntakingClient::TakeAll() {
+  while (!closed_) {
     char bytes[4096];
-    const ssize_t count = recv(socket_.Get(), bytes, sizeof(bytes), 0);
+    const ssize_t count = recv(socket_.Get(), bytes, sizeof(bytes), MSG_DONTWAIT);
     if (count > 0) received_.append(bytes, static_cast<std::size_t>(count));
     closed_ = count == 0 || (count < 0 && errno == ECONNRESET);
     while (TakeFrame()) {
     }
+    if (count < 0) return;
   }
-  return condition();
 }
 
-bool UntakingClient::IsReset(milliseconds patience) {
-  return Await(patience, [this] { return reset_; });
+bool UntakingClient::IsReset() {
+  TakeAll();
+  return reset_;
 }
 
-bool UntakingClient::AwaitRefused(int calls, milliseconds patience) {
-  return Await(patience, [this, calls] { return refused_ >= calls; });
+int UntakingClient::Refused() {
+  TakeAll();
+  return refused_;
 }
 
-bool UntakingClient::IsClosed(milliseconds patience) {
-  return Await(patience, [this] { return closed_; });
+bool UntakingClient::IsClosed() {
+  TakeAll();
+  return closed_;
 }
 
 std::string UntakingClient::Frame(char type, char flags, std::size_t stream,
@@ -109,6 +105,10 @@ std::string UntakingClient::Frame(char type, char flags, std::size_t stream,
 void UntakingClient::Send(const std::string& bytes) {
   EXPECT_EQ(send(socket_.Get(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
             static_cast<ssize_t>(bytes.size()));
+}
+
+void UntakingClient::Answer(const std::string& bytes) {
+  (void)send(socket_.Get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
 bool UntakingClient::TakeFrame() {
@@ -124,8 +124,8 @@ bool UntakingClient::TakeFrame() {
   if (type == kReset) reset_ = true;
   // Headers that end the call are trailers alone: no message was on its way.
   if (type == kHeaders && (flags & kEndStream) != 0) ++refused_;
-  if (type == kSettings && flags != kAck) Send(Frame(kSettings, kAck, 0, ""));
-  if (type == kPing && flags != kAck) Send(Frame(kPing, kAck, 0, payload));
+  if (type == kSettings && flags != kAck) Answer(Frame(kSettings, kAck, 0, ""));
+  if (type == kPing && flags != kAck) Answer(Frame(kPing, kAck, 0, payload));
   return true;
 }
 

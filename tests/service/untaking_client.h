@@ -1,7 +1,6 @@
 // A client that speaks HTTP/2 by itself, and grants no room for what the server sends.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <string>
 
@@ -19,21 +18,23 @@ class UntakingClient {
   // The headers of a call whose message does not come.
   void Announce(const std::string& method);
 
-  // Answers pings until the server resets a call; false if it does not within that time.
-  bool IsReset(std::chrono::milliseconds patience);
-  // The same until the server has refused so many calls without a message.
-  bool AwaitRefused(int calls, std::chrono::milliseconds patience);
-  // The same until the server has closed the connection.
-  bool IsClosed(std::chrono::milliseconds patience);
+  // Each takes what has come, and answers pings.
+  // Returns whether the server has reset a call.
+  bool IsReset();
+  // Returns how many calls the server has refused without a message.
+  int Refused();
+  // Returns whether the server has closed the connection.
+  bool IsClosed();
 
   void Leave() { socket_ = {}; }
 
  private:
   static std::string Frame(char type, char flags, std::size_t stream, const std::string& payload);
   void Send(const std::string& bytes);
+  // The same for an answer, which the server may no longer take.
+  void Answer(const std::string& bytes);
   bool TakeFrame();
-  template <typename Condition>
-  bool Await(std::chrono::milliseconds patience, const Condition& condition);
+  void TakeAll();
 
   base::FileDescriptor socket_;
   std::size_t stream_ = 1;  // the next call's

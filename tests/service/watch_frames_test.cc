@@ -6,6 +6,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/manual_time.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -98,8 +99,14 @@ TEST(WatchFramesTest, NothingIsDrawnWithoutAViewer) {
   FakeService service;
   const std::string id = service.Open(SmallScene());
   service.Update(id, Facing(10.0F));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  EXPECT_TRUE(service.machine->Log().empty());
+  // Another session has its turn several times meanwhile.
+  const std::string watched = service.Open(Facing(20.0F));
+  Watcher watcher(service.stub(), watched);
+  for (int i = 0; i < 5; ++i) {
+    const float azimuth_deg = 21.0F + static_cast<float>(i);
+    ASSERT_TRUE(watcher.AwaitFrame(service.Update(watched, Facing(azimuth_deg)), true));
+  }
+  for (const auto& drawn : service.machine->Log()) EXPECT_GE(drawn.scene.sun.azimuth_deg, 20.0);
 }
 
 TEST(WatchFramesTest, TwoViewersSeeTheSameFrames) {
@@ -128,6 +135,7 @@ TEST(WatchFramesTest, AtMostTwoFramesGoUnacknowledgedAndTheSlowViewerSkips) {
     revision = service.Update(id, Facing(static_cast<float>(10 * i)));
     ASSERT_TRUE(fast.AwaitFrame(revision, true));
   }
+  ASSERT_TRUE(slow.Await([](const auto& messages) { return messages.size() >= 2; }));
   EXPECT_EQ(slow.Messages().size(), 2U);
   slow.Acknowledge(slow.NewestFrame().sequence());
   ASSERT_TRUE(slow.AwaitFrame(revision, true));
@@ -160,16 +168,22 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
 }
 
 TEST(WatchFramesTest, CoarseWhileChangingRefinedAtRest) {
-  FakeService service;
+  ManualTime time;  // moved by drawing, too
+  FakeService service(Patient(time));
+  service.machine->time = &time;
   service.machine->ms_per_mega_sample = 4800.0;  // 177 ms a full frame: refined in one step
   const std::string id = service.Open(SmallScene());
   Watcher watcher(service.stub(), id);
+  ASSERT_TRUE(watcher.AwaitFrame(1, false));
+  time.Advance(std::chrono::seconds(1));
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   std::uint64_t revision = 0;
   for (int i = 0; i < 20; ++i) {
     revision = service.Update(id, Facing(static_cast<float>(i)));
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ASSERT_TRUE(watcher.AwaitFrame(revision, false));
   }
+  EXPECT_FALSE(watcher.NewestFrame().refined());
+  time.Advance(std::chrono::seconds(1));
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   const auto log = service.machine->Log();
   const auto& last = log.back();
@@ -178,8 +192,15 @@ TEST(WatchFramesTest, CoarseWhileChangingRefinedAtRest) {
   EXPECT_LT(before.quality.image_scale, 1.0);
   EXPECT_EQ(before.scene, last.scene);
   // Nothing is drawn again once the resting picture is at full quality.
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
-  EXPECT_EQ(service.machine->Log().size(), log.size());
+  time.Advance(std::chrono::minutes(1));
+  const std::string other = service.Open(Facing(100.0F));
+  Watcher other_watcher(service.stub(), other);
+  ASSERT_TRUE(other_watcher.AwaitFrame(1, false));
+  ASSERT_TRUE(other_watcher.AwaitFrame(service.Update(other, Facing(101.0F)), false));
+  const auto later = service.machine->Log();
+  for (std::size_t i = log.size(); i < later.size(); ++i) {
+    EXPECT_GE(later[i].scene.sun.azimuth_deg, 100.0);
+  }
 }
 
 TEST(WatchFramesTest, ReadErrorIsAProblemOfItsRevisionAndTheNextSceneIsDrawn) {
