@@ -206,14 +206,14 @@ Piece TracePiece(const FluxProblem& problem, std::uint64_t seed, std::int64_t fi
   return piece;
 }
 
-// Traces `count` chunks from photon `first` on; skips those not begun when it must end.
+// Traces `count` chunks from photon `first` on; skips those before whose first photon it must end.
 std::vector<Piece> TraceRound(const FluxProblem& problem, const FluxOptions& options,
                               std::int64_t first, int count,
-                              const std::function<bool()>& must_end) {
+                              const std::function<bool(std::int64_t begin)>& must_end) {
   std::vector<Piece> pieces(static_cast<std::size_t>(count));
   ParallelFor(options.threads, count, [&](int i) {
-    if (must_end()) return;
     const std::int64_t begin = first + i * kPiece;
+    if (must_end(begin)) return;
     pieces[static_cast<std::size_t>(i)] =
         TracePiece(problem, options.seed, begin, std::min(begin + kPiece, options.photons));
   });
@@ -255,15 +255,15 @@ absl::StatusOr<FluxResult> ComputeFlux(const FluxProblem& problem, const FluxOpt
                                        const FluxObserver& observer, const std::stop_token& stop) {
   THUNDERHEAD_RETURN_IF_ERROR(Check(problem, options));
   const base::Stopwatch stopwatch;
-  const auto must_end = [&] {
-    return stop.stop_requested() ||
-           (options.seconds > 0.0 && stopwatch.ElapsedMs() >= 1e3 * options.seconds);
+  const auto must_end = [&](std::int64_t begin) {
+    const bool is_limited = options.seconds > 0.0 && begin > 0;
+    return stop.stop_requested() || (is_limited && stopwatch.ElapsedMs() >= 1e3 * options.seconds);
   };
   Sums sums;
   std::int64_t begun = 0;
   std::int64_t done = 0;
   int pieces = 16;
-  while (begun < options.photons && !must_end()) {
+  while (begun < options.photons && !must_end(begun)) {
     const base::Stopwatch round;
     const std::vector<Piece> results = TraceRound(problem, options, begun, pieces, must_end);
     for (const Piece& piece : results) {

@@ -31,7 +31,7 @@ struct FluxProblem {
 
 struct FluxOptions {
   std::int64_t photons = 1'000'000;
-  double seconds = 0.0;  // time limit; 0: none
+  double seconds = 0.0;  // time limit, except for the first photons; 0: none
   std::uint64_t seed = 0;
   int threads = 0;  // 0: as many as the machine has
 };

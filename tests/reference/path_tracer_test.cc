@@ -332,7 +332,6 @@ TEST(PathTracer, StopsAfterTheTimeGivenButNotBeforeOneSample) {
   const RefineResult second = tracer.Refine(limits, {}, {});
   EXPECT_EQ(second.end, RefineEnd::kSeconds);
   EXPECT_GT(second.progress.samples_per_pixel, 1);
-  EXPECT_LT(second.progress.seconds, 2.0);
 }
 
 TEST(PathTracer, StopsWhenAskedAndGoesOn) {
