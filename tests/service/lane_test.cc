@@ -1,5 +1,5 @@
-// A lane that draws with GL beside whoever gives the turns: how long its pieces are, and how soon
-// it ends when nobody wants its picture.
+// A lane that draws with GL while others give it turns: that it draws in pieces, and ends when its
+// picture is no longer wanted.
 #include "session/lane.h"
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 #include "base/stopwatch.h"
 #include "gtest/gtest.h"
 #include "session/gl_frame_source.h"
+#include "tests/support/figure.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
 #include "volume/storm_store.h"
@@ -21,7 +22,7 @@
 namespace thunderhead::session {
 namespace {
 
-class LaneTest : public testing::Test {
+class LaneTest : public ::testing::Test {
  protected:
   void SetUp() override {
     lane_ = std::make_unique<Lane>(GlFrameSources(test_support::Device()), 0, [] {});
@@ -88,39 +89,44 @@ TEST_F(LaneTest, AFrameOfASmallerOutputIsTheSmallerPicture) {
   }
 }
 
-// 30 ms on a machine of its own; tests share theirs.
-void ExpectShort(std::vector<double> pieces_ms) {
-  std::ranges::sort(pieces_ms);
-  const double p95_ms = pieces_ms[pieces_ms.size() * 95 / 100];
-  testing::Test::RecordProperty("p95_ms", std::to_string(p95_ms));
-  testing::Test::RecordProperty("longest_ms", std::to_string(pieces_ms.back()));
-  EXPECT_LT(p95_ms, 60.0) << "longest: " << pieces_ms.back();
-}
+class LaneBenchmark : public LaneTest {
+ protected:
+  void TellPieces(const scene::Scene& scene, const FrameQuality& quality) {
+    Begin(SceneOf(320, 180, 128), quality);
+    Finish();
+    ASSERT_TRUE(drawn_.ok()) << drawn_;
+    // The first picture has compiled the programs and prepared the storm.
+    Begin(scene, quality);
+    std::vector<double> pieces_ms = Finish();
+    ASSERT_TRUE(drawn_.ok()) << drawn_;
+    ASSERT_FALSE(pieces_ms.empty());
+    std::ranges::sort(pieces_ms);
+    const std::string name = quality.sparse ? "piece of a sparse picture" : "piece of a picture";
+    testing::Figure((name + ", 95th percentile").c_str(), pieces_ms[pieces_ms.size() * 95 / 100],
+                    "ms");
+    testing::Figure((name + ", longest").c_str(), pieces_ms.back(), "ms");
+  }
+};
 
-TEST_F(LaneTest, PiecesOfLargePicturesAreShort) {
-  Begin(SceneOf(320, 180, 128));
-  Finish();
-  ASSERT_TRUE(drawn_.ok()) << drawn_;
-  // The first picture has compiled the programs and prepared the storm.
-  Begin(SceneOf(1920, 1080, 512));
-  const std::vector<double> pieces_ms = Finish();
-  ASSERT_TRUE(drawn_.ok()) << drawn_;
-  ASSERT_GT(pieces_ms.size(), 20U);
-  ExpectShort(pieces_ms);
-}
+TEST_F(LaneBenchmark, PiecesOfALargePicture) { TellPieces(SceneOf(1920, 1080, 512), {}); }
 
 // Most of its time the processors complete it, and the device is free for others.
-TEST_F(LaneTest, PiecesOfPicturesWithFewerRaysAreShortToo) {
+TEST_F(LaneBenchmark, PiecesOfALargePictureWithFewerRays) {
+  TellPieces(SceneOf(1920, 1080, 256), {.sparse = true});
+}
+
+TEST_F(LaneTest, LargePicturesAreDrawnInPieces) {
+  Begin(SceneOf(1280, 720, 512));
+  EXPECT_GT(Finish().size(), 20U);
+  EXPECT_TRUE(drawn_.ok()) << drawn_;
+}
+
+TEST_F(LaneTest, APictureWithFewerRaysIsTheSameInPieces) {
   const FrameQuality sparse{.sparse = true};
-  const scene::Scene large = SceneOf(1920, 1080, 256);
-  Begin(SceneOf(320, 180, 128), sparse);
-  Finish();
-  ASSERT_TRUE(drawn_.ok()) << drawn_;
+  const scene::Scene large = SceneOf(1280, 720, 256);
   Begin(large, sparse);
-  const std::vector<double> pieces_ms = Finish();
+  EXPECT_GT(Finish().size(), 10U);
   ASSERT_TRUE(drawn_.ok()) << drawn_;
-  ASSERT_GT(pieces_ms.size(), 10U);
-  ExpectShort(pieces_ms);
   const auto whole = DrawWhole(large, sparse);
   ASSERT_TRUE(whole.ok()) << whole.status();
   EXPECT_TRUE(whole->rgb == rgb_);
@@ -139,18 +145,23 @@ TEST_F(LaneTest, APictureWithFewerRaysIsThereWithMoreBitsOnce) {
 }
 
 TEST_F(LaneTest, WhatNobodyWantsFreesTheDeviceAtOnce) {
-  for (const double after_ms : {50.0, 500.0, 1500.0}) {
+  for (const int after_pieces : {1, 10, 40}) {
     *cancelled_ = false;
     Begin(SceneOf(3840, 2160, 512));
-    const base::Stopwatch since_begun;
-    while (since_begun.ElapsedMs() < after_ms) {
-      if (lane_->WantsTurn()) lane_->GiveTurn();
+    for (int pieces = 0; pieces < after_pieces && !lane_->IsIdle();) {
+      if (lane_->WantsTurn()) {
+        lane_->GiveTurn();
+        ++pieces;
+      } else {
+        std::this_thread::yield();
+      }
     }
-    ASSERT_FALSE(lane_->IsIdle()) << "too fast to tell";
+    ASSERT_FALSE(lane_->IsIdle()) << "it has few pieces";
     *cancelled_ = true;
     const base::Stopwatch since_cancelled;
     EXPECT_TRUE(Finish().empty()) << "it drew on";
-    EXPECT_LT(since_cancelled.ElapsedMs(), 5000.0) << "work without the device";
+    testing::Figure("work without the device after a picture was cancelled",
+                    since_cancelled.ElapsedMs(), "ms");
     EXPECT_TRUE(absl::IsCancelled(drawn_)) << drawn_;
   }
 }
@@ -177,10 +188,10 @@ TEST_F(LaneTest, TracingEndsWhenNobodyWantsItAnyMore) {
 TEST_F(LaneTest, MoreTimeThanItsLimitEndsTheWork) {
   lane_->Begin(
       [this](const absl::StatusOr<FrameSource*>& source) {
-        drawn_ = (*source)->Draw(SceneOf(3840, 2160, 512), fields_, {}).status();
+        drawn_ = (*source)->Draw(SceneOf(1280, 720, 512), fields_, {}).status();
       },
-      {nullptr, 300.0});
-  Finish();
+      {nullptr, 0.01});
+  EXPECT_EQ(Finish().size(), 1U);
   EXPECT_TRUE(absl::IsResourceExhausted(drawn_)) << drawn_;
   const base::ErrorDetails details = base::DetailsOf(drawn_);
   EXPECT_EQ(details.reason, "PICTURE_TOO_COSTLY");
