@@ -1,7 +1,6 @@
 // Progress of single pictures, on a fake machine that traces a hundred thousand paths at a time.
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -10,6 +9,8 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -18,7 +19,6 @@ using ::testing::HasSubstr;
 using Events = std::vector<v1::RenderImageEvent>;
 using Stub = v1::ThunderheadService::Stub;
 using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 
 v1::RenderImageRequest RequestWith(v1::TracedLight traced_light) {
   v1::RenderImageRequest request;
@@ -75,39 +75,37 @@ class PictureCall {
   std::thread thread_;
 };
 
-// With a machine that traces a step when the test lets it.
+// With a machine that traces a step when the test lets it. Time moves only where a test moves it.
 class ImageProgressTest : public ::testing::Test {
  protected:
   ImageProgressTest() { service_.machine->tracing.Close(); }
   ~ImageProgressTest() override { service_.machine->tracing.Open(); }
 
-  static service::ServerOptions OneWaits() {
-    service::ServerOptions options;
+  service::ServerOptions OneWaits() const {
+    service::ServerOptions options = Patient(time_);
     options.render_loop.max_waiting_images = 1;
     return options;
   }
 
-  void TraceSteps(int count, milliseconds each) {
-    for (int step = 0; step < count; ++step) {
-      ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
-      std::this_thread::sleep_for(each);
-      service_.machine->tracing.LetOnePass();
-    }
+  void TraceStep(milliseconds takes) {
+    ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
+    time_.Advance(takes);
+    service_.machine->tracing.LetOnePass();
   }
 
+  ManualTime time_;
   FakeService service_{OneWaits()};
 };
 
 TEST_F(ImageProgressTest, ProgressRisesAndThePictureIsTheLastEvent) {
-  const steady_clock::time_point begun_at = steady_clock::now();
   PictureCall call(service_, RequestWith(v1::TRACED_LIGHT_AWAITED));
-  TraceSteps(10, milliseconds(50));
+  TraceStep(milliseconds(50));
+  ASSERT_TRUE(call.Await(1));
+  for (int step = 0; step < 9; ++step) TraceStep(milliseconds(50));
   const grpc::Status end = call.End();
   ASSERT_TRUE(end.ok()) << end.error_message();
-  const auto intervals = (steady_clock::now() - begun_at) / milliseconds(200);
   const Events& events = call.AllEvents();
   ASSERT_GE(events.size(), 3U);
-  EXPECT_LE(static_cast<long>(events.size()) - 1, intervals + 1) << "more than five times a second";
   const auto image = frame::DecodePng(events.back().image().image());
   ASSERT_TRUE(image.ok()) << image.status();
   EXPECT_EQ(image->width_px, 64);
@@ -116,7 +114,8 @@ TEST_F(ImageProgressTest, ProgressRisesAndThePictureIsTheLastEvent) {
   std::uint64_t paths = 0;
   for (std::size_t i = 0; i + 1 < events.size(); ++i) {
     const v1::RenderImageProgress& progress = events[i].progress();
-    EXPECT_GT(progress.traced_paths(), paths);
+    EXPECT_GE(progress.traced_paths(), i == 0 ? 100'000 : paths + 400'000)
+        << "more than five times a second";
     paths = progress.traced_paths();
     EXPECT_FLOAT_EQ(progress.share(), 1e-6F * static_cast<float>(paths));
     EXPECT_GT(progress.estimated_error(), 0.0F);
@@ -125,22 +124,22 @@ TEST_F(ImageProgressTest, ProgressRisesAndThePictureIsTheLastEvent) {
 
 TEST_F(ImageProgressTest, ACancelledPictureIsTracedNoFurtherAndWaitsNoMore) {
   PictureCall call(service_, RequestWith(v1::TRACED_LIGHT_AWAITED));
-  TraceSteps(1, milliseconds(0));
+  TraceStep(milliseconds(0));
   ASSERT_TRUE(call.Await(1));
   ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1)) << "the second step";
   call.Cancel();
   EXPECT_EQ(call.End().error_code(), grpc::StatusCode::CANCELLED);
   // The server notices a moment later, during that step.
-  std::this_thread::sleep_for(milliseconds(200));
+  ASSERT_TRUE(WaitFor([&] { return service_.server().Load().pictures == 0; }));
   service_.machine->tracing.Open();
-  std::this_thread::sleep_for(milliseconds(200));
-  EXPECT_EQ(service_.machine->traced_steps, 2);
+  ASSERT_TRUE(WaitFor([&] { return service_.machine->traced_steps == 2; }));
   EXPECT_TRUE(service_.machine->Log().empty()) << "it was drawn";
   // The one place is free.
   PictureCall next(service_, RequestWith(v1::TRACED_LIGHT_AWAITED));
   const grpc::Status end = next.End();
   EXPECT_TRUE(end.ok()) << end.error_message();
   EXPECT_TRUE(next.AllEvents().back().has_image());
+  EXPECT_EQ(service_.machine->traced_steps, 10) << "a million paths in all, of which two steps";
 }
 
 TEST_F(ImageProgressTest, APictureThatDoesNotWaitIsItsOnlyEvent) {

@@ -12,6 +12,8 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/manual_time.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -31,11 +33,14 @@ v1::Scene TracedFrom(float azimuth_deg) {
   return scene;
 }
 
+// Time stands still, so that frames are shown by their samples alone.
 class RefineTest : public ::testing::Test {
  protected:
-  static service::ServerOptions OptionsOf(const std::shared_ptr<FakeTruth>& truth) {
-    service::ServerOptions options;
-    options.render_loop.make_truth_source = FakeTruthSources(truth);
+  ~RefineTest() override { truth_->sampling.Open(); }
+
+  service::ServerOptions Options() const {
+    service::ServerOptions options = Patient(time_);
+    options.render_loop.make_truth_source = FakeTruthSources(truth_);
     options.render_loop.max_traced_sessions = 2;
     options.address = "127.0.0.1:0";
     return options;
@@ -61,23 +66,27 @@ class RefineTest : public ::testing::Test {
     });
   }
 
-  static bool Await(const std::function<bool()>& condition) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (!condition() && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    return condition();
+  // Lets the reference trace so many samples more, and waits until frames show `samples`.
+  bool TraceOn(Watcher& watcher, std::uint64_t revision, int more, std::uint32_t samples) {
+    truth_->sampling.LetPass(more);
+    return AwaitSamples(watcher, revision, samples);
   }
 
   const std::shared_ptr<FakeTruth> truth_ = std::make_shared<FakeTruth>();
-  FakeService service_{OptionsOf(truth_)};
+  const ManualTime time_;
+  FakeService service_{Options()};
 };
 
 TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
+  // Each doubling is shown before the next is traced.
+  truth_->sampling.Close();
   Watcher watcher(service_.stub(), service_.Open(Traced()));
-  ASSERT_TRUE(AwaitSamples(watcher, 1, 64));
+  ASSERT_TRUE(TraceOn(watcher, 1, 1, 1));
+  for (int samples = 2; samples <= 64; samples *= 2) {
+    ASSERT_TRUE(TraceOn(watcher, 1, samples / 2, static_cast<std::uint32_t>(samples)));
+  }
   const std::vector<v1::Frame> frames = FramesOf(watcher, 1);
-  ASSERT_GE(frames.size(), 3U);
+  ASSERT_EQ(frames.size(), 7U);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const v1::Refinement& refinement = frames[i].refinement();
     EXPECT_TRUE(frames[i].refined());
@@ -87,8 +96,9 @@ TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
     EXPECT_EQ(frames[i].modelled().not_shown(0).code(), v1::NotShown::CODE_DETAIL);
     EXPECT_EQ(frames[i].stages(0).stage(), v1::STAGE_TRACE);
     EXPECT_EQ(refinement.has_relative_error(), refinement.samples_per_pixel() > 1);
-    if (i < 2) continue;
+    if (i == 0) continue;
     EXPECT_GT(refinement.samples_per_pixel(), frames[i - 1].refinement().samples_per_pixel());
+    if (i == 1) continue;
     EXPECT_LT(refinement.relative_error(), frames[i - 1].refinement().relative_error());
   }
   // The frame source drew nothing.
@@ -99,7 +109,10 @@ TEST_F(RefineTest, LargePicturesBeginSmall) {
   v1::Scene scene = Traced();
   scene.mutable_output()->set_width_px(320);
   scene.mutable_output()->set_height_px(180);
+  truth_->sampling.Close();
   Watcher watcher(service_.stub(), service_.Open(scene));
+  ASSERT_TRUE(TraceOn(watcher, 1, 1, 1));
+  truth_->sampling.Open();
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   const std::vector<v1::Frame> frames = FramesOf(watcher, 1);
   EXPECT_FALSE(frames.front().refined());
@@ -109,14 +122,20 @@ TEST_F(RefineTest, LargePicturesBeginSmall) {
 }
 
 TEST_F(RefineTest, AChangeBeginsAgainAtOnce) {
-  truth_->ms_per_sample = 5.0;
   const std::string id = service_.Open(TracedFrom(0.0F));
   Watcher watcher(service_.stub(), id);
   ASSERT_TRUE(AwaitSamples(watcher, 1, 16));
+  truth_->sampling.Close();
+  ASSERT_TRUE(truth_->sampling.AwaitWaiting(1));
   const std::uint64_t revision = service_.Update(id, TracedFrom(40.0F));
+  // The first picture ends at its next sample; it would need many more to be shown again.
+  truth_->sampling.LetOnePass();
+  ASSERT_TRUE(WaitFor([&] { return truth_->Log().size() == 2U; }));
+  ASSERT_TRUE(TraceOn(watcher, revision, 1, 1));
+  truth_->sampling.Open();
   ASSERT_TRUE(AwaitSamples(watcher, revision, 4));
   const std::vector<v1::Frame> frames = FramesOf(watcher, revision);
-  EXPECT_LE(frames.front().refinement().samples_per_pixel(), 2U);
+  EXPECT_EQ(frames.front().refinement().samples_per_pixel(), 1U);
   EXPECT_EQ(frames.front().camera().orbit().azimuth_deg(), 40.0F);
   // The source of the first picture is kept for the second.
   EXPECT_EQ(truth_->sources, 1);
@@ -146,13 +165,12 @@ TEST_F(RefineTest, LeavingEndsItAndComingBackBeginsAnew) {
     ASSERT_TRUE(AwaitSamples(watcher, 1, 8));
     EXPECT_EQ(truth_->sources, 1);
   }
-  ASSERT_TRUE(Await([&] { return truth_->sources == 0; }));
+  ASSERT_TRUE(WaitFor([&] { return truth_->sources == 0; }));
   const int samples = truth_->samples;
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  EXPECT_EQ(truth_->samples, samples);
   // The first frame may still be the last one of the previous scene.
   Watcher again(service_.stub(), id);
-  EXPECT_TRUE(Await([&] { return truth_->Log().size() == 2U; }));
+  EXPECT_TRUE(WaitFor([&] { return truth_->Log().size() == 2U; }));
+  EXPECT_EQ(truth_->Log().back().samples_before, samples) << "traced while nobody watched";
   EXPECT_TRUE(AwaitSamples(again, 1, 8));
 }
 
@@ -163,7 +181,7 @@ TEST_F(RefineTest, AnotherRendererEndsIt) {
   const std::uint64_t revision = service_.Update(id, SmallScene());
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   EXPECT_FALSE(watcher.NewestFrame().has_refinement());
-  EXPECT_TRUE(Await([&] { return truth_->sources == 0; }));
+  EXPECT_TRUE(WaitFor([&] { return truth_->sources == 0; }));
   const std::uint64_t back = service_.Update(id, Traced());
   EXPECT_TRUE(AwaitSamples(watcher, back, 8));
 }
@@ -184,19 +202,19 @@ TEST_F(RefineTest, AnotherTimeIsReadAndTraced) {
 }
 
 TEST_F(RefineTest, OtherSessionsAreDrawnMeanwhile) {
-  truth_->ms_per_sample = 20.0;
   Watcher traced(service_.stub(), service_.Open(Traced()));
   ASSERT_TRUE(AwaitSamples(traced, 1, 2));
+  truth_->sampling.Close();
+  ASSERT_TRUE(truth_->sampling.AwaitWaiting(1));
   const std::string id = service_.Open(SmallScene());
   Watcher other(service_.stub(), id);
-  const auto start = std::chrono::steady_clock::now();
+  // Each would wait for the sample if pictures were traced on the render loop's thread.
   for (int i = 0; i < 10; ++i) {
     v1::Scene scene = SmallScene();
     scene.mutable_sun()->set_azimuth_deg(static_cast<float>(10 * i));
     ASSERT_TRUE(other.AwaitFrame(service_.Update(id, scene), false));
   }
-  // Each would wait for a turn of 250 ms if pictures were traced on the render loop's thread.
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(2000));
+  truth_->sampling.Open();
   EXPECT_TRUE(AwaitSamples(traced, 1, 16));
 }
 
@@ -241,7 +259,9 @@ TEST_F(RefineTest, WhatCannotBeTracedIsAProblemUntilTheSceneChanges) {
   Watcher watcher(service_.stub(), id);
   ASSERT_TRUE(watcher.Await([](const Messages& messages) { return !messages.empty(); }));
   EXPECT_THAT(watcher.Messages().front().problem().message(), HasSubstr("this exposure"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  // The render loop looks at the session again, as another is drawn.
+  Watcher other(service_.stub(), service_.Open(SmallScene()));
+  ASSERT_TRUE(other.AwaitFrame(1, true));
   EXPECT_EQ(truth_->Log().size(), 1U);
   EXPECT_TRUE(AwaitSamples(watcher, service_.Update(id, Traced()), 4));
 }
@@ -266,16 +286,13 @@ TEST_F(RefineTest, StopsAmidWork) {
 }
 
 // The path tracer itself behind the same service.
-// Paths are traced at the lowest priority: other tests come before them.
-constexpr std::chrono::minutes kTracingPatience{2};
-
 TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
   FakeService service;
   // The fake storm's cell is opaque, and its paths long.
   const auto from = [](float azimuth_deg) {
     v1::Scene scene = TracedFrom(azimuth_deg);
-    scene.mutable_output()->set_width_px(32);
-    scene.mutable_output()->set_height_px(18);
+    scene.mutable_output()->set_width_px(16);
+    scene.mutable_output()->set_height_px(9);
     return scene;
   };
   const std::string id = service.Open(from(0.0F));
@@ -290,7 +307,14 @@ TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
     };
   };
   Watcher watcher(service.stub(), id);
-  ASSERT_TRUE(watcher.Await(reached(1, 64), kTracingPatience));
+  // 32 times the samples of the first frame that has an error: some frames may be left out.
+  ASSERT_TRUE(watcher.Await([&](const Messages& messages) {
+    const auto first = std::ranges::find_if(messages, [](const auto& message) {
+      return message.frame().refinement().has_relative_error();
+    });
+    return first != messages.end() && samples_of(messages.back()) >= 32 * samples_of(*first);
+  }));
+  const std::uint32_t reached_before = watcher.NewestFrame().refinement().samples_per_pixel();
   double first_error = 0.0;
   double last_error = 0.0;
   for (const v1::WatchFramesResponse& message : watcher.Messages()) {
@@ -303,16 +327,16 @@ TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
   EXPECT_LT(last_error, first_error / 2.0);
   EXPECT_GT(last_error, first_error / 16.0);
   const std::uint64_t revision = service.Update(id, from(120.0F));
-  ASSERT_TRUE(watcher.Await(reached(revision, 8), kTracingPatience));
+  ASSERT_TRUE(watcher.Await(reached(revision, 8)));
   const auto messages = watcher.Messages();
   const auto restarted = std::find_if(messages.begin(), messages.end(), [&](const auto& message) {
     return message.frame().scene_revision() == revision;
   });
-  EXPECT_LT(samples_of(*restarted), 8U);
+  EXPECT_LT(samples_of(*restarted), reached_before);
   const v1::Frame newest = watcher.NewestFrame();
   const auto image = frame::DecodeJpeg(newest.jpeg());
   ASSERT_TRUE(image.ok()) << image.status();
-  EXPECT_EQ(image->width_px, 32);
+  EXPECT_EQ(image->width_px, 16);
   const auto [low, high] = std::minmax_element(image->rgb.begin(), image->rgb.end());
   EXPECT_GT(*high - *low, 5);
   watcher.Cancel();

@@ -3,6 +3,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -81,6 +82,7 @@ class Request {
       request.mutable_scene()->mutable_display()->set_exposure_ev(exposure_ev);
       v1::RenderImageResponse response;
       status_ = service.stub().RenderImage(&context_, request, &response);
+      ended_ = true;
     });
   }
   ~Request() {
@@ -88,6 +90,7 @@ class Request {
   }
 
   void Cancel() { context_.TryCancel(); }
+  bool HasEnded() const { return ended_; }
   grpc::Status End() {
     thread_.join();
     return status_;
@@ -96,30 +99,33 @@ class Request {
  private:
   grpc::ClientContext context_;
   grpc::Status status_;
+  std::atomic<bool> ended_{false};
   std::thread thread_;
 };
 
+// Two are read meanwhile, one in each lane.
 TEST(RenderImageTest, CancelledPictureIsNeverDrawn) {
   FakeService service;
-  service.machine->drawing.Close();
-  Request first(service, 1.0F);
-  ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
+  service.store->reading.Close();
+  Request first(service, 1.0F, 0);
+  Request other(service, 1.0F, 2);
+  ASSERT_TRUE(service.store->reading.AwaitWaiting(2));
   Request second(service, 2.0F, 1);
-  // It waits in the queue.
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  ASSERT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 1; }));
   second.Cancel();
   EXPECT_EQ(second.End().error_code(), grpc::StatusCode::CANCELLED);
   // The server notices the cancellation a moment after the client has ended the call.
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  service.machine->drawing.Open();
+  ASSERT_TRUE(WaitFor([&] { return service.server().Load().pictures == 2; }));
+  service.store->reading.Open();
   EXPECT_TRUE(first.End().ok());
+  EXPECT_TRUE(other.End().ok());
   Request third(service, 3.0F);
   EXPECT_TRUE(third.End().ok());
   for (const auto& drawn : service.machine->Log()) EXPECT_NE(drawn.scene.display.exposure_ev, 2.0);
 }
 
 TEST(RenderImageTest, TooManyWaitingPicturesAreRefused) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.render_loop.max_waiting_images = 1;
   FakeService service(options);
   service.machine->drawing.Close();
@@ -129,7 +135,8 @@ TEST(RenderImageTest, TooManyWaitingPicturesAreRefused) {
   others.push_back(std::make_unique<Request>(service, 2.0F, 1));
   others.push_back(std::make_unique<Request>(service, 3.0F, 2));
   // One of the two waits, the other is refused while the first picture is drawn.
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ASSERT_TRUE(WaitFor([&] { return others[0]->HasEnded() || others[1]->HasEnded(); }));
+  ASSERT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 1; }));
   service.machine->drawing.Open();
   int refused = 0;
   for (const auto& other : others) {

@@ -7,11 +7,15 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/manual_time.h"
 #include "tests/support/techniques.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
 
+using std::chrono::milliseconds;
+using std::chrono::seconds;
 using ::testing::HasSubstr;
 using Messages = std::vector<v1::WatchFramesResponse>;
 
@@ -23,8 +27,33 @@ v1::Scene WithTracedLight() {
   return scene;
 }
 
+// Time moves only where a test moves it.
 class TracedLightTest : public ::testing::Test {
  protected:
+  ~TracedLightTest() override { service_.machine->tracing.Open(); }
+
+  service::ServerOptions Options() const {
+    service::ServerOptions options = Patient(time_);
+    return options;
+  }
+
+  // Lets a scene that is shown settle, after which its light is traced.
+  bool Settle(Watcher& watcher, std::uint64_t revision) {
+    if (!watcher.AwaitFrame(revision, true)) return false;
+    time_.Advance(seconds(1));
+    return true;
+  }
+
+  // Returns when the render loop has looked at every session again. Draws a picture.
+  void GoAround() {
+    v1::RenderImageRequest request;
+    *request.mutable_scene() = SmallScene();
+    v1::RenderImageResponse response;
+    const grpc::Status status =
+        Call(service_.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+  }
+
   static bool AwaitPaths(Watcher& watcher, std::uint64_t revision, std::uint64_t paths) {
     return watcher.Await([=](const Messages& messages) {
       return std::any_of(messages.begin(), messages.end(), [=](const auto& message) {
@@ -34,12 +63,23 @@ class TracedLightTest : public ::testing::Test {
     });
   }
 
-  FakeService service_;
+  ManualTime time_;
+  FakeService service_{Options()};
 };
 
 TEST_F(TracedLightTest, FramesAreDrawnForMoreAndMorePathsUntilThereAreEnough) {
+  service_.machine->tracing.Close();
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
-  // The first step tells where it begins.
+  ASSERT_TRUE(Settle(watcher, 1));
+  // The first step tells where it begins. Later ones are shown as there are half as many more.
+  service_.machine->tracing.LetOnePass();
+  for (const std::uint64_t shown : {2, 3, 5}) {
+    ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
+    time_.Advance(milliseconds(600));
+    service_.machine->tracing.LetPass(shown == 5 ? 2 : 1);
+    ASSERT_TRUE(AwaitPaths(watcher, 1, 100'000 * shown));
+  }
+  service_.machine->tracing.Open();
   ASSERT_TRUE(AwaitPaths(watcher, 1, 4'100'000));
   std::uint64_t paths = 0;
   for (const v1::WatchFramesResponse& message : watcher.Messages()) {
@@ -50,17 +90,20 @@ TEST_F(TracedLightTest, FramesAreDrawnForMoreAndMorePathsUntilThereAreEnough) {
     paths = message.frame().modelled().traced_paths();
   }
   const std::int64_t traced = service_.machine->traced_paths;
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  time_.Advance(seconds(60));
+  GoAround();
   EXPECT_EQ(service_.machine->traced_paths, traced) << "traced on after its end";
 }
 
 TEST_F(TracedLightTest, AnotherViewGoesOnFromWhatIsTraced) {
   const std::string id = service_.Open(WithTracedLight());
   Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(Settle(watcher, 1));
   ASSERT_TRUE(AwaitPaths(watcher, 1, 4'000'000));
   v1::Scene scene = WithTracedLight();
   scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(80.0F);
   const std::uint64_t revision = service_.Update(id, scene);
+  ASSERT_TRUE(Settle(watcher, revision));
   ASSERT_TRUE(AwaitPaths(watcher, revision, 8'000'000));
 }
 
@@ -69,11 +112,17 @@ TEST_F(TracedLightTest, NothingIsTracedForScenesThatDoNotAskOrCannotShowIt) {
   unasked.mutable_rendering()->mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_OFF);
   v1::Scene consistent = WithTracedLight();
   consistent.mutable_rendering()->mutable_light_volume()->set_transport(v1::TRANSPORT_CONSISTENT);
-  for (const v1::Scene& scene : {unasked, consistent}) {
-    Watcher watcher(service_.stub(), service_.Open(scene));
-    ASSERT_TRUE(watcher.AwaitFrame(1, true));
-    std::this_thread::sleep_for(std::chrono::milliseconds(700));
-    EXPECT_EQ(service_.machine->traced_paths, 0);
+  Watcher first(service_.stub(), service_.Open(unasked));
+  Watcher second(service_.stub(), service_.Open(consistent));
+  Watcher traced(service_.stub(), service_.Open(WithTracedLight()));
+  for (Watcher* const watcher : {&first, &second, &traced}) ASSERT_TRUE(Settle(*watcher, 1));
+  // Sessions are traced in turn, so that the others would have been by now.
+  ASSERT_TRUE(AwaitPaths(traced, 1, 4'100'000));
+  EXPECT_EQ(service_.machine->Traced().size(), 41U);
+  for (const scene::Scene& scene : service_.machine->Traced()) {
+    const scene::Technique& technique = scene.rendering.technique;
+    EXPECT_EQ(test_support::TransportOf(technique), scene::Transport::kDiffusion);
+    EXPECT_EQ(scene::TracedLightOf(technique), scene::TracedLight::kAtRest);
   }
 }
 
@@ -81,7 +130,9 @@ TEST_F(TracedLightTest, WhatCannotBeTracedIsSaidOnceAndThePictureStays) {
   service_.machine->cannot_trace_azimuth_deg = 123.0;
   v1::Scene scene = WithTracedLight();
   scene.mutable_sun()->set_azimuth_deg(123.0F);
-  Watcher watcher(service_.stub(), service_.Open(scene));
+  const std::string id = service_.Open(scene);
+  Watcher watcher(service_.stub(), id);
+  ASSERT_TRUE(Settle(watcher, 1));
   const auto is_told = [](const v1::WatchFramesResponse& message) {
     return std::ranges::any_of(
         message.frame().modelled().not_shown(), [](const v1::NotShown& entry) {
@@ -92,38 +143,47 @@ TEST_F(TracedLightTest, WhatCannotBeTracedIsSaidOnceAndThePictureStays) {
   ASSERT_TRUE(watcher.Await([&](const Messages& messages) {
     return std::any_of(messages.begin(), messages.end(), is_told);
   }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_TRUE(watcher.NewestFrame().refined());
+  time_.Advance(seconds(60));
+  GoAround();
+  EXPECT_EQ(service_.machine->trace_failures, 1);
+  // All that was sent before has arrived when the next scene does.
+  ASSERT_TRUE(watcher.AwaitFrame(service_.Update(id, SmallScene()), true));
   int told = 0;
   for (const v1::WatchFramesResponse& message : watcher.Messages()) {
     EXPECT_FALSE(message.has_problem());
     told += is_told(message) ? 1 : 0;
   }
   EXPECT_EQ(told, 1);
-  EXPECT_TRUE(watcher.NewestFrame().refined());
 }
 
 TEST_F(TracedLightTest, OtherSessionsAreDrawnMeanwhile) {
   service_.machine->tracing.Close();
   Watcher tracing(service_.stub(), service_.Open(WithTracedLight()));
+  ASSERT_TRUE(Settle(tracing, 1));
   ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
-  // It arrives during a step and has its turn after that.
+  // During a step.
   Watcher other(service_.stub(), service_.Open(SmallScene()));
-  const auto is_seen = [&] { return other.NewestFrame().scene_revision() > 0; };
-  for (int step = 0; step < 38 && !is_seen(); ++step) {
-    service_.machine->tracing.LetOnePass();
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
-  EXPECT_TRUE(is_seen()) << "all was traced first";
-  service_.machine->tracing.Open();
+  EXPECT_TRUE(other.AwaitFrame(1, true));
+  EXPECT_EQ(service_.machine->traced_steps, 0);
 }
 
 TEST_F(TracedLightTest, OneSceneTooManyWaitsForItsTurn) {
   service_.machine->traces_enough = true;
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
-  ASSERT_TRUE(watcher.AwaitFrame(1, true));
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  ASSERT_TRUE(Settle(watcher, 1));
+  ASSERT_TRUE(WaitFor([&] { return service_.machine->trace_refusals == 1; }));
+  // It tries again as time passes.
+  ASSERT_TRUE(WaitFor([&] {
+    time_.Advance(milliseconds(100));
+    return service_.machine->trace_refusals > 1;
+  }));
   service_.machine->traces_enough = false;
-  EXPECT_TRUE(AwaitPaths(watcher, 1, 4'000'000));
+  EXPECT_TRUE(WaitFor([&] {
+    time_.Advance(milliseconds(100));
+    return service_.machine->traced_steps == 41;
+  }));
+  EXPECT_TRUE(AwaitPaths(watcher, 1, 4'100'000));
   for (const v1::WatchFramesResponse& message : watcher.Messages()) {
     EXPECT_FALSE(message.has_problem());
   }
@@ -133,10 +193,11 @@ TEST_F(TracedLightTest, NoPictureIsDrawnForTooFewPaths) {
   service_.machine->paths_per_step = 10'000;
   service_.machine->tracing.Close();
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
+  ASSERT_TRUE(Settle(watcher, 1));
   // So far apart in time that each alone would be due for a picture.
   for (int step = 0; step < 3; ++step) {
     ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
-    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    time_.Advance(milliseconds(600));
     service_.machine->tracing.LetOnePass();
   }
   EXPECT_TRUE(AwaitPaths(watcher, 1, 30'000));
@@ -144,7 +205,6 @@ TEST_F(TracedLightTest, NoPictureIsDrawnForTooFewPaths) {
     const std::uint64_t paths = message.frame().modelled().traced_paths();
     EXPECT_TRUE(paths == 0 || paths == 30'000) << paths;
   }
-  service_.machine->tracing.Open();
 }
 
 TEST_F(TracedLightTest, PicturesThatAwaitItWaitForAMillionPaths) {
@@ -178,7 +238,7 @@ accuracy::OfferTables TracedTables() {
 }
 
 TEST(TracedImageTest, AnErrorTakesAsManyPathsAsItNeeds) {
-  service::ServerOptions options;
+  service::ServerOptions options = Patient();
   options.render_loop.offer_tables = TracedTables;
   const auto paths_for = [&](float error) {
     FakeService service(options);
