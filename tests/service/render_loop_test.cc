@@ -340,7 +340,7 @@ TEST_F(RenderLoopTest, AFrameAtRestEndsWhenItsSceneChanges) {
   ASSERT_TRUE(WaitFor([&] { return machine_->pieces == 10; }));
   ASSERT_TRUE(machine_->next_piece.AwaitWaiting(1));
   const std::uint64_t revision = Show(*session, Small(6.0));
-  machine_->next_piece.LetOnePass();
+  machine_->next_piece.Open();
   ASSERT_TRUE(viewer->Await(revision, false));
   EXPECT_EQ(machine_->pieces, 11) << "of 400";
 }
