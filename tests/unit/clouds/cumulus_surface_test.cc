@@ -198,16 +198,35 @@ TEST(InscribedBalls, StayInsideAndCoverWhatIsThere) {
   };
   const auto values = Filled(grid, inside);
   const CumulusSurface surface = InscribedBalls(grid, values, {.level = 0.5F, .max_balls = 5000});
+  const auto middle = [&](const glm::ivec3& cell) {
+    return grid.low_corner_m + (glm::dvec3(cell) + 0.5) * grid.spacing_m;
+  };
+  std::vector<bool> is_covered(grid.CellCount(), false);
+  for (const Bubble& bubble : surface.bubbles) {
+    const auto unit_from_world = UnitFromWorld(bubble);
+    double reach_m = 0.0;
+    for (int axis = 0; axis < 3; ++axis) reach_m += glm::length(bubble.semi_axes_m[axis]);
+    const glm::dvec3 from = (bubble.centre_m - reach_m - grid.low_corner_m) / grid.spacing_m;
+    const glm::dvec3 to = (bubble.centre_m + reach_m - grid.low_corner_m) / grid.spacing_m;
+    const glm::ivec3 low(glm::clamp(from, 0.0, 39.0));
+    const glm::ivec3 high(glm::clamp(to, 0.0, 39.0));
+    for (int z = low.z; z <= high.z; ++z) {
+      for (int y = low.y; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) {
+          const glm::dvec3 apart_m = middle({x, y, z}) - bubble.centre_m;
+          if (glm::length(unit_from_world * apart_m) < 1.0) is_covered[grid.Offset(x, y, z)] = true;
+        }
+      }
+    }
+  }
   int missed = 0;
   int outside = 0;
   int cells = 0;
   for (int z = 0; z < 40; ++z) {
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 40; ++x) {
-        const glm::dvec3 p = grid.low_corner_m + (glm::dvec3(x, y, z) + 0.5) * grid.spacing_m;
-        const bool covered = std::ranges::any_of(surface.bubbles, [&](const Bubble& bubble) {
-          return glm::length(UnitFromWorld(bubble) * (p - bubble.centre_m)) < 1.0;
-        });
+        const glm::dvec3 p = middle({x, y, z});
+        const bool covered = is_covered[grid.Offset(x, y, z)];
         cells += inside(p) ? 1 : 0;
         missed += inside(p) && !covered ? 1 : 0;
         outside += !inside(p) && covered ? 1 : 0;
