@@ -21,6 +21,7 @@
 #include "app/commands.h"
 #include "app/exit_codes.h"
 #include "app/operation.h"
+#include "app/roster_timeouts_file.h"
 #include "app/serve_flags.h"
 #include "app/state_folder.h"
 #include "base/error_details.h"
@@ -181,6 +182,10 @@ absl::Status Serve(ServeFlags flags) {
   server_options.door = door;
   server_options.limits = flags.limits;
   server_options.sessions = flags.sessions;
+  if (!flags.roster_timeouts.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(server_options.sessions.roster_timeouts,
+                                 ReadRosterTimeouts(flags.roster_timeouts));
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::unique_ptr<service::Server> server,
       service::Server::Start(server_options, store,
@@ -210,11 +215,19 @@ absl::Status Serve(ServeFlags flags) {
             << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
   std::thread warm_up([channel, door] { WarmUp(channel, *door); });
   operation->SetServer(server.get(), {budgets.memory, budgets.gpu, state.calls});
+  std::jthread roster_timeouts;
+  if (!flags.roster_timeouts.empty()) {
+    roster_timeouts = FollowRosterTimeouts(flags.roster_timeouts,
+                                           [&server](const session::RosterTimeouts& timeouts) {
+                                             server->SetRosterTimeouts(timeouts);
+                                           });
+  }
   const auto last = [door] { door->FlushAudit(kLastLines); };
   operation->WaitAndDrain(signals, *server, last);
   const std::jthread ends_anyway = EndAnywayAfter(
       kEndPatience, [given_up] { return static_cast<int>(ExitCodeOf(*given_up)); }, last);
   operation->SetServer(nullptr);
+  roster_timeouts = {};
   // First, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();

@@ -180,6 +180,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
       "--state", flags.state,
       "Folder in which sessions and render jobs outlive the server, or 'none'; by default "
       "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
+  serve.add_option("--roster-timeouts", flags.roster_timeouts)->group("");
   AddMemoryFlags(serve, flags);
   AddCatalogueFlags(serve, flags.catalogue);
   AddSandboxFlags(serve, flags.sandbox);

@@ -217,6 +217,11 @@ class RunningServer final : public Server {
 
   void SetServing(bool serving) override { health_.SetServing(serving && !drain_.HasBegun()); }
 
+  void SetRosterTimeouts(const session::RosterTimeouts& timeouts) override {
+    sessions_.SetRosterTimeouts(timeouts);
+    due_.Notify();
+  }
+
   void BeginDrain() override {
     drain_.Begin();
     SetServing(false);

@@ -94,6 +94,9 @@ class Server {
   // were begun go on. Returns at once.
   virtual void BeginDrain() = 0;
 
+  // Replaces ServerOptions::sessions.roster_timeouts, also for waits that have begun.
+  virtual void SetRosterTimeouts(const session::RosterTimeouts& timeouts) = 0;
+
   // Sets the status that gRPC's health service gives: serving from the start, and never again once
   // the server drains.
   virtual void SetServing(bool serving) = 0;

@@ -38,7 +38,7 @@ void Roster::RestoreControl(const KeptControl& kept, Time now) {
                        .role = Role::kViewer,
                        .key = kept.viewer_key},
               .left_at = now,
-              .until = now + timeouts_.come_back_to_new_server};
+              .server_is_new = true};
 }
 
 KeptControl Roster::ControlToKeep() const {
@@ -95,7 +95,7 @@ void Roster::Leave(std::uint64_t id, Time now) {
   if (heir != nullptr) return Give(*heir);
   if (left.key.empty()) return GiveBack(now);
   steering_ = 0;
-  awaited_ = {.left = left, .left_at = now, .until = now + timeouts_.come_back};
+  awaited_ = {.left = left, .left_at = now};
 }
 
 void Roster::Heard(std::uint64_t id) {
@@ -275,7 +275,7 @@ std::vector<std::uint64_t> Roster::Advance(Time now) {
     if (person.doubted_at.has_value() && now >= DoubtEnds(person)) silent.push_back(person.id);
   }
   for (const std::uint64_t id : silent) Leave(id, now);
-  if (awaited_.has_value() && now >= awaited_->until) {
+  if (awaited_.has_value() && now >= WaitEnds(*awaited_)) {
     GiveBack(awaited_->left_at);
     ++revision_;
   }
@@ -298,11 +298,16 @@ Roster::Time Roster::DoubtEnds(const Person& person) const {
   return std::min(at_last, *person.checked_at + timeouts_.sign_of_life);
 }
 
+Roster::Time Roster::WaitEnds(const Awaited& awaited) const {
+  return awaited.left_at +
+         (awaited.server_is_new ? timeouts_.come_back_to_new_server : timeouts_.come_back);
+}
+
 std::optional<Roster::Time> Roster::NextDeadline() const {
   std::optional<Time> next;
   const auto wait_for = [&](Time time) { next = std::min(next.value_or(time), time); };
   if (FreesWhenAway()) wait_for(*away_since_ + timeouts_.away);
-  if (awaited_.has_value()) wait_for(awaited_->until);
+  if (awaited_.has_value()) wait_for(WaitEnds(*awaited_));
   for (const Person& person : people_) {
     if (person.asks) wait_for(*person.asked_at + timeouts_.answer);
     if (person.doubted_at.has_value()) wait_for(DoubtEnds(person));

@@ -135,6 +135,9 @@ class Roster {
   absl::Status SetRules(std::uint64_t id, const Rules& rules);
   const Rules& rules() const { return rules_; }
 
+  // Replaces the timeouts, also for waits that have begun.
+  void SetTimeouts(const RosterTimeouts& timeouts) { timeouts_ = timeouts; }
+
   // Leaves the session's view; a viewer may not while following is locked. False if the person has
   // returned to it since Person::returns was `returns`: that came later, and counts.
   absl::StatusOr<bool> Detach(std::uint64_t id, std::uint64_t returns);
@@ -168,7 +171,7 @@ class Roster {
   struct Awaited {
     Person left;
     Time left_at;
-    Time until;
+    bool server_is_new = false;
   };
   // A request for control by one who has left.
   struct Request {
@@ -187,6 +190,8 @@ class Roster {
   bool FreesWhenAway() const;
   // When one who is doubted is given up.
   Time DoubtEnds(const Person& person) const;
+  // When control stops waiting for that person.
+  Time WaitEnds(const Awaited& awaited) const;
   // Gives control to nobody, or to the viewer who waits for it longest.
   void Free();
   // To a presenter, or kept for one since then.

@@ -236,7 +236,7 @@ void OwnView::Show() {
 }
 
 Sessions::Sessions(const SessionsOptions& options, const SessionSignals& signals)
-    : options_(options), signals_(signals) {}
+    : options_(options), signals_(signals), roster_timeouts_(options.roster_timeouts) {}
 
 absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
                                                           const std::string& owner) {
@@ -255,7 +255,7 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
   auto session = std::make_shared<Session>(
       base::RandomHex(kIdWords),
       SessionKeys{base::RandomHex(kKeyWords), base::RandomHex(kKeyWords)}, rules, Board{},
-      options_.format, signals_, options_.roster_timeouts, owner, time());
+      options_.format, signals_, roster_timeouts_, owner, time());
   Add(session);
   return session;
 }
@@ -263,11 +263,14 @@ absl::StatusOr<std::shared_ptr<Session>> Sessions::Create(const Rules& rules,
 std::shared_ptr<Session> Sessions::Restore(const SessionRecord& record, scene::Scene scene,
                                            std::string serialized,
                                            const std::optional<std::string>& domain) {
-  auto session = std::make_shared<Session>(record.id, record.keys, record.rules,
-                                           Board(record.marks), options_.format, signals_,
-                                           options_.roster_timeouts, record.owner, time());
+  std::unique_lock lock(mutex_);
+  const RosterTimeouts timeouts = roster_timeouts_;
+  lock.unlock();
+  auto session =
+      std::make_shared<Session>(record.id, record.keys, record.rules, Board(record.marks),
+                                options_.format, signals_, timeouts, record.owner, time());
   session->ShowRestored(record, std::move(scene), std::move(serialized), domain);
-  const std::lock_guard lock(mutex_);
+  lock.lock();
   Add(session);
   return session;
 }
@@ -380,6 +383,22 @@ void Sessions::DropExpired() {
   for (auto entry = sessions_.begin(); entry != sessions_.end();) {
     Session& session = *entry->second;
     const auto timeout =
+void Sessions::SetRosterTimeouts(const RosterTimeouts& timeouts) {
+  {
+    const std::lock_guard lock(mutex_);
+    roster_timeouts_ = timeouts;
+  }
+  for (const auto& session : All()) {
+    const absl::Status set = session->audience().Change(
+        [&timeouts](Roster& roster) {
+          roster.SetTimeouts(timeouts);
+          return absl::OkStatus();
+        },
+        session->Now());
+    (void)set;  // the change itself never fails
+  }
+}
+
         session.IsWatched() ? options_.watched_idle_timeout : options_.idle_timeout;
     const auto next = std::next(entry);
     if (session.last_used() < now - timeout) {

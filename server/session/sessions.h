@@ -226,6 +226,10 @@ class Sessions {
   std::shared_ptr<OwnView> OpenView(const std::shared_ptr<Session>& session,
                                     const scene::Camera& camera, const std::string& owner);
 
+  // Replaces the timeouts of people in these and all later sessions, also for waits that have
+  // begun.
+  void SetRosterTimeouts(const RosterTimeouts& timeouts);
+
   // The sessions that have not expired, in order of id.
   std::vector<std::shared_ptr<Session>> All();
   // The same with the own views: everything that may be drawn.
@@ -245,6 +249,7 @@ class Sessions {
   const SessionsOptions options_;
   const SessionSignals signals_;
   std::mutex mutex_;
+  RosterTimeouts roster_timeouts_;
   Map sessions_;                                         // by id
   std::map<std::string, std::string> id_by_key_;         // both keys
   std::map<std::string, std::weak_ptr<OwnView>> views_;  // by id

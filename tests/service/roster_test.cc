@@ -345,6 +345,18 @@ TEST(RosterTest, ControlOfAViewerWhoStaysAwayIsKeptForAPresenterWhoIsAwayToo) {
   EXPECT_TRUE(roster.control_is_free());
 }
 
+TEST(RosterTest, OtherTimeoutsCountForWaitsThatHaveBegun) {
+  ClassWithKeys group;
+  group.roster.Leave(group.presenter, kOpenedAt);
+  group.roster.SetTimeouts({.come_back = std::chrono::hours(2)});
+  group.roster.Advance(kOpenedAt + std::chrono::hours(1));
+  EXPECT_EQ(group.roster.steering(), 0U);
+  EXPECT_EQ(group.roster.NextDeadline(), kOpenedAt + std::chrono::hours(2));
+  group.roster.SetTimeouts({.come_back = seconds(0)});
+  group.roster.Advance(kOpenedAt + std::chrono::hours(1));
+  EXPECT_EQ(group.roster.steering(), group.tablet);
+}
+
 TEST(RosterTest, OnANewServerControlWaitsForTheViewerWhoSteered) {
   ClassWithKeys group;
   EXPECT_EQ(group.roster.ControlToKeep(), KeptControl()) << "a presenter's is any presenter's";
