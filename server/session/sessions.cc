@@ -378,11 +378,6 @@ std::vector<std::shared_ptr<Session>> Sessions::AllDrawn() {
   return drawn;
 }
 
-void Sessions::DropExpired() {
-  const Clock::time_point now = time().Now();
-  for (auto entry = sessions_.begin(); entry != sessions_.end();) {
-    Session& session = *entry->second;
-    const auto timeout =
 void Sessions::SetRosterTimeouts(const RosterTimeouts& timeouts) {
   {
     const std::lock_guard lock(mutex_);
@@ -399,6 +394,11 @@ void Sessions::SetRosterTimeouts(const RosterTimeouts& timeouts) {
   }
 }
 
+void Sessions::DropExpired() {
+  const Clock::time_point now = time().Now();
+  for (auto entry = sessions_.begin(); entry != sessions_.end();) {
+    Session& session = *entry->second;
+    const auto timeout =
         session.IsWatched() ? options_.watched_idle_timeout : options_.idle_timeout;
     const auto next = std::next(entry);
     if (session.last_used() < now - timeout) {
