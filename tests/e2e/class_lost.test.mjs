@@ -1,4 +1,4 @@
-// End-to-end test of a class whose network or server fails, and comes back. Most of the time all wait for what only time tells.
+// End-to-end test of a class whose network or server fails, and comes back.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import {
@@ -17,17 +17,26 @@ import {
   steers,
   turn,
 } from "./class_room.mjs";
-import { canvasData, changing, openTool, PICTURE_TIMEOUT_MS, rested, restedStill, setNumber, until } from "./driver.mjs";
+import { canvasData, changing, grabStill, openTool, rested, setNumber, until } from "./driver.mjs";
 import { difference, grabCanvas } from "./pictures.mjs";
 import { throttledLink } from "./throttled_link.mjs";
+
+// The page checks a connection on which it hears nothing for 15 s by two calls of 4 s, and gives it up then.
+const CLOCK_STEP_MS = 5000;
+
+// The pages wait no longer for their next attempt.
+const LONGEST_WAIT_MS = 8000;
+
+// A page whose clock can be put forward.
+const withClock = (page) => page.clock.install();
 
 const room = new ClassRoom();
 let teacher;
 let student;
 
 before(async () => {
-  teacher = await room.open();
-  student = await room.visit(await room.viewersLink());
+  teacher = await room.open(withClock);
+  student = await room.visit(await room.viewersLink(), withClock);
   await room.inStep(student);
 });
 
@@ -36,7 +45,7 @@ after(() => room.close());
 // A student called Ada joins over a link of her own, which `goes` may make fail; she leaves the class as she found it.
 async function withFarStudent(goes) {
   const link = await throttledLink({ port: new URL(room.server.url).port, kbitPerS: 100_000, roundTripMs: 4 });
-  const far = await room.visit((await room.viewersLink()).replace(/:\d+\//, `:${link.port}/`));
+  const far = await room.visit((await room.viewersLink()).replace(/:\d+\//, `:${link.port}/`), withClock);
   try {
     await rested(far);
     await nameThemselves(far, "Ada");
@@ -99,14 +108,22 @@ async function loseWhileSteering(far, link) {
   assert.equal(await said(teacher), "Ada steers");
 }
 
+// The page finds out that its connection is lost, as soon as its clock says so.
+const findsOut = (far) =>
+  until("the page finds out", async () => {
+    if (await far.getByTestId("connection-lost").isVisible()) return true;
+    await far.clock.fastForward(CLOCK_STEP_MS);
+    return false;
+  });
+
 test("a student who steers is lost without a word, comes back before control is another's, and goes on steering", () =>
   withFarStudent(async (far, link) => {
     const address = far.url();
     await loseWhileSteering(far, link);
-    await far.getByTestId("connection-lost").waitFor({ timeout: PICTURE_TIMEOUT_MS });
+    await findsOut(far);
     assert.equal(await exposure(teacher).inputValue(), "0.5", "the link still carries something");
     link.heal();
-    await far.getByTestId("connection-lost").waitFor({ state: "detached", timeout: PICTURE_TIMEOUT_MS });
+    await far.getByTestId("connection-lost").waitFor({ state: "detached" });
     for (const page of [teacher, far])
       await until("the change made meanwhile", async () => (await exposure(page).inputValue()) === "-0.3");
     await until("who steers", async () => (await steers(far)) && (await said(teacher)) === "Ada steers");
@@ -123,16 +140,18 @@ test("a student who steers is lost without a word, comes back before control is 
 test("a student who steers is lost for longer: the teacher is told and has control, and the student learns what became of the change", () =>
   withFarStudent(async (far, link) => {
     await loseWhileSteering(far, link);
+    // The server finds out by its pings of 15 s, on the real clock.
     for (const page of [teacher, student])
       await until("a steerer who is gone", async () => (await said(page)) === "Waiting for Ada to come back");
     assert.equal(await people(), 2);
     // Control is not to be had by asking meanwhile.
     assert.equal(await controlLabel(student), "Ask to steer");
     assert.match(await student.getByTestId("edit-block").innerText(), /Control waits for Ada to come back/);
-    await teacher.getByTestId("let-go").waitFor();
+    await room.whileWaiting({ come_back: 0 }, () => teacher.getByTestId("let-go").waitFor());
     await changing(() => setNumber(teacher, "exposure", 0.8), teacher);
+    await findsOut(far);
     link.heal();
-    await far.getByTestId("connection-lost").waitFor({ state: "detached", timeout: PICTURE_TIMEOUT_MS });
+    await far.getByTestId("connection-lost").waitFor({ state: "detached" });
     await until("the teacher's change", async () => (await exposure(far).inputValue()) === "0.8");
     await until("a word about the own change", async () =>
       /Your last change was not taken. Presenter steers/.test(await noticesOf(far)),
@@ -144,6 +163,14 @@ test("a student who steers is lost for longer: the teacher is told and has contr
     await openTool(teacher, "marks");
   }));
 
+// The server starts again, and the pages find it.
+async function comeBack() {
+  await room.start();
+  for (const page of [teacher, student]) await page.clock.fastForward(LONGEST_WAIT_MS);
+  for (const page of [teacher, student])
+    await page.getByTestId("connection-lost").waitFor({ state: "detached" });
+}
+
 test("the server is killed and comes back: teacher and student have their session, with marks, rules and keys", async () => {
   await openTool(teacher, "marks");
   await teacher.getByTestId("tool-pen").click();
@@ -152,19 +179,16 @@ test("the server is killed and comes back: teacher and student have their sessio
   await teacher.keyboard.press("Escape");
   await openTool(teacher, "look");
   await setRule(teacher, "viewersMayMark", true);
-  // The state is stored at most half a second later.
-  await student.waitForTimeout(1200);
   await room.inStep(student);
-  const { revision } = await restedStill(student);
-  const [address, drawn, mark] = [student.url(), await grabCanvas(student), await markOn(student)];
+  const { data: { revision }, picture: drawn } = await grabStill(student);
+  const [address, mark] = [student.url(), await markOn(student)];
+  await room.stored();
 
   await room.server.stop("SIGKILL");
   for (const page of [teacher, student])
-    await page.getByTestId("connection-lost").waitFor({ timeout: 20_000 });
+    await page.getByTestId("connection-lost").waitFor();
   assert.equal(await marksOn(student), 1, "what was seen stays while nobody answers");
-  await room.start();
-  for (const page of [teacher, student])
-    await page.getByTestId("connection-lost").waitFor({ state: "detached", timeout: 30_000 });
+  await comeBack();
   await teacher.getByTestId("let-go").waitFor();
   await until("who steers", async () => (await said(student)) === "Presenter steers");
   await until("two people", async () => /2/.test(await teacher.getByTestId("people").innerText()));
@@ -191,14 +215,11 @@ test("the server is killed while a student steers, who steers again", async () =
   await student.getByTestId("ask-control").click();
   await teacher.getByTestId("asks-give").click();
   await until("who steers", async () => steers(student));
-  // Kept at most half a second later.
-  await student.waitForTimeout(1200);
+  await room.stored();
   await room.server.stop("SIGKILL");
   for (const page of [teacher, student])
-    await page.getByTestId("connection-lost").waitFor({ timeout: 20_000 });
-  await room.start();
-  for (const page of [teacher, student])
-    await page.getByTestId("connection-lost").waitFor({ state: "detached", timeout: 30_000 });
+    await page.getByTestId("connection-lost").waitFor();
+  await comeBack();
   await until("who steers", async () => (await steers(student)) && !(await steers(teacher)));
   await changing(() => setNumber(student, "exposure", 0.4), student);
   await room.inStep(student);

@@ -1,25 +1,37 @@
 // A class: a server, a browser, a teacher and students with pages of their own, and what they do.
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { canvasData, changing, chooseQuality, dragBetween, launchBrowser, listenForErrors, openTool, rested, screenshot, until } from "./driver.mjs";
+import { canvasData, changing, chooseQuality, dragBetween, launchBrowser, listenForErrors, openTool, screenshot, until } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 export const VIEWPORT = { width: 900, height: 560 };
 export const MIDDLE = { x: 620, y: 300 };
 
+// In seconds: no wait of people for one another ends by itself, however slow the machine is, and they may ask again at once.
+export const NEVER = 1e6;
+const WAITS = { answer: NEVER, ask_again: 0, away: NEVER, come_back: NEVER, come_back_to_new_server: NEVER };
+
+// Notes stay for so many times as long.
+const NOTES_STAY = 20;
+
 export class ClassRoom {
   // Of the pages' consoles.
   complaints = [];
 
-  // Opens the teacher's session.
-  async open() {
-    this.state = mkdtempSync(join(tmpdir(), "thunderhead-class-"));
-    this.flags = { httpPort: await freePort(), grpcPort: await freePort(), state: this.state };
+  // Opens the teacher's session; `prepare` as for `visit`.
+  async open(prepare) {
+    this.folder = mkdtempSync(join(tmpdir(), "thunderhead-class-"));
+    const timeouts = this.#writeTimeouts(WAITS);
+    this.flags = {
+      httpPort: await freePort(),
+      grpcPort: await freePort(),
+      state: join(this.folder, "state"),
+      more: ["--roster-timeouts", timeouts],
+    };
     await this.start();
     this.browser = await launchBrowser();
-    this.teacher = await this.visit(this.server.url);
-    await rested(this.teacher);
+    this.teacher = await this.visit(this.server.url, prepare);
     // Without detail and traced light, so that pictures rest and are drawn soon.
     await changing(() => chooseQuality(this.teacher, "Fast"), this.teacher);
     return this.teacher;
@@ -27,21 +39,69 @@ export class ClassRoom {
 
   async start() {
     this.server = await startServer(this.flags);
+    await this.#untilTimeoutsTaken(1);
   }
 
   async close() {
     await this.browser?.close();
     await this.server?.stop();
-    rmSync(this.state, { recursive: true, force: true });
+    rmSync(this.folder, { recursive: true, force: true });
   }
 
-  // Each person has a browser profile, and so keys, of their own.
-  async visit(address) {
+  // Runs `meanwhile` while people wait for one another for other times, in seconds: RosterTimeouts of the server.
+  async whileWaiting(seconds, meanwhile) {
+    await this.#setTimeouts({ ...WAITS, ...seconds });
+    await meanwhile();
+    await this.#setTimeouts(WAITS);
+  }
+
+  async #setTimeouts(seconds) {
+    const times = this.#timesTaken();
+    this.#writeTimeouts(seconds);
+    await this.#untilTimeoutsTaken(times + 1);
+  }
+
+  // Moved into place, so that the server never reads half a file.
+  #writeTimeouts(seconds) {
+    const file = join(this.folder, "timeouts");
+    const lines = Object.entries(seconds).map(([name, value]) => `${name} ${value}\n`);
+    writeFileSync(`${file}.new`, lines.join(""));
+    renameSync(`${file}.new`, file);
+    return file;
+  }
+
+  #timesTaken() {
+    return Number(this.server.log().match(/(?<=roster timeouts taken )\d+(?= times)/g)?.at(-1) ?? 0);
+  }
+
+  #untilTimeoutsTaken(times) {
+    return until("the server has taken the timeouts", () => this.#timesTaken() >= times);
+  }
+
+  // Waits until the server has stored the sessions as they are now: it answers who opens or closes one only after that.
+  async stored() {
+    const call = (method, body) =>
+      fetch(`${this.server.url}thunderhead.v1.ThunderheadService/${method}`, {
+        method: "POST",
+        headers: { "content-type": "application/grpc-web+proto" },
+        body: Buffer.concat([Buffer.from([0, 0, 0, 0, body.length]), body]),
+      });
+    const answer = Buffer.from(await (await call("CreateSession", Buffer.alloc(0))).arrayBuffer());
+    // The session's key is the answer's first field.
+    const key = answer.subarray(7, 7 + answer[6]);
+    if (answer[0] !== 0 || answer[5] !== 10) throw new Error(`no session was created: ${answer}`);
+    await (await call("CloseSession", Buffer.concat([Buffer.from([10, key.length]), key]))).arrayBuffer();
+  }
+
+  // Each person has a browser profile, and so keys, of their own. `prepare` is called with the page before it is opened.
+  async visit(address, prepare = () => undefined) {
     const context = await this.browser.newContext({
       viewport: VIEWPORT,
       permissions: ["clipboard-read", "clipboard-write"],
     });
+    await context.addInitScript(letNotesStay, NOTES_STAY);
     const page = await context.newPage();
+    await prepare(page);
     listenForErrors(page, this.complaints);
     await page.goto(address);
     await openTool(page, "look");
@@ -53,6 +113,17 @@ export class ClassRoom {
     const link = await this.teacher.getByTestId("viewers-link").inputValue();
     await this.teacher.keyboard.press("Escape");
     return link;
+  }
+
+  // The teacher sets a rule, and the student's page knows it.
+  async setRuleFor(student, name, on) {
+    await setRule(this.teacher, name, on);
+    // Rules come together: its page has this one when it has the next.
+    const asks = student.getByTestId("ask-control");
+    await setRule(this.teacher, "controlLocked", true);
+    await until("a locked button", () => asks.isDisabled());
+    await setRule(this.teacher, "controlLocked", false);
+    await until("an unlocked button", () => asks.isEnabled());
   }
 
   // Waits until the teacher sees someone of that name; `shot` is a picture of the list.
@@ -70,6 +141,18 @@ export class ClassRoom {
       return host.refined === "true" && guest.refined === "true" && host.revision === guest.revision;
     });
   }
+}
+
+// In the page: notes stay longer, so that a test that is slow to look sees them, and let the pointer through to the picture, which
+// they cover.
+function letNotesStay(times) {
+  const sheet = new CSSStyleSheet();
+  sheet.replaceSync("[data-testid=notices] * { pointer-events: none !important }");
+  document.adoptedStyleSheets = [sheet];
+  const NOTE_MS = 6000;
+  const start = window.setTimeout;
+  window.setTimeout = (callback, delayMs, ...more) =>
+    start.call(window, callback, delayMs === NOTE_MS ? times * delayMs : delayMs, ...more);
 }
 
 export async function setRule(presenter, name, on) {
