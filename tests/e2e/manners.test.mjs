@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { launchBrowser, openPanel, openTool, rested } from "./driver.mjs";
+import { changing, chooseQuality, holdingMovie, launchBrowser, openPanel, openTool, rested, until } from "./driver.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
@@ -15,10 +15,15 @@ const TOUCH_PX = 44;
 
 let server;
 let browser;
+// Of the server's page, with a scene of the quality "Fast": these tests look at the page, and pictures are to rest soon.
+let fast;
 
 before(async () => {
-  server = await startServer({ httpPort: await freePort(), grpcPort: await freePort() });
+  // Each visit opens a session, and each comparison another.
+  const more = ["--max-sessions-each", "64"];
+  server = await startServer({ httpPort: await freePort(), grpcPort: await freePort(), more });
   browser = await launchBrowser();
+  fast = await addressOfFast();
 });
 
 after(async () => {
@@ -26,7 +31,25 @@ after(async () => {
   await server?.stop();
 });
 
-async function visit(options, address = server.url) {
+async function addressOfFast() {
+  const permissions = ["clipboard-read", "clipboard-write"];
+  const page = await (await browser.newContext({ viewport: { width: 900, height: 560 }, permissions })).newPage();
+  await page.goto(server.url);
+  await openTool(page, "look");
+  await changing(() => chooseQuality(page, "Fast"), page);
+  await openPanel(page, "share");
+  const link = await page.getByTestId("viewers-link").inputValue();
+  await page.getByTestId("copy-link").click();
+  let copied = "";
+  await until("a link", async () => {
+    copied = await page.evaluate(() => navigator.clipboard.readText());
+    return copied.startsWith(`${link}#scene=`);
+  });
+  await page.context().close();
+  return `${server.url}${new URL(copied).hash}`;
+}
+
+async function visit(options, address = fast) {
   // The page lets no scripts in but its own; axe-core is one of the test.
   const context = await browser.newContext({ bypassCSP: true, ...options });
   const page = await context.newPage();
@@ -52,6 +75,17 @@ async function findings(page) {
   return [...violations, ...unknown].map(
     ({ id, nodes }) => `${id}: ${nodes.map(({ html, any }) => `${html.slice(0, 120)} (${any[0]?.data?.messageKey ?? ""} ${any[0]?.data?.contrastRatio ?? ""})`).join(" | ")}`,
   );
+}
+
+// The page lays out what a tool leaves of the window in the frame that is painted next.
+const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+const placeOf = (page, panel) => page.locator(panel === "drawer" ? ".drawer" : ".popover");
+
+async function showPanel(page, panel) {
+  await openPanel(page, panel);
+  await placeOf(page, panel).waitFor();
+  await painted(page);
 }
 
 // Every details element, so that what is folded is looked at too.
@@ -82,20 +116,19 @@ for (const [name, options] of [
   ["a desktop", { viewport: { width: 1280, height: 800 } }],
   ["a phone", { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }],
 ])
-  test(`axe-core finds nothing on ${name}, whatever is open`, { timeout: 300_000 }, async () => {
+  test(`axe-core finds nothing on ${name}, whatever is open`, async () => {
     const page = await visit(options);
     const found = await findings(page);
     await fill(page);
     for (const tool of TOOLS) {
       await openTool(page, tool);
       await unfold(page);
-      await page.waitForTimeout(300);
+      await painted(page);
       for (const each of await findings(page)) found.push(`${tool}: ${each}`);
     }
     await openTool(page, undefined);
     for (const panel of PANELS) {
-      await openPanel(page, panel);
-      await page.waitForTimeout(300);
+      await showPanel(page, panel);
       await unfold(page);
       for (const each of await findings(page)) found.push(`${panel}: ${each}`);
       await page.keyboard.press("Escape");
@@ -135,8 +168,7 @@ test("fingers find every button, slider and switch", async () => {
   }
   await openTool(page, undefined);
   for (const panel of PANELS) {
-    await openPanel(page, panel);
-    await page.waitForTimeout(300);
+    await showPanel(page, panel);
     await unfold(page);
     await measure(panel);
     await page.keyboard.press("Escape");
@@ -171,9 +203,6 @@ test("the tools use no words of the renderers but in Look's last section", async
 
 const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
-// The page lays out what a tool leaves of the window in the frame that is painted next.
-const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
-
 // Waits for so many texts over the picture: while it gets another size, it may have no room for some.
 const written = (page, least) =>
   page.waitForFunction((count) => document.querySelectorAll("[data-testid=annotations] text").length >= count, least);
@@ -207,20 +236,17 @@ async function unreadable(page) {
   });
 }
 
-async function whileAMovieIsMade(page, look) {
-  await openPanel(page, "keep");
-  await page.getByTestId("keep-movie").locator("summary").click();
-  await page.getByTestId("save-movie").click();
-  await page.keyboard.press("Escape");
-  await page.getByTestId("at-work").waitFor();
-  await look();
-  // It may have come to its end.
-  await page
-    .getByTestId("at-work-cancel")
-    .click({ timeout: 2000 })
-    .catch(() => undefined);
-  await page.getByTestId("at-work").waitFor({ state: "detached" });
-}
+const whileAMovieIsMade = (page, look) =>
+  holdingMovie(page, async () => {
+    await openPanel(page, "keep");
+    await page.getByTestId("keep-movie").locator("summary").click();
+    await page.getByTestId("save-movie").click();
+    await page.keyboard.press("Escape");
+    await page.getByTestId("at-work").waitFor();
+    await look();
+    await page.getByTestId("at-work-cancel").click();
+    await page.getByTestId("at-work").waitFor({ state: "detached" });
+  });
 
 for (const [name, options] of [
   ["a phone", PHONE],
@@ -245,8 +271,7 @@ for (const [name, options] of [
     }
     await openTool(page, undefined);
     await whileAMovieIsMade(page, async () => assert.deepEqual(await unreadable(page), [], "while a movie is made"));
-    await openPanel(page, "drawer");
-    await page.waitForTimeout(300);
+    await showPanel(page, "drawer");
     assert.deepEqual(await unreadable(page), [], "with every setting open");
     await openPanel(page, "drawer");
     await openTool(page, "map");
@@ -301,9 +326,9 @@ test("a panel of the bar leaves the time line free on a desktop", async () => {
   const page = await visit({ viewport: { width: 1920, height: 1080 } });
   const line = await page.locator(".time-line").boundingBox();
   for (const panel of PANELS) {
-    await openPanel(page, panel);
+    await showPanel(page, panel);
     await unfold(page);
-    const box = await page.locator(panel === "drawer" ? ".drawer" : ".popover").boundingBox();
+    const box = await placeOf(page, panel).boundingBox();
     assert.ok(box.y + box.height <= line.y, `${panel} ends at ${box.y + box.height}, the time line begins at ${line.y}`);
     await page.keyboard.press("Escape");
   }
@@ -457,13 +482,12 @@ for (const width of [1920, 900, 390])
       await openTool(page, tool);
       if (tool === "map") await page.locator("[data-testid=inset-map] canvas").waitFor();
       await unfold(page);
-      await page.waitForTimeout(200);
+      await painted(page);
       for (const each of await cutWords(page)) cut.push(`${tool}: ${each}`);
     }
     await openTool(page, undefined);
     for (const panel of PANELS.filter((each) => each !== "drawer")) {
-      await openPanel(page, panel);
-      await page.waitForTimeout(300);
+      await showPanel(page, panel);
       await unfold(page);
       for (const each of await cutWords(page)) cut.push(`${panel}: ${each}`);
       await page.keyboard.press("Escape");
