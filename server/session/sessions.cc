@@ -9,6 +9,7 @@
 #include "base/error_details.h"
 #include "base/random_hex.h"
 #include "base/status.h"
+#include "base/utf8.h"
 
 namespace thunderhead::session {
 namespace {
@@ -28,8 +29,12 @@ absl::Status Gone(const std::string& message, const std::string& reason = "SESSI
   return base::WithDetails(absl::NotFoundError(message), {.reason = reason});
 }
 
+// A key may be a secret that only its last character was mistyped of, so the error prints its first
+// four alone.
 absl::Status NotFound(const std::string& key) {
-  return Gone(absl::StrCat("no session has the key '", key,
+  constexpr std::size_t kPrinted = 4;
+  const std::string begin = key.size() > kPrinted ? key.substr(0, kPrinted) + "..." : key;
+  return Gone(absl::StrCat("no session has the key '", base::Printable(begin),
                            "': it was closed or has expired; create a new one"));
 }
 
