@@ -14,10 +14,10 @@ namespace thunderhead::gateway::test {
 
 class EchoTest : public ::testing::Test {
  protected:
-  // No limit of time is reached in a test, however slow the machine is. A test of one sets it, and
-  // mostly drives it by time_.
+  // No limit of time is reached in a test, however slow the machine is, nor while a test in vain
+  // lets time pass. A test of one sets it, and mostly drives it by time_.
   EchoTest() {
-    constexpr std::chrono::hours kNever{24};
+    constexpr std::chrono::hours kNever{24 * 30};
     options_.idle_timeout = kNever;
     options_.header_timeout = kNever;
     options_.file_timeout = kNever;

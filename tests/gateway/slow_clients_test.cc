@@ -24,7 +24,6 @@
 namespace thunderhead::gateway::test {
 namespace {
 
-using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using std::chrono::steady_clock;
@@ -202,8 +201,7 @@ class LeastRateTest : public SlowClientsTest {
     DriveTime();
     options_.header_timeout = seconds(10);
     options_.min_bytes_per_second = 1e9;
-    // Waits by the time to the end.
-    options_.idle_timeout = hours(24);
+    // It waits by the time to the end, which AwaitLooks() needs.
     waiting_ = std::make_unique<RawClient>(Site().Port());
     EXPECT_EQ(waiting_->Ask("GET", "/healthz").result(), http::status::ok);
   }

@@ -1,6 +1,7 @@
 #include "tests/gateway/websocket_client.h"
 
-#include <netinet/tcp.h>
+#include <linux/sockios.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -147,10 +148,19 @@ int WebSocketClient::UnreadBytes() {
   return bytes;
 }
 
-void WebSocketClient::Acknowledge() {
-  const int on = 1;
-  ::setsockopt(socket_.next_layer().socket().native_handle(), IPPROTO_TCP, TCP_QUICKACK, &on,
-               sizeof(on));
+bool WebSocketClient::HasAcknowledged() {
+  constexpr int kMostDescriptors = 1024;
+  const uint16_t port = socket_.next_layer().socket().local_endpoint().port();
+  // The gateway's socket is the one whose peer is this client.
+  for (int descriptor = 0; descriptor < kMostDescriptors; ++descriptor) {
+    sockaddr_in peer{};
+    socklen_t size = sizeof(peer);
+    if (::getpeername(descriptor, reinterpret_cast<sockaddr*>(&peer), &size) != 0) continue;
+    if (peer.sin_family != AF_INET || ntohs(peer.sin_port) != port) continue;
+    int unacknowledged = 0;
+    return ::ioctl(descriptor, SIOCOUTQ, &unacknowledged) == 0 && unacknowledged == 0;
+  }
+  return true;  // the gateway has closed it
 }
 
 bool WebSocketClient::HasHungUp() {

@@ -59,9 +59,9 @@ class WebSocketClient {
   int PingsAnswered() const { return pings_answered_; }
   // Bytes that the kernel keeps for this client.
   int UnreadBytes();
-  // Acknowledges the bytes that the kernel has received, which it does up to 200 ms later
-  // otherwise.
-  void Acknowledge();
+  // True if the kernel has acknowledged all that the gateway has sent, which it does up to 200 ms
+  // later. Needs a gateway in this process.
+  bool HasAcknowledged();
   // True if the server has ended the connection.
   bool HasHungUp();
 
