@@ -152,6 +152,7 @@ absl::Status Serve(ServeFlags flags) {
   store_options.read_deadline = std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(store_options.formats, FormatsOf(flags.sandbox));
+  store_options.links = {flags.sandbox.allowed_links, flags.sandbox.untrusted};
   store_options.reader_apart = ReaderApart(flags.sandbox);
   store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
