@@ -5,8 +5,8 @@ import io
 import json
 import os
 import pathlib
+import re
 import shutil
-import socket
 import subprocess
 import sys
 import tempfile
@@ -15,6 +15,7 @@ import time
 import types
 import unittest
 import unittest.mock
+from collections.abc import Callable
 
 import grpc
 import numpy
@@ -32,44 +33,37 @@ SIZE = (160, 90)
 FAST = {"rendering": {"preset": "PRESET_FAST"}}
 
 
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+# Longest wait before a test counts as hung. It is no requirement on speed.
+HANG_LIMIT_S = 600.0
+
+
+def wait_for(what: str, condition: Callable[[], object]) -> None:
+    """Waits until the condition is true; fails the test if it never is."""
+    end = time.monotonic() + HANG_LIMIT_S
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError(f"{what} did not come within {HANG_LIMIT_S:.0f} s")
+        time.sleep(0.02)
 
 
 class Server:
     """The program, until `stop`."""
 
     def __init__(self, *flags: str) -> None:
-        self.port = free_port()
         self.folder = tempfile.mkdtemp(prefix="thunderhead-python-")
         self.log = open(f"{self.folder}/log", "w+b")
         self.process = subprocess.Popen(
-            [PROGRAM, "serve", "--grpc", f"127.0.0.1:{self.port}", "--http", f"127.0.0.1:{free_port()}", "--device", "software",
-             *flags], stdout=self.log, stderr=self.log, env={**os.environ, "STATE_DIRECTORY": self.folder})
-        channel = grpc.insecure_channel(f"127.0.0.1:{self.port}") if "--tls-cert" not in flags else None
-        end = time.monotonic() + 60
-        while time.monotonic() < end:
-            self.log.seek(0)
-            if b"http" in self.log.read() and self._answers(channel):
-                return
-            assert self.process.poll() is None, self.output()
-            time.sleep(0.1)
-        raise AssertionError("the server did not start:\n" + self.output())
-
-    def _answers(self, channel) -> bool:
-        if channel is None:
-            return True
-        try:
-            grpc.channel_ready_future(channel).result(1)
-            return True
-        except grpc.FutureTimeoutError:
-            return False
+            [PROGRAM, "serve", "--grpc", "127.0.0.1:0", "--http", "127.0.0.1:0", "--device", "software", *flags],
+            stdout=self.log, stderr=self.log, env={**os.environ, "STATE_DIRECTORY": self.folder})
+        ready = re.compile(r"is ready at .*\(gRPC 127\.0\.0\.1:(\d+)\)")
+        wait_for("the server", lambda: ready.search(self.output()) or self.process.poll() is not None)
+        found = ready.search(self.output())
+        if found is None:
+            raise AssertionError("the server did not start:\n" + self.output())
+        self.port = int(found[1])
 
     def output(self) -> str:
-        self.log.seek(0)
-        return self.log.read().decode(errors="replace")
+        return pathlib.Path(self.log.name).read_text(errors="replace")
 
     @property
     def address(self) -> str:
@@ -78,7 +72,7 @@ class Server:
     def stop(self) -> None:
         self.process.terminate()
         try:
-            self.process.wait(60)
+            self.process.wait(HANG_LIMIT_S)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
@@ -95,7 +89,7 @@ class ClientTest(unittest.TestCase):
     def setUp(self) -> None:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="thunderhead-python-"))
         self.addCleanup(shutil.rmtree, self.folder)
-        self.client = Client(self.server.address)
+        self.client = Client(self.server.address, timeout_s=HANG_LIMIT_S)
         self.addCleanup(self.client.close)
 
     def test_storms(self) -> None:
@@ -164,7 +158,7 @@ class ClientTest(unittest.TestCase):
         with self.assertRaises(ThunderheadError) as refused:
             self.client.describe("none")
         self.assertEqual((refused.exception.code, refused.exception.reason), ("NOT_FOUND", "STORM_NOT_FOUND"))
-        with Client("127.0.0.1:1", timeout_s=2) as nobody, self.assertRaises(ThunderheadError) as refused:
+        with Client("127.0.0.1:1", timeout_s=HANG_LIMIT_S) as nobody, self.assertRaises(ThunderheadError) as refused:
             nobody.storms()
         self.assertEqual(refused.exception.code, "UNAVAILABLE")
 
@@ -185,10 +179,10 @@ class ClientTest(unittest.TestCase):
 
     def test_a_session_shows_what_is_set(self) -> None:
         with self.client.session("supercell", {**FAST, "camera": {"orbit": {}}}, SIZE) as session:
-            first = session.wait()
+            first = session.wait(timeout_s=HANG_LIMIT_S)
             before = numpy.asarray(Image.open(io.BytesIO(session._repr_jpeg_())), dtype=float)
             session.set("camera.orbit.azimuth_deg", session.get("camera.orbit.azimuth_deg") + 120)
-            frame = session.wait(refined=True)
+            frame = session.wait(refined=True, timeout_s=HANG_LIMIT_S)
             self.assertGreater(frame.scene_revision, first.scene_revision)
             after = numpy.asarray(Image.open(io.BytesIO(session.jpeg)), dtype=float)
             self.assertGreater(numpy.abs(before - after).mean(), 2.0)
@@ -214,10 +208,7 @@ class ClientTest(unittest.TestCase):
             before = picture.value
             elevation.value = 5.0
             time_index.value = 0
-            end = time.monotonic() + 60
-            while picture.value == before and time.monotonic() < end:
-                time.sleep(0.05)
-            self.assertNotEqual(picture.value, before)
+            wait_for("another picture", lambda: picture.value != before)
             self.assertEqual((session.get("sun.elevation_deg"), session.get("time_index")), (5.0, 0))
 
     def test_a_notebook_shows_sliders_or_the_picture(self) -> None:
@@ -247,7 +238,7 @@ class ClientTest(unittest.TestCase):
     def test_the_examples_run(self) -> None:
         for example in sorted((HERE.parent / "examples").glob("*.py")):
             done = subprocess.run([sys.executable, str(example), self.server.address, str(self.folder)], capture_output=True,
-                                  text=True, timeout=300)
+                                  text=True, timeout=HANG_LIMIT_S)
             self.assertEqual(done.returncode, 0, f"{example}: {done.stdout}{done.stderr}")
         with Image.open(self.folder / "film.gif") as film:
             self.assertEqual(film.n_frames, len(self.client.storms()[0].valid_times))
@@ -268,26 +259,26 @@ class WatchTest(unittest.TestCase):
             server = Server("--data", folder, "--settle-seconds", "1", "--rescan-seconds", "1")
             self.addCleanup(server.stop)
 
+            out = pathlib.Path(folder) / "out"
+
             def copy_others() -> None:
-                time.sleep(1)
+                wait_for("a picture of the first times", out.exists)
                 for file in series[2:4]:
                     shutil.copy(file, run)
 
             copying = threading.Thread(target=copy_others)
             copying.start()
-            with Client(server.address) as client:
+            with Client(server.address, timeout_s=HANG_LIMIT_S) as client:
                 # One file may have rested for long enough before the other, and is a storm of its own until then.
-                deadline = time.monotonic() + 30
-                while (storm := client.storms()[0].id) != "run42" and time.monotonic() < deadline:
-                    time.sleep(0.1)
-                pictures = list(client.watch(storm, FAST, SIZE, until=4, timeout_s=60, poll_s=0.2,
-                                             product=folder + "/out/{valid:%H%M}.png"))
+                wait_for("the run", lambda: [storm.id for storm in client.storms()] == ["run42"])
+                pictures = list(client.watch("run42", FAST, SIZE, until=4, timeout_s=HANG_LIMIT_S, poll_s=0.2,
+                                             product=f"{out}/{{valid:%H%M}}.png"))
                 copying.join()
                 self.assertEqual(len({picture.data for picture in pictures}), 4)
-                names = sorted(file.name for file in (pathlib.Path(folder) / "out").iterdir())
+                names = sorted(file.name for file in out.iterdir())
                 self.assertEqual(names, ["0010.png", "0020.png", "0030.png", "0040.png"])
                 with self.assertRaisesRegex(TimeoutError, "4 times are drawn"):
-                    list(client.watch(storm, FAST, SIZE, until=5, timeout_s=0.5, poll_s=0.1))
+                    list(client.watch("run42", FAST, SIZE, until=5, timeout_s=0.5, poll_s=0.1))
 
 
 class AccessTest(unittest.TestCase):
@@ -304,17 +295,17 @@ class AccessTest(unittest.TestCase):
                             "--tls-key", key)
             self.addCleanup(server.stop)
             address = f"localhost:{server.port}"
-            with Client(address, token="a" * 64, tls_ca=cert) as client:
+            with Client(address, token="a" * 64, tls_ca=cert, timeout_s=HANG_LIMIT_S) as client:
                 self.assertEqual(client.storms()[0].id, "supercell")
                 self.assertEqual(client.render("", FAST, SIZE).size, SIZE)
                 # A pipeline's token draws single pictures and opens no sessions.
                 with self.assertRaises(ThunderheadError) as refused:
                     client.session()
                 self.assertEqual(refused.exception.reason, "ROLE_MAY_NOT")
-            with Client(address, token="wrong", tls_ca=cert) as client, self.assertRaises(ThunderheadError) as refused:
+            with Client(address, token="wrong", tls_ca=cert, timeout_s=HANG_LIMIT_S) as client, self.assertRaises(ThunderheadError) as refused:
                 client.storms()
             self.assertEqual(refused.exception.code, "UNAUTHENTICATED")
-            with Client(address, token="a" * 64, timeout_s=5) as client, self.assertRaises(ThunderheadError):
+            with Client(address, token="a" * 64) as client, self.assertRaises(ThunderheadError):
                 client.storms()
 
     def test_a_token_is_not_sent_in_the_clear_to_another_machine(self) -> None:

@@ -1,5 +1,7 @@
 #include "app/interruption.h"
 
+#include <pthread.h>
+
 #include <chrono>
 #include <ctime>
 
@@ -27,6 +29,9 @@ bool Taken(const sigset_t& signals, milliseconds wait) {
 // the program and its process group.
 constexpr milliseconds kOneInterruption(250);
 
+// The name of the thread once a further signal ends the program.
+constexpr char kInterrupted[] = "interrupted";
+
 }  // namespace
 
 Interruption::Interruption() {
@@ -39,8 +44,12 @@ Interruption::Interruption() {
     stop_.request_stop();
     const auto whole = steady_clock::now() + kOneInterruption;
     while (steady_clock::now() < whole) Taken(signals, milliseconds(20));
+    // This thread may not have run for the whole time: what has arrived meanwhile belongs to it.
+    while (Taken(signals, milliseconds(0))) {
+    }
     // Only this thread does not block the next signal, which ends the program.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+    pthread_setname_np(pthread_self(), kInterrupted);
     while (!ended.stop_requested()) std::this_thread::sleep_for(milliseconds(20));
   });
 }

@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/log.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::base {
@@ -185,7 +185,7 @@ void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr
     // The watch looks when this one would hang.
     shared->changed.notify_all();
     try {
-      const absl::Status failed = OrOutOfMemory([&] {
+      const absl::Status failed = Guarded([&] {
         (*task)(absl::OkStatus());
         return absl::OkStatus();
       });

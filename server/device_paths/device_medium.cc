@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "device_paths/bindings.h"
 #include "gl/device_faults.h"

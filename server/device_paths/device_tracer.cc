@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "device_paths/bindings.h"
 #include "gl/device.h"
@@ -287,7 +287,7 @@ reference::MakesTracer TracersFor(std::shared_ptr<gl::ProgramCache> programs) {
   return [programs = std::move(programs)](const std::shared_ptr<const reference::Medium>& medium)
              -> absl::StatusOr<reference::RayTracer> {
     if (!TracesOnDevice()) return reference::TracerOnProcessors(medium);
-    auto made = base::OrOutOfMemory([&] {
+    auto made = base::Guarded([&] {
       return programs->Pieces().During([&] { return DeviceTracer::Create(*medium, programs); });
     });
     if (absl::IsUnimplemented(made.status()) || absl::IsResourceExhausted(made.status())) {

@@ -18,7 +18,7 @@
 #include "base/allowance.h"
 #include "base/error_details.h"
 #include "base/line_limit.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "gateway/awaitable.h"
 #include "gateway/client_link.h"
@@ -115,7 +115,7 @@ class Gateway::Listener {
       if (stopping_) break;
       if (!error) {
         // Without memory for one more connection, the next may have some.
-        const absl::Status admitted = base::OrOutOfMemory([&] {
+        const absl::Status admitted = base::Guarded([&] {
           Admit(std::move(socket));
           return absl::OkStatus();
         });

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "gl/device.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "gl/device_faults.h"
 #include "gl/device_memory.h"

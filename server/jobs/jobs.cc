@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/log.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/random_hex.h"
 #include "base/status.h"
 #include "jobs/next_try.h"
@@ -356,7 +356,7 @@ void Jobs::BeginOne(const PicturePlace& picture, Lock& lock) {
   lock.unlock();
   const auto ends = [this, picture] { Post([this, picture] { EndPicture(picture); }); };
   std::unique_ptr<PictureInHand> begun;
-  const absl::Status begins = base::OrOutOfMemory([&] {
+  const absl::Status begins = base::Guarded([&] {
     begun = begin_(order, ends);
     return absl::OkStatus();
   });
@@ -378,7 +378,7 @@ void Jobs::EndPicture(const PicturePlace& picture) {
   // The next is drawn while this one is written.
   BeginPictures(lock);
   lock.unlock();
-  const absl::Status kept = base::OrOutOfMemory([&]() -> absl::Status {
+  const absl::Status kept = base::Guarded([&]() -> absl::Status {
     THUNDERHEAD_RETURN_IF_ERROR(hand->begun);
     THUNDERHEAD_ASSIGN_OR_RETURN(DrawnPicture drawn, hand->picture->Take());
     Keep({picture, std::make_shared<const DrawnPicture>(std::move(drawn)),
@@ -400,7 +400,7 @@ void Jobs::WriteAgain(Lock& lock) {
   lock.unlock();
   for (Unwritten& picture : pictures) {
     const PicturePlace place = picture.place;
-    const absl::Status kept = base::OrOutOfMemory([&] {
+    const absl::Status kept = base::Guarded([&] {
       Keep(std::move(picture));
       return absl::OkStatus();
     });

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "sandbox/archive.h"
 #include "sandbox/confinement.h"
@@ -158,7 +158,7 @@ int ReadUntrustedFile(const volume::StormFormats& formats) {
   Reader reader(formats, std::move(request));
   absl::Status status = reader.Prepare();
   if (status.ok()) {
-    status = base::OrOutOfMemory([&reader] { return reader.Answer(); });
+    status = base::Guarded([&reader] { return reader.Answer(); });
   }
   if (!status.ok()) reader.Tell(status);
   return status.ok() ? 0 : 1;

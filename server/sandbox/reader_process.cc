@@ -20,7 +20,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/utf8.h"
 #include "sandbox/reader_main.h"
@@ -318,7 +318,7 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
   request_from.Close();
   reply_to.Close();
   Receiver from_reader(reply_from.Number(), limits_.time, limits_.memory_bytes, time_);
-  absl::Status status = base::OrOutOfMemory(
+  absl::Status status = base::Guarded(
       [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits_); });
   if (!from_reader.Ok()) return Judge(request.path, from_reader, child, limits_);
   return status;

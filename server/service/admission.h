@@ -22,7 +22,8 @@ using CallerOr = absl::StatusOr<std::shared_ptr<const access::Caller>>;
 CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, const char* method,
                access::CallKind kind);
 
-// The entrance of one service: each call is answered by its handler, or by a refusal.
+// The entrance of one service: each call is answered by its handler, or by a refusal. An exception
+// of a handler is answered by INTERNAL.
 class Entrance {
  public:
   // `closed` is why those whom the door lets in are refused all the same; OK: they are not. `calls`
@@ -35,7 +36,10 @@ class Entrance {
   grpc::ServerUnaryReactor* Unary(const char* method, grpc::CallbackServerContext* context,
                                   const Handler& handle) const {
     const CallerOr caller = Enter(*context, method, access::CallKind::kUnary);
-    return caller.ok() ? handle(*caller) : Refused(context, caller.status());
+    if (!caller.ok()) return Refused(context, caller.status());
+    const auto reactor = base::Guarded(
+        [&]() -> absl::StatusOr<grpc::ServerUnaryReactor*> { return handle(*caller); });
+    return reactor.ok() ? *reactor : Refused(context, **caller, reactor.status());
   }
 
   template <typename Reactor, typename Handler>
@@ -43,7 +47,10 @@ class Entrance {
                   const Handler& handle) const {
     CallerOr caller = Enter(*context, method, access::CallKind::kStream);
     if (!caller.ok()) return new RefusedStream<Reactor>(caller.status());
-    return handle(*std::move(caller));
+    const std::shared_ptr<const access::Caller> known = *caller;
+    const auto reactor =
+        base::Guarded([&]() -> absl::StatusOr<Reactor*> { return handle(*std::move(caller)); });
+    return reactor.ok() ? *reactor : new RefusedStream<Reactor>(*known, reactor.status());
   }
 
  private:

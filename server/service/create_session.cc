@@ -1,4 +1,4 @@
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -48,7 +48,7 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   auto* const answer = new Answer(context, engine.limits, caller, *response);
   const session::Rules rules = RulesOf(request->rules(), {});
   FrameThen(engine, caller->identity().name, scene, [=, &engine](const absl::Status& framed) {
-    const absl::Status opened = framed.ok() ? base::OrOutOfMemory([&] {
+    const absl::Status opened = framed.ok() ? base::Guarded([&] {
       return Open(engine, caller->identity().name, rules, *response);
     })
                                             : framed;

@@ -1,5 +1,5 @@
 #include "absl/strings/str_cat.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -39,7 +39,7 @@ grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContex
   auto* const answer = new Answer(context, engine.limits, caller, *response);
   engine.executor.Submit(caller->identity().name, [=, &engine](const absl::Status& status) {
     const absl::Status deleted =
-        status.ok() ? base::OrOutOfMemory([&] { return Delete(engine, request->storm_id()); })
+        status.ok() ? base::Guarded([&] { return Delete(engine, request->storm_id()); })
                     : status;
     caller->Report("DeleteCloud", deleted);
     answer->Give(deleted);

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/prepare_scene.h"
@@ -35,7 +35,7 @@ void FrameThen(Engine& engine, const std::string& owner, v1::Scene& scene,
   engine.executor.Submit(
       owner, [&engine, &scene, time_index, then = std::move(then)](const absl::Status& status) {
         if (!status.ok()) return then(status);
-        then(base::OrOutOfMemory([&]() -> absl::Status {
+        then(base::Guarded([&]() -> absl::Status {
           THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadFields(engine.store, scene.storm_id(),
                                                                      time_index, "scene.storm_id"));
           FrameCondensate(scene, *fields);

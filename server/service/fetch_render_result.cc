@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "service/delivery_deadline.h"
@@ -85,7 +85,7 @@ class ResultStream final : public ResultReactor {
   void Next() {
     reading_.threads.Submit(caller_->identity().name, [this](const absl::Status& status) {
       const absl::Status read =
-          status.ok() ? base::OrOutOfMemory([this] { return Read(); }) : status;
+          status.ok() ? base::Guarded([this] { return Read(); }) : status;
       if (!read.ok()) return End(ToGrpcStatus(read));
       delivery_.Begin(response_.chunk().size());
       StartWrite(&response_);

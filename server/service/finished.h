@@ -10,7 +10,7 @@
 
 #include "absl/status/status.h"
 #include "access/door.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "service/answer.h"
 #include "service/engine.h"
 #include "service/limits.h"
@@ -54,7 +54,7 @@ grpc::ServerUnaryReactor* FinishedBy(Engine& engine, grpc::CallbackServerContext
                                                       const absl::Status& status) {
     const bool abandoned = context->IsCancelled();
     const absl::Status outcome = abandoned     ? absl::CancelledError("the call was cancelled")
-                                 : status.ok() ? base::OrOutOfMemory(work)
+                                 : status.ok() ? base::Guarded(work)
                                                : status;
     caller->ReportRefusal(outcome);
     answer->Give(outcome);

@@ -1,6 +1,6 @@
 #include <stop_token>
 
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -42,7 +42,7 @@ grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerCont
   auto* const answer = new Answer(context, engine.limits, caller, *response);
   engine.executor.Submit(
       caller->identity().name, [=, &engine, shape = *std::move(shape)](const absl::Status& status) {
-        const absl::Status made = status.ok() ? base::OrOutOfMemory([&] {
+        const absl::Status made = status.ok() ? base::Guarded([&] {
           return Make(engine, caller->identity().name, shape, *request, *context, *response);
         })
                                               : status;

@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "access/rules.h"
 #include "base/error_details.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "service/alarm_time.h"
 #include "service/catalogue_follower.h"
@@ -125,7 +126,8 @@ class InteractCall : public InteractReactor,
 
   void OnReadDone(bool ok) override {
     if (!ok) return End(grpc::Status::OK);
-    if (const absl::Status status = Handle(); !status.ok()) return End(ToGrpcStatus(status));
+    const absl::Status status = base::Guarded([this] { return Handle(); });
+    if (!status.ok()) return End(ToGrpcStatus(status));
     {
       const std::lock_guard lock(mutex_);
       reading_ = false;

@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "service/interact_messages.h"
 #include "service/interact_requests.h"
@@ -132,7 +132,7 @@ absl::Status PersonRequests::WithCamera(const std::shared_ptr<Asker>& asker,
   FrameThen(engine_, caller_->identity().name, *scene,
             [asker, request_id, scene, take = std::move(take)](const absl::Status& framed) {
               using Camera = absl::StatusOr<scene::Camera>;
-              const absl::Status status = base::OrOutOfMemory([&] {
+              const absl::Status status = base::Guarded([&] {
                 return take(framed.ok() ? Camera(ToCamera(scene->camera())) : Camera(framed));
               });
               asker->Settle(RefusalOf(request_id, status));
@@ -233,7 +233,7 @@ absl::Status PersonRequests::PlaceMark(const std::shared_ptr<Asker>& asker,
       caller_->identity().name,
       [this, asker, request_id, rays = std::move(rays), color](const absl::Status& status) {
         using Positions = absl::StatusOr<std::vector<glm::dvec3>>;
-        Positions positions_m = base::OrOutOfMemory([&]() -> Positions {
+        Positions positions_m = base::Guarded([&]() -> Positions {
           THUNDERHEAD_RETURN_IF_ERROR(status);
           return session::LineSeen(*session_, engine_.store, rays);
         });
@@ -248,7 +248,7 @@ absl::Status PersonRequests::PlaceMark(const std::shared_ptr<Asker>& asker,
 
 absl::Status PersonRequests::Draw(std::vector<glm::dvec3> positions_m,
                                   const std::optional<glm::vec3>& color) {
-  return base::OrOutOfMemory([&] {
+  return base::Guarded([&] {
     return session_->audience().Draw(
         person_id_,
         [&](session::Board& board) {

@@ -7,7 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/utf8.h"
 #include "google/protobuf/util/field_mask_util.h"
@@ -158,7 +158,7 @@ void ChangeScene(Engine& engine, const std::string& owner,
   FrameThen(engine, owner, *scene,
             [&store = engine.store, revision, scene, session, may = std::move(may),
              done = std::move(done)](const absl::Status& framed) {
-              const absl::Status shown = !framed.ok() ? framed : base::OrOutOfMemory([&] {
+              const absl::Status shown = !framed.ok() ? framed : base::Guarded([&] {
                 THUNDERHEAD_RETURN_IF_ERROR(may());
                 return ShowScene(store, *session, revision, *scene) ? absl::OkStatus()
                                                                     : Overruled();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/stopwatch.h"
 
 namespace thunderhead::session {
@@ -59,10 +59,10 @@ FieldsRead FieldsReader::Read(const Asked& work) {
   base::Stopwatch stopwatch;
   FieldsRead read;
   read.fields =
-      base::OrOutOfMemory([&] { return store_.Get(work.key.storm_id, work.key.time_index, {}); });
+      base::Guarded([&] { return store_.Get(work.key.storm_id, work.key.time_index, {}); });
   read.milliseconds = stopwatch.Restart();
   if (!read.fields.ok() || !work.prepare) return read;
-  const absl::Status prepared = base::OrOutOfMemory([&] { return work.prepare(*read.fields); });
+  const absl::Status prepared = base::Guarded([&] { return work.prepare(*read.fields); });
   if (!prepared.ok()) read.fields = prepared;
   read.prepare_ms = stopwatch.ElapsedMs();
   return read;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/log.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"
@@ -103,7 +103,7 @@ std::vector<EncodedVideo> VideoOf(const EncodedFrame& described, Session& sessio
                                   base::MemoryBudget& memory, const SerializeFrame& serialize) {
   std::vector<EncodedVideo> video;
   for (const VideoOrder& order : session.hub().OrderVideo(described, still_follows)) {
-    auto encoded = base::OrOutOfMemory([&] {
+    auto encoded = base::Guarded([&] {
       return WithVideo(described, order, pictures.At(order.tier), session.video(), memory,
                        serialize);
     });
@@ -123,7 +123,7 @@ EncodeFrame JpegEncoder(const std::shared_ptr<Session>& session,
   // The session keeps the frame, and the frame this.
   return [weak_session = std::weak_ptr(session), pictures, wanted_quality, serialize](
              const EncodedFrame& described, int tier) -> std::optional<EncodedFrame> {
-    auto frame = base::OrOutOfMemory(
+    auto frame = base::Guarded(
         [&] { return WithJpeg(described, tier, pictures->At(tier), wanted_quality, serialize); });
     if (frame.ok()) return *std::move(frame);
     if (const auto owner = weak_session.lock(); owner != nullptr) {
@@ -146,7 +146,7 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, base::M
       described, JpegEncoder(session, pictures, drawn.scene.output.jpeg_quality, serialize),
       std::move(video), still_follows);
   if (!drawn.refined) return;
-  const absl::Status made = base::OrOutOfMemory([&] {
+  const absl::Status made = base::Guarded([&] {
     StillToMake still{session, sequence, described, drawn.rests_at, nullptr};
     if (still_follows) {
       still.fine = std::make_shared<PictureSizes<frame::FineImage>>(*std::move(drawn.fine));
@@ -214,7 +214,7 @@ void FrameEncoder::Run() {
     encoding_.push_back(session.get());
     lock.unlock();
     const std::uint64_t revision = drawn.scene_revision;
-    const absl::Status encoded = base::OrOutOfMemory([&] {
+    const absl::Status encoded = base::Guarded([&] {
       EncodeAndPublish(std::move(drawn), serialize_, *memory_, stills_, time_.Now());
       return absl::OkStatus();
     });

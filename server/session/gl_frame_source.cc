@@ -9,7 +9,7 @@
 #include "accuracy/estimator.h"
 #include "accuracy/moving_picture.h"
 #include "accuracy/traced_lights.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "device_paths/device_tracer.h"
 #include "frame/tone_map.h"
@@ -102,7 +102,7 @@ class GlFrameSource final : public FrameSource {
       std::int64_t wanted_paths, accuracy::LightClaim* claim) override {
     ForgetDrawn();
     auto progress =
-        base::OrOutOfMemory([&] { return correctors_.Trace(scene, fields, claim, wanted_paths); });
+        base::Guarded([&] { return correctors_.Trace(scene, fields, claim, wanted_paths); });
     if (absl::Status fault = Look(); !fault.ok()) return fault;
     return progress;
   }
@@ -113,7 +113,7 @@ class GlFrameSource final : public FrameSource {
     // Where memory is short it is for pictures; the table's figure stays.
     if (!HasRoomToMeasure(scene, *fields)) return accuracy::ErrorProgress{.ended = true};
     const Correction correction = CorrectionOf(scene, fields);
-    auto progress = base::OrOutOfMemory([&] {
+    auto progress = base::Guarded([&] {
       const auto draw = [&](const scene::Scene& measured) {
         return Watched([&]() -> absl::StatusOr<picture::LinearPicture> {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
@@ -226,7 +226,7 @@ class GlFrameSource final : public FrameSource {
   auto Watched(const Draw& draw) -> decltype(draw()) {
     ForgetDrawn();
     for (bool again = false;; again = true) {
-      auto drawn = base::OrOutOfMemory([&] { return programs_->Pieces().During(draw); });
+      auto drawn = base::Guarded([&] { return programs_->Pieces().During(draw); });
       if (absl::Status fault = Look(); !fault.ok()) drawn = std::move(fault);
       if (!absl::IsResourceExhausted(drawn.status())) return drawn;
       FreeUnused(0.0);
@@ -299,7 +299,7 @@ class GlFrameSource final : public FrameSource {
 
 FrameSourceFactory GlFrameSources(const std::string& device, GlSourceOptions options) {
   return [device, shared = Shared{.options = std::move(options)}](base::DeviceTurn* turn) {
-    return base::OrOutOfMemory([&]() -> absl::StatusOr<std::unique_ptr<FrameSource>> {
+    return base::Guarded([&]() -> absl::StatusOr<std::unique_ptr<FrameSource>> {
       THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gl::Context> context,
                                    gl::Context::Create(device));
       return std::make_unique<GlFrameSource>(std::move(context), shared, turn);

@@ -6,7 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "gl/device_faults.h"
@@ -104,7 +104,7 @@ void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
   // `begun_` keeps it until the lane is idle.
   lane.Begin(
       [&image, draws, preparation = preparation_](const absl::StatusOr<FrameSource*>& source) {
-        image.status = base::OrOutOfMemory([&]() -> absl::Status {
+        image.status = base::Guarded([&]() -> absl::Status {
           THUNDERHEAD_RETURN_IF_ERROR(source.status());
           if (image.phase == Phase::kReading) {
             THUNDERHEAD_RETURN_IF_ERROR(Read(image, preparation));

@@ -7,7 +7,7 @@
 #include "base/error_details.h"
 #include "base/log.h"
 #include "base/memory_budget.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "gl/device_faults.h"
 
@@ -110,7 +110,7 @@ std::optional<Clock::time_point> LightTracer::Begin(Clock::time_point now) {
     lane_.Begin(
         [outcome = outcome_, request = wanted.request](const absl::StatusOr<FrameSource*>& source) {
           accuracy::LightClaim claim;
-          Progress progress = base::OrOutOfMemory([&]() -> Progress {
+          Progress progress = base::Guarded([&]() -> Progress {
             if (!source.ok()) return source.status();
             return Trace(**source, request, &claim);
           });

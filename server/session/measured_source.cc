@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 
 namespace thunderhead::session {
@@ -26,7 +26,7 @@ absl::StatusOr<DisplayFrame> MeasuredSource::Draw(const std::string& view,
                                                   const accuracy::Evidence& evidence) {
   last_drawn_.reset();
   const auto begun_at = time_.Now();
-  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::OrOutOfMemory([&] {
+  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::Guarded([&] {
                                  return source_->Draw(scene, fields, quality);
                                }));
   last_drawn_ = LastDrawn{scene, quality, fields};
@@ -38,7 +38,7 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
                                                          const scene::Scene& scene,
                                                          const Fields& fields) {
   last_drawn_.reset();
-  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, base::OrOutOfMemory([&] {
+  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, base::Guarded([&] {
                                  return source_->DrawChecked(scene, fields);
                                }));
   last_drawn_ = LastDrawn{scene, FrameQuality{}, fields};
@@ -55,11 +55,11 @@ void MeasuredSource::Learn(std::string_view lane, const std::string& view,
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,
                                                   const scene::Scene& scene) {
-  return base::OrOutOfMemory([&] { return source_->Tone(picture, scene); });
+  return base::Guarded([&] { return source_->Tone(picture, scene); });
 }
 
 absl::StatusOr<frame::FineImage> MeasuredSource::Fine() {
-  return base::OrOutOfMemory([&] { return source_->Fine(); });
+  return base::Guarded([&] { return source_->Fine(); });
 }
 
 void MeasuredSource::Replace(std::unique_ptr<FrameSource> source) {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 
 namespace thunderhead::session {
@@ -36,7 +36,7 @@ void SessionLane::Begin(Request request) {
   cancelled_ = std::make_shared<std::atomic<bool>>(false);
   lane_.Begin(
       [outcome = outcome_, request = request_](const absl::StatusOr<FrameSource*>& source) {
-        auto picture = base::OrOutOfMemory([&]() -> absl::StatusOr<Picture> {
+        auto picture = base::Guarded([&]() -> absl::StatusOr<Picture> {
           if (!source.ok()) return source.status();
           return Drawn(**source, request);
         });

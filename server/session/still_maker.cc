@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/log.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
@@ -89,7 +89,7 @@ void StillMaker::MakeNow(const StillToMake& still) const {
   for (int tier = 0; tier < kTiers; ++tier) {
     if (!wanted[static_cast<std::size_t>(tier)]) continue;
     if (!session->hub().IsNewest(still.sequence)) return;
-    auto frame = base::OrOutOfMemory([&] { return Encoded(still, tier); });
+    auto frame = base::Guarded([&] { return Encoded(still, tier); });
     if (!frame.ok()) {
       base::LogError(base::Annotate(frame.status(), "making a still of higher quality"));
       return session->hub().NoStills(still.sequence);

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
@@ -184,7 +184,7 @@ void TruthTracer::Run() {
     if (stopping_) return;
     last_served_ = job->owner;
     lock.unlock();
-    auto turn = base::OrOutOfMemory([&] { return job->Refine(*memory_); });
+    auto turn = base::Guarded([&] { return job->Refine(*memory_); });
     if (turn.ok()) {
       Keep(*job, std::move(turn->found), turn->ended);
     } else {

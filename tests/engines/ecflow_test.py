@@ -3,7 +3,6 @@
 import os
 import pathlib
 import re
-import time
 import unittest
 
 from engine_test import PROGRAM, ROOT, EngineTest, free_port, need, run
@@ -94,13 +93,18 @@ class Ecflow(EngineTest):
         bad.write_text("no storm")
         # A mistake of its own for each share.
         wrong = {0: (64, "FLAGS", "--size none"), 1: (65, "STORM", str(bad)), 2: (78, "FLAGS", "--size 16x9 --device 99")}
-        self.begin({share: f"edit {name} '{value}'" for share, (_, name, value) in wrong.items()})
+        # Share 3 waits until it is resumed, and fails with 75 at every try.
+        lines = {share: f"edit {name} '{value}'" for share, (_, name, value) in wrong.items()}
+        self.begin({**lines, 3: f"edit STORM '{self.folder}/none'\n      defstatus suspended"})
         for share, (code, _, _) in wrong.items():
             draw = f"/thunderhead/shares/{share}/draw"
             self.wait_for("an aborted task", lambda: self.state(draw) == "aborted")
-            self.wait_for(f"the reason {code}", lambda: f"thunderhead ended with {code}" in self.node(draw), 20)
-        # Long enough for another try to have failed as well.
-        time.sleep(10)
+            self.wait_for(f"the reason {code}", lambda: f"thunderhead ended with {code}" in self.node(draw))
+        # The server begins the second and third try of a task that failed later.
+        later = "/thunderhead/shares/3/draw"
+        self.assertEqual(self.state(later), "queued")
+        self.client("--resume=/thunderhead/shares/3")
+        self.wait_for("the last try of a share", lambda: self.state(later) == "aborted" and "try:3 " in self.node(later))
         for share in wrong:
             self.assertIn("try:1 ", self.node(f"/thunderhead/shares/{share}/draw"), share)
 
@@ -110,7 +114,7 @@ class Ecflow(EngineTest):
         self.wait_for("a running task", lambda: self.state(draw) == "active")
         self.client("--alter=change", "variable", "ECF_TRIES", "1", "/thunderhead")
         self.client("--kill=/thunderhead/shares/0/draw")
-        self.wait_for("an aborted task", lambda: self.state(draw) == "aborted", 60)
+        self.wait_for("an aborted task", lambda: self.state(draw) == "aborted")
         self.assertIn("stopped by a signal", self.node(draw))
 
 

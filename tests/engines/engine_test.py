@@ -47,7 +47,7 @@ def free_port() -> int:
 
 def run(*command: object, check: bool = True, **more: object) -> str:
     """The command's standard output; its failure fails the test, with all it said."""
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=300, **more)
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=600, **more)
     if check and done.returncode != 0:
         raise AssertionError(f"{command} ended with {done.returncode}:\n{done.stdout}\n{done.stderr}")
     return done.stdout
@@ -87,7 +87,7 @@ class EngineTest(unittest.TestCase):
         def end() -> None:
             process.terminate()
             try:
-                process.wait(20)
+                process.wait(60)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
@@ -104,7 +104,7 @@ class EngineTest(unittest.TestCase):
                 texts.append(f"--- {file}\n{text[-3000:]}")
         return "\n".join(texts)
 
-    def wait_for(self, what: str, condition, seconds: float = 240.0):
+    def wait_for(self, what: str, condition, seconds: float = 600.0):
         """What `condition` gives once that is true; fails with all logs otherwise."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:

@@ -29,7 +29,7 @@ def objects(name: str) -> list[dict]:
 
 def published_errors(things: list[dict]) -> list[list[str]]:
     """What is wrong with each by the schemas that the API publishes."""
-    done = subprocess.run(["node", VALIDATE], input=json.dumps(things), capture_output=True, text=True, timeout=120)
+    done = subprocess.run(["node", VALIDATE], input=json.dumps(things), capture_output=True, text=True, timeout=6000)
     if done.returncode != 0:
         raise AssertionError(done.stderr)
     return json.loads(done.stdout)
@@ -113,7 +113,7 @@ class Kubernetes(unittest.TestCase):
         arguments = objects("sequence.yaml")[0]["spec"]["template"]["spec"]["containers"][0]["args"]
         arguments = [part.replace("/views/", f"{ROOT}/deploy/views/") for part in arguments]
         # As the pod calls it, where there is no such storm: 75 counts as a try. A flag that does not exist would be 64.
-        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60,
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                               env={"JOB_COMPLETION_INDEX": "1", "JOB_COMPLETIONS": "4"})
         self.assertEqual(done.returncode, 75, done.stderr)
         self.assertIn("/data/run42", done.stderr)

@@ -72,7 +72,7 @@ SchedulerParameters=sched_interval=1,bf_interval=1
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SlurmdParameters=config_overrides
-KillWait=5
+KillWait=600
 MinJobAge=300
 NodeName={self.node} NodeAddr=127.0.0.1 CPUs=4 State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
@@ -107,12 +107,41 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
                 return int(process.name)
         return None
 
+    def hold(self, task: int) -> pathlib.Path:
+        """Lets a task of the array block at its second product, which is a pipe, until that is removed or opened."""
+        minutes = 10 * (task + 4 + 1)
+        pipe = self.products / f"run42_{minutes // 60:02d}{minutes % 60:02d}.png.partial"
+        os.mkfifo(pipe)
+        return pipe
+
+    def is_interrupted(self, process: int) -> bool:
+        """Whether the program has taken a signal as its request to stop (server/app/interruption.cc)."""
+        for name in pathlib.Path(f"/proc/{process}/task").glob("*/comm"):
+            try:
+                if name.read_text() == "interrupted\n":
+                    return True
+            except OSError:
+                pass  # The thread has ended.
+        return False
+
+    def runs(self, process: int) -> bool:
+        return pathlib.Path(f"/proc/{process}").exists()
+
     def test_an_array_with_a_killed_and_a_requeued_task_makes_every_product_once(self) -> None:
+        self.products.mkdir()
+        to_kill, to_requeue = self.hold(2), self.hold(1)
         job = self.submit("--array=0-3")
         movie = self.submit(f"--dependency=afterok:{job}", more=("--movie", f"{self.products}/{{storm}}.webm"))
-        os.kill(self.wait_for("a picture of task 2", lambda: self.program_of(job, 2)), signal.SIGKILL)
-        self.wait_for("a picture of task 1", lambda: self.program_of(job, 1))
+        killed = self.wait_for("a picture of task 2", lambda: self.program_of(job, 2))
+        to_kill.unlink()
+        os.kill(killed, signal.SIGKILL)
+        requeued = self.wait_for("a picture of task 1", lambda: self.program_of(job, 1))
         self.slurm("scontrol", "requeue", f"{job}_1")
+        self.wait_for("the signal to task 1", lambda: not self.runs(requeued) or self.is_interrupted(requeued))
+        # Opened at both ends, so that the program's calls return, with an error of the last.
+        with open(to_requeue, "r+b", buffering=0):
+            to_requeue.unlink()
+            self.wait_for("the end of task 1", lambda: not self.runs(requeued))
         before = {entry["file"]: entry["sha256"] for entry in self.entries()}
         self.assertLess(len(before), self.times, "all was drawn before anything could be killed")
         self.wait_for("the array's end", lambda: self.state(job) == {"COMPLETED"})

@@ -17,7 +17,7 @@ EXPOSURE = 8
 
 
 def analyze(*arguments: object) -> subprocess.CompletedProcess:
-    return subprocess.run(["systemd-analyze", *map(str, arguments)], capture_output=True, text=True, timeout=120)
+    return subprocess.run(["systemd-analyze", *map(str, arguments)], capture_output=True, text=True, timeout=6000)
 
 
 class Systemd(unittest.TestCase):
@@ -58,7 +58,7 @@ class Systemd(unittest.TestCase):
         self.assertRegex(users, rf"(?m)^u {settings['User']} ")
         if shutil.which("systemd-sysusers"):
             done = subprocess.run(["systemd-sysusers", "--dry-run", "--inline", *[line for line in users.splitlines() if line[0] != "#"]],
-                                  capture_output=True, text=True, timeout=60)
+                                  capture_output=True, text=True, timeout=600)
             self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_the_program_knows_the_flags(self) -> None:
@@ -69,7 +69,7 @@ class Systemd(unittest.TestCase):
         # systemd splits $FLAGS at blanks, and leaves the rest as it is.
         arguments = [part for word in words for part in (settings["FLAGS"].split() if word == "$FLAGS" else [word])]
         arguments = [part.replace("/usr/local/share/thunderhead/views", str(ROOT / "deploy/views")) for part in arguments]
-        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=60, cwd=self.unit.parent)
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600, cwd=self.unit.parent)
         # The folder is not there, which may change; a bad flag would be 64.
         self.assertEqual(done.returncode, 75, done.stderr)
         self.assertIn("there is no such folder", done.stderr)

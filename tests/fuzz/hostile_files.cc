@@ -22,7 +22,7 @@
 #include <string>
 
 #include "absl/strings/match.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "sandbox/confinement.h"
 #include "spdlog/spdlog.h"
@@ -282,7 +282,7 @@ int OutcomeOf(const std::string& path, const std::string& bytes) {
     NoteSignals();
     volume::NetcdfFile::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
     if (!sandbox::Confine({kMemory, 10}).ok()) _exit(kNotConfined);
-    const absl::Status status = base::OrOutOfMemory([&] { return ReadStorm(path); });
+    const absl::Status status = base::Guarded([&] { return ReadStorm(path); });
     const std::string message(status.message());
     if (status.ok()) _exit(kRead);
     if (std::getenv("HOSTILE_VERBOSE") != nullptr) std::fprintf(stderr, "%s\n", message.c_str());

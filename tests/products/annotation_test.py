@@ -3,12 +3,11 @@
 import json
 import os
 import pathlib
-import socket
+import re
 import subprocess
-import time
 import unittest
 
-from product_test import PROGRAM, SAMPLE, ProductTest, run, write_wrf
+from product_test import PROGRAM, SAMPLE, ProductTest, run, wait_for, write_wrf
 
 import numpy
 from PIL import Image
@@ -108,23 +107,17 @@ class AnnotationTest(ProductTest):
             self.assertEqual(product.with_suffix(".pgw").read_text(), other.with_suffix(".pgw").read_text())
 
     def serve(self, storms: pathlib.Path) -> str:
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        log = open(self.folder / "server.log", "wb")
-        self.addCleanup(log.close)
-        server = subprocess.Popen(
-            [PROGRAM, "serve", "--data", str(storms), "--grpc", f"127.0.0.1:{port}", "--http", "127.0.0.1:0", "--device", "software"],
-            stdout=log, stderr=log, env={**os.environ, "STATE_DIRECTORY": str(self.folder / "state")})
+        log = self.folder / "server.log"
+        with open(log, "wb") as output:
+            server = subprocess.Popen(
+                [PROGRAM, "serve", "--data", str(storms), "--grpc", "127.0.0.1:0", "--http", "127.0.0.1:0", "--device", "software"],
+                stdout=output, stderr=output, env={**os.environ, "STATE_DIRECTORY": str(self.folder / "state")})
         self.addCleanup(server.wait)
         self.addCleanup(server.terminate)
-        for _ in range(600):
-            with socket.socket() as probe:
-                if probe.connect_ex(("127.0.0.1", port)) == 0:
-                    return f"127.0.0.1:{port}"
-            self.assertIsNone(server.poll(), (self.folder / "server.log").read_text())
-            time.sleep(0.1)
-        raise AssertionError("the server does not listen")
+        wait_for("the server", lambda: "is ready" in log.read_text() or server.poll() is not None)
+        ready = re.search(r"\(gRPC ([0-9.:]+)\)", log.read_text())
+        self.assertIsNotNone(ready, log.read_text())
+        return ready[1]
 
 
 if __name__ == "__main__":

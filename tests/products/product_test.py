@@ -7,7 +7,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
+from collections.abc import Callable
 
 # ctest counts a test that ends with this as skipped.
 SKIPPED = 77
@@ -28,6 +30,8 @@ import numpy  # noqa: E402
 
 # WRF's sphere, in degrees and as its grids are.
 DEGREES = "+proj=longlat +R=6370000 +no_defs"
+# Longest wait before a test counts as hung. It is no requirement on speed.
+HANG_LIMIT_S = 600.0
 CELLS = 40
 SPACING_M = 3000.0
 LEVELS = 10
@@ -39,10 +43,19 @@ TIMES = ["2013-05-20_20:00:00", "2013-05-20_20:10:00"]
 
 def run(*command: object, code: int = 0, text: str | None = None, **more: object) -> subprocess.CompletedProcess:
     """Runs it; another exit code than `code` fails the test with all it said."""
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, input=text, timeout=300, **more)
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, input=text, timeout=HANG_LIMIT_S, **more)
     if done.returncode != code:
         raise AssertionError(f"{command} ended with {done.returncode}, not {code}:\n{done.stdout}\n{done.stderr}")
     return done
+
+
+def wait_for(what: str, condition: Callable[[], object]) -> None:
+    """Waits until the condition is true; fails the test if it never is."""
+    end = time.monotonic() + HANG_LIMIT_S
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError(f"{what} did not come within {HANG_LIMIT_S:.0f} s")
+        time.sleep(0.02)
 
 
 def transform(points: list[tuple[float, float]], *options: object) -> list[tuple[float, float]]:

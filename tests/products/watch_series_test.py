@@ -8,16 +8,19 @@ import pathlib
 import shutil
 import subprocess
 import threading
-import time
 import unittest
 
-from product_test import PROGRAM, ROOT, ProductTest, run
+from product_test import HANG_LIMIT_S, PROGRAM, ROOT, ProductTest, run, wait_for
 
 # Twelve files of one run, beside the repository.
 SERIES = ROOT.parent / "shared/data/supercell-series"
 # So many products are there when it is killed.
 KILLED_AT = (1, 8, 17)
 PIECES = 5
+# This file comes cut short at first.
+CUT = 4
+# After this one the third is copied once more.
+AGAIN_AFTER = 6
 
 
 def sha256(file: pathlib.Path) -> str:
@@ -41,7 +44,7 @@ class WatchSeriesTest(ProductTest):
         ]
 
     def copy(self, file: pathlib.Path, share: float = 1.0) -> None:
-        """In pieces, as over a slow link; in place of what is there."""
+        """Writes the file, or its first part, in pieces and in place of what is there."""
         data = file.read_bytes()
         data = data[: int(share * len(data))]
         step = len(data) // PIECES + 1
@@ -49,17 +52,23 @@ class WatchSeriesTest(ProductTest):
             for at in range(0, len(data), step):
                 to.write(data[at : at + step])
                 to.flush()
-                time.sleep(0.2)
+
+    def is_found_cut(self, file: pathlib.Path) -> bool:
+        return f"waits until it changes: {self.inbox / file.name}" in self.log.read_text()
 
     def model(self) -> None:
         """What comes into the folder, and when."""
+        cut = self.files[CUT]
         for number, file in enumerate(self.files):
-            # The fifth comes cut short; whole only after the last.
-            self.copy(file, 0.6 if number == 4 else 1.0)
-            if number == 6:
+            self.copy(file, 0.6 if file == cut else 1.0)
+            if file == cut:
+                wait_for("a look at the file that is cut short", lambda: self.is_found_cut(cut))
+            if number == AGAIN_AFTER:
+                wait_for("pictures of the third file", lambda: len(list(self.products.glob("run42_0030_*.png"))) == 2)
                 self.copy(self.files[2])
-        time.sleep(5)
-        self.copy(self.files[4])
+        # Whole only after all others are drawn.
+        wait_for("pictures of the other files", lambda: self.pictures() == 2 * len(self.files) - 2)
+        self.copy(cut)
 
     def pictures(self) -> int:
         return len(list(self.products.glob("*.png")))
@@ -69,23 +78,23 @@ class WatchSeriesTest(ProductTest):
             return subprocess.Popen([str(part) for part in self.command], stdout=log, stderr=errors)
 
     def test_files_as_they_come_in_life(self) -> None:
+        self.log.touch()
         model = threading.Thread(target=self.model)
         model.start()
         self.addCleanup(model.join)
         for count in KILLED_AT:
             program = self.watch()
-            while self.pictures() < count:
-                self.assertIsNone(program.poll(), (self.folder / "errors").read_text())
-                time.sleep(0.02)
+            wait_for(f"{count} pictures", lambda: self.pictures() >= count or program.poll() is not None)
+            self.assertIsNone(program.poll(), (self.folder / "errors").read_text())
             program.kill()
             program.wait()
         program = self.watch()
-        self.assertEqual(program.wait(500), 0, (self.folder / "errors").read_text())
+        self.assertEqual(program.wait(HANG_LIMIT_S), 0, (self.folder / "errors").read_text())
         self.check()
         # The same again draws nothing.
         before = self.log.read_text().count('"event":"drawn"')
         program = self.watch()
-        self.assertEqual(program.wait(300), 0)
+        self.assertEqual(program.wait(HANG_LIMIT_S), 0)
         self.assertEqual(self.log.read_text().count('"event":"drawn"'), before)
         self.check()
 

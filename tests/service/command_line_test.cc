@@ -3,8 +3,8 @@
 #include <sys/wait.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -19,7 +19,11 @@
 #include "google/protobuf/struct.pb.h"
 #include "google/protobuf/util/json_util.h"
 #include "gtest/gtest.h"
+#include "tests/service/hanging_storage.h"
+#include "tests/service/running_program.h"
+#include "tests/service/terminal.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::testing {
@@ -29,6 +33,7 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::MatchesRegex;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 const std::string kSample = std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc";
@@ -276,15 +281,22 @@ TEST_F(CommandLineTest, QualityFastAndBalancedDoNotWait) {
 }
 
 TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
-  const auto begun_at = std::chrono::steady_clock::now();
-  const Outcome outcome = Shell(std::string(PROGRAM) + " " + render_ +
-                                " --time 1 --size 48x27 --quality true & render=$!; sleep 3; "
-                                "kill -TERM $render; wait $render");
-  EXPECT_EQ(outcome.code, 75);
-  EXPECT_EQ(outcome.err, "thunderhead: interrupted: no picture was written\n");
+  Terminal terminal;
+  const std::string out = folder_.File("out");
+  RunningProgram program(PROGRAM,
+                         {"render", kSample, "--device", "software", "--error-seconds", "0", "-o",
+                          picture_, "--time", "1", "--size", "48x27", "--quality", "true"},
+                         out, terminal.Name());
+  // The bar tells of traced light: it is being waited for.
+  WaitFor([&] {
+    return terminal.Shown().find(" million paths") != std::string::npos || !program.Runs();
+  });
+  program.Signal(SIGTERM);
+  EXPECT_EQ(program.Wait().code, 75);
+  EXPECT_THAT(terminal.Shown(), HasSubstr("thunderhead: interrupted: no picture was written\r\n"));
   // A million paths are some 300 pictures to draw and trace, whatever the machine.
-  EXPECT_LT(std::chrono::steady_clock::now() - begun_at, std::chrono::seconds(10)) << "waited";
-  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(terminal.Shown(), Not(HasSubstr("100 %"))) << "waited";
+  EXPECT_THAT(Contents(out), IsEmpty());
   EXPECT_FALSE(std::filesystem::exists(picture_));
 }
 
@@ -425,13 +437,21 @@ TEST_F(CommandLineTest, ExportNamesWhatIsWrong) {
 }
 
 TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
+  if (!kHasHangingStorage) GTEST_SKIP() << "a sanitizer must be the program's first library";
   const std::string vdb = folder_.File("storm.vdb");
-  const Outcome outcome =
-      Shell(std::string(PROGRAM) + " export " + kSample + " --detail -o " + vdb +
-            " & export=$!; while ! [ -e " + vdb +
-            ".partial ]; do sleep 0.01; done; kill -TERM $export; wait $export");
-  EXPECT_EQ(outcome.code, 75);
-  EXPECT_EQ(outcome.err, "thunderhead: interrupted: no file was written\n");
+  const std::string partial = vdb + ".partial";
+  const std::string out = folder_.File("out");
+  const std::string err = folder_.File("err");
+  // Held when it begins to write, until it has taken the signal.
+  HangAt(partial);
+  const HangingStorage hanging;
+  RunningProgram program(PROGRAM, {"export", kSample, "--detail", "-o", vdb}, out, err);
+  WaitFor([&] { return Hangs(partial) || !program.Runs(); });
+  program.Signal(SIGTERM);
+  EXPECT_TRUE(WaitFor([&] { return program.IsInterrupted() || !program.Runs(); }));
+  HangNoLonger(partial);
+  EXPECT_EQ(program.Wait().code, 75);
+  EXPECT_EQ(Contents(err), "thunderhead: interrupted: no file was written\n");
   EXPECT_FALSE(std::filesystem::exists(vdb));
   EXPECT_FALSE(std::filesystem::exists(vdb + ".partial"));
 }

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "base/error_details.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "gl/context.h"
 #include "gl/device_faults.h"
 #include "gl/objects.h"
@@ -61,7 +61,7 @@ TEST(DeviceMemoryTest, WhatIsUnusedGoesFirstAndThenTheObjectIsRefused) {
   std::vector<Texture2D> used;
   for (int i = 0; i < 3; ++i) used.push_back(MakeTexture());
   EXPECT_TRUE(unused.empty());
-  const absl::Status refused = base::OrOutOfMemory([&]() -> absl::Status {
+  const absl::Status refused = base::Guarded([&]() -> absl::Status {
     used.push_back(MakeTexture());
     return absl::OkStatus();
   });

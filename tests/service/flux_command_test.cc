@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <numbers>
@@ -15,8 +16,11 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "tests/service/running_program.h"
+#include "tests/service/terminal.h"
 #include "tests/support/synthetic_cf.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -287,20 +291,21 @@ TEST_F(FluxCommand, SaysWhatIsWrong) {
   }
 }
 
-// Ctrl-C prints the result so far, marked as incomplete. It comes after some seconds, so that
-// tracing has begun even on a busy machine.
+// Ctrl-C prints the result so far, marked as incomplete.
 TEST_F(FluxCommand, InterruptedRunsReportWhatTheyHave) {
-  // Three signals are one request, because coreutils' timeout sends its signal twice, and terminals
-  // signal a whole process group.
-  const int status = std::system((std::string(PROGRAM) +
-                                  " flux --slab 1 --phase hg:0.5 --photons 1000000000000 --json >" +
-                                  folder_.File("out") +
-                                  " 2>/dev/null & p=$!; sleep 3;"
-                                  " kill -INT $p; kill -TERM $p; kill -INT $p; wait $p")
-                                     .c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 0);
+  Terminal terminal;
+  const std::string out = folder_.File("out");
+  RunningProgram program(
+      PROGRAM, {"flux", "--slab", "1", "--phase", "hg:0.5", "--photons", "1000000000000", "--json"},
+      out, terminal.Name());
+  // The bar has a share once photons have been traced.
+  WaitFor([&] { return terminal.Shown().find(" %") != std::string::npos || !program.Runs(); });
+  // Several signals at once are one request, because coreutils' timeout sends its signal twice, and
+  // terminals signal a whole process group. The program is stopped until all have arrived.
+  for (const int signal : {SIGSTOP, SIGINT, SIGTERM, SIGINT, SIGCONT}) program.Signal(signal);
+  EXPECT_EQ(program.Wait().code, 0) << terminal.Shown();
   std::ostringstream text;
-  text << std::ifstream(folder_.File("out")).rdbuf();
+  text << std::ifstream(out).rdbuf();
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(text.str(), &json_).ok());
   EXPECT_FALSE(json_.fields().at("complete").bool_value());
   EXPECT_GT(json_.fields().at("photons").number_value(), 0.0);

@@ -1,24 +1,59 @@
-// A library for LD_PRELOAD that makes a storage hang: opening a file waits for ever while there is
-// another one beside it whose name ends with ".hangs". Where that is beside a folder, so does all
-// that is done to what is in it, also to files that are open. What is in a folder beside which
-// there is a file whose name ends with ".mounted" is on another device.
+// A library for LD_PRELOAD that makes a storage hang. Opening FILE blocks while a file FILE.hangs
+// exists. FOLDER.hangs blocks every operation on what is in the folder, also on open files. A
+// blocked call creates FILE.hung or FOLDER.hung, so that a test knows of it, and continues once
+// that is removed. The contents of a folder are on another device if FOLDER.mounted exists.
+//
+// The library also controls the program's monotonic clock if THUNDERHEAD_TEST_CLOCK names a file,
+// so that a slow machine is never mistaken for a storage that hangs. The clock then runs at a tenth
+// of the real speed, and is ahead by the file's number of nanoseconds (int64_t). A test may raise
+// that.
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <linux/futex.h>
+#include <pthread.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <bits/atomic_futex.h>
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <string>
 
 namespace {
 
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+// How long a wait may take to notice that the test has moved the clock.
+constexpr std::int64_t kLookAgain_ns = 10'000'000;
+constexpr std::int64_t kSlowness = 10;  // of a clock that a test controls
+
+timespec TimespecOf(std::int64_t ns) { return {ns / kSecond_ns, ns % kSecond_ns}; }
+
+std::int64_t NanosecondsOf(const timespec& time) {
+  return std::int64_t{time.tv_sec} * kSecond_ns + time.tv_nsec;
+}
+
 void HangIfTold(const char* path) {
   if (path == nullptr) return;
   for (std::string at = path; at.size() > 1; at.resize(at.rfind('/'))) {
-    if (access((at + ".hangs").c_str(), F_OK) == 0) {
-      while (true) pause();
+    const std::string mark = at + ".hangs";
+    if (access(mark.c_str(), F_OK) == 0) {
+      const std::string hung = at + ".hung";
+      const auto file = syscall(SYS_openat, AT_FDCWD, hung.c_str(), O_WRONLY | O_CREAT, 0600);
+      if (file >= 0) close(static_cast<int>(file));
+      const timespec pause = TimespecOf(kLookAgain_ns);
+      while (access(mark.c_str(), F_OK) == 0 && (file < 0 || access(hung.c_str(), F_OK) == 0)) {
+        nanosleep(&pause, nullptr);
+      }
     }
     if (at.find('/') == std::string::npos) return;
   }
@@ -46,10 +81,91 @@ Function* Real(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
+class Clock {
+ public:
+  static const Clock& Get() {
+    static const Clock clock;
+    return clock;
+  }
+
+  static std::int64_t Real_ns() {
+    static auto* const real = Real<int(clockid_t, timespec*)>("clock_gettime");
+    timespec now{};
+    real(CLOCK_MONOTONIC, &now);
+    return NanosecondsOf(now);
+  }
+
+  std::int64_t Now_ns() const {
+    if (ahead_ns_ == nullptr) return Real_ns();
+    return start_ns_ + (Real_ns() - start_ns_) / kSlowness + ahead_ns_->load();
+  }
+
+  // How long a wait until `deadline_ns` may block before it must read the clock again.
+  std::int64_t Slice_ns(std::int64_t deadline_ns) const {
+    return std::clamp<std::int64_t>(deadline_ns - Now_ns(), 0, kLookAgain_ns);
+  }
+
+ private:
+  Clock() {
+    const char* const path = std::getenv("THUNDERHEAD_TEST_CLOCK");
+    if (path == nullptr) return;
+    const auto file = static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, O_RDONLY | O_CLOEXEC));
+    if (file < 0) return;
+    void* const mapped = mmap(nullptr, sizeof(*ahead_ns_), PROT_READ, MAP_SHARED, file, 0);
+    if (mapped != MAP_FAILED) ahead_ns_ = static_cast<const std::atomic<std::int64_t>*>(mapped);
+    close(file);
+  }
+
+  const std::int64_t start_ns_ = Real_ns();
+  const std::atomic<std::int64_t>* ahead_ns_ = nullptr;
+};
+
 }  // namespace
+
+// NOLINTBEGIN: the names of libstdc++, which waits for futures by this function
+namespace std {
+
+// Returns false if the time has come. A true may be spurious; its caller looks again.
+bool __atomic_futex_unsigned_base::_M_futex_wait_until_steady(unsigned* address, unsigned value,
+                                                              bool has_timeout,
+                                                              chrono::seconds seconds,
+                                                              chrono::nanoseconds nanoseconds) {
+  const Clock& clock = Clock::Get();
+  const int64_t deadline_ns = chrono::nanoseconds(seconds).count() + nanoseconds.count();
+  if (has_timeout && clock.Now_ns() >= deadline_ns) return false;
+  const timespec slice = TimespecOf(has_timeout ? clock.Slice_ns(deadline_ns) : kLookAgain_ns);
+  syscall(SYS_futex, address, FUTEX_WAIT_PRIVATE, value, &slice, nullptr, 0);
+  return true;
+}
+
+}  // namespace std
+// NOLINTEND
 
 // NOLINTBEGIN: the C library's own names
 extern "C" {
+
+int clock_gettime(clockid_t clock, timespec* time) noexcept {
+  if (clock != CLOCK_MONOTONIC) {
+    static auto* const real = Real<int(clockid_t, timespec*)>("clock_gettime");
+    return real(clock, time);
+  }
+  *time = TimespecOf(Clock::Get().Now_ns());
+  return 0;
+}
+
+// Wakes up spuriously, so that its caller reads the clock again.
+int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock,
+                           const timespec* deadline) {
+  static auto* const real =
+      Real<int(pthread_cond_t*, pthread_mutex_t*, clockid_t, const timespec*)>(
+          "pthread_cond_clockwait");
+  if (clock != CLOCK_MONOTONIC) return real(condition, mutex, clock, deadline);
+  const std::int64_t slice_ns = Clock::Get().Slice_ns(NanosecondsOf(*deadline));
+  const timespec slice_end = TimespecOf(Clock::Real_ns() + slice_ns);
+  const int result = real(condition, mutex, clock, &slice_end);
+  if (result != ETIMEDOUT) return result;
+  return Clock::Get().Now_ns() >= NanosecondsOf(*deadline) ? ETIMEDOUT : 0;
+}
 
 FILE* fopen(const char* path, const char* mode) {
   HangIfTold(path);

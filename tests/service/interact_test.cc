@@ -476,8 +476,10 @@ TEST(InteractTest, ASecondPresenterTakesOverFromOneWhoStaysAway) {
 }
 
 TEST(InteractTest, EverybodyIsToldWhichTimesAreInMemory) {
-  Class group;
-  const auto told = [](Interacting& person, const std::vector<std::uint32_t>& times) {
+  RunningTime time;
+  Class group({}, Patient(time));
+  const auto told = [&](Interacting& person, const std::vector<std::uint32_t>& times) {
+    time.Advance(std::chrono::seconds(1));  // the server looks once a second
     return person.Await([&](const Interacting::Messages& messages) {
       return std::ranges::any_of(messages, [&](const Response& message) {
         return message.has_times_in_memory() && message.times_in_memory().storm_id() == "anvil" &&

@@ -1,19 +1,23 @@
 // The program itself, killed and started again: the same session for everybody who comes back.
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "store/sqlite.h"
 #include "tests/service/interacting.h"
 #include "tests/service/served_program.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -44,6 +48,18 @@ class KilledServerTest : public ::testing::Test {
  protected:
   std::unique_ptr<ServedProgram> Start() const {
     return std::make_unique<ServedProgram>(PROGRAM, kServedSample, state_);
+  }
+
+  // Returns whether the state folder has the session's scene of that revision, or a newer one, and
+  // its marks.
+  bool HasSavedMarks(std::uint64_t revision) const {
+    absl::StatusOr<store::Database> database = store::Database::Open(state_ + "/sessions.db");
+    if (!database.ok()) return false;
+    const absl::StatusOr<std::int64_t> sessions = database->Number(
+        absl::StrCat("SELECT count(*) FROM sessions JOIN marks ON session_id = id WHERE "
+                     "scene_revision >= ",
+                     revision, " AND owner_keys <> ''"));
+    return sessions.ok() && *sessions == 1;
   }
 
   const TemporaryFolder folder_;
@@ -83,8 +99,7 @@ TEST_F(KilledServerTest, EverybodyFindsTheSameSessionAgain) {
       marks = viewer->AwaitNewest(Response::kMarks).marks().SerializeAsString();
     }
     ASSERT_FALSE(marks.empty());
-    // Scenes and marks are on the disk after half a second.
-    std::this_thread::sleep_for(std::chrono::seconds(1));
+    ASSERT_TRUE(WaitFor([&] { return HasSavedMarks(revision); }));
     program->End(SIGKILL);
     EXPECT_EQ(presenter.End().error_code(), grpc::StatusCode::UNAVAILABLE);
   }

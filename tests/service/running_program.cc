@@ -5,7 +5,12 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <system_error>
 
+#include "absl/strings/str_cat.h"
 #include "base/status.h"
 
 namespace thunderhead::testing {
@@ -44,6 +49,19 @@ RunningProgram::~RunningProgram() {
 
 void RunningProgram::Signal(int signal) const {
   if (process_ >= 0) kill(process_, signal);
+}
+
+bool RunningProgram::IsInterrupted() const {
+  if (process_ < 0) return false;
+  std::error_code ended;
+  for (const auto& thread :
+       std::filesystem::directory_iterator(absl::StrCat("/proc/", process_, "/task"), ended)) {
+    std::string name;
+    if (std::getline(std::ifstream(thread.path() / "comm"), name) && name == "interrupted") {
+      return true;
+    }
+  }
+  return false;
 }
 
 bool RunningProgram::Runs() {

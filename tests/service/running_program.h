@@ -25,6 +25,9 @@ class RunningProgram {
   RunningProgram& operator=(const RunningProgram&) = delete;
 
   void Signal(int signal) const;
+  // Returns whether the program has taken a first signal as its request to stop, so that a second
+  // one ends it (server/app/interruption.h).
+  bool IsInterrupted() const;
   bool Runs();
   Ending Wait();
 

@@ -19,10 +19,13 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "pipeline/sha256.h"
+#include "tests/service/hanging_storage.h"
 #include "tests/service/product_folder.h"
 #include "tests/service/running_program.h"
 #include "tests/service/synthetic_run.h"
+#include "tests/service/terminal.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -203,10 +206,19 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
 }
 
 TEST_F(SequenceCommand, ASignalEndsItWithTryAgain) {
-  RunningProgram program(PROGRAM, Arguments("out"), out_, err_);
-  while (program.Runs() && Contents(out_).empty()) std::this_thread::sleep_for(milliseconds(5));
+  // Holds the second product if it is drawn, so that the run cannot end before the signal has come.
+  const std::string held = folder_.File("out/" + Products()[1]) + ".partial";
+  fs::create_directories(folder_.File("out"));
+  ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
+  RunningProgram program(PROGRAM, Arguments("out", {"--jobs", "1"}), out_, err_);
+  WaitFor([&] { return Drawn() > 0 || !program.Runs(); });
   program.Signal(SIGTERM);
+  EXPECT_TRUE(WaitFor([&] { return program.IsInterrupted() || !program.Runs(); }));
+  // Opened at both ends, so that the program's calls return, with an error of the last.
+  const int both = open(held.c_str(), O_RDWR | O_CLOEXEC);
   EXPECT_EQ(program.Wait().code, 75);
+  close(both);
+  fs::remove(held);
   EXPECT_THAT(Contents(err_), ContainsRegex("thunderhead: interrupted: [1-5] of 6 pictures"));
   const auto before = EntriesOf(folder_.File("out/manifest.jsonl"));
   EXPECT_GE(before.size(), 1U);
@@ -214,40 +226,6 @@ TEST_F(SequenceCommand, ASignalEndsItWithTryAgain) {
   EXPECT_EQ(Drawn(), 2 * kTimes - static_cast<int>(before.size()));
   ExpectFinished(folder_.File("out"), Products());
 }
-
-// A terminal for the program's standard error.
-class Terminal {
- public:
-  Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
-    grantpt(master_);
-    unlockpt(master_);
-    name_ = ptsname(master_);
-    // Held, so that what the program says stays after it.
-    slave_ = open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  }
-  ~Terminal() {
-    close(slave_);
-    close(master_);
-  }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
-
-  const std::string& Name() const { return name_; }
-  // All that it has shown until now.
-  const std::string& Shown() {
-    char part[4096];
-    for (ssize_t got = 0; (got = read(master_, part, sizeof(part))) > 0;) {
-      shown_.append(part, static_cast<std::size_t>(got));
-    }
-    return shown_;
-  }
-
- private:
-  const int master_;
-  int slave_ = -1;
-  std::string name_;
-  std::string shown_;
-};
 
 // A product that does not come to the disk, as on a file system that hangs: the bar on a terminal
 // says how far it is, a signal waits for it, and a second one does not.
@@ -258,15 +236,11 @@ TEST_F(SequenceCommand, ASecondSignalEndsWhatHangsAndATerminalShowsABar) {
   ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
   Terminal terminal;
   RunningProgram program(PROGRAM, Arguments("out"), out_, terminal.Name());
-  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (program.Runs() && std::chrono::steady_clock::now() < until &&
-         terminal.Shown().find("5 of 6") == std::string::npos) {
-    std::this_thread::sleep_for(milliseconds(20));
-  }
+  WaitFor([&] { return terminal.Shown().find("5 of 6") != std::string::npos || !program.Runs(); });
   EXPECT_THAT(terminal.Shown(), ContainsRegex("drawing \\[#+\\.+\\]  83 %  5 of 6"));
   EXPECT_EQ(Contents(out_), "") << "lines beside the bar";
   program.Signal(SIGTERM);
-  std::this_thread::sleep_for(milliseconds(400));
+  EXPECT_TRUE(WaitFor([&] { return program.IsInterrupted() || !program.Runs(); }));
   EXPECT_TRUE(program.Runs()) << "it hangs, but did not wait";
   program.Signal(SIGTERM);
   EXPECT_EQ(program.Wait().signal, SIGTERM);
@@ -319,9 +293,7 @@ TEST_F(SequenceCommand, TwoAtOnceDoNotMix) {
   const std::string stuck = folder_.File("out/" + Products()[0]) + ".partial";
   ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
   RunningProgram first(PROGRAM, Arguments("out"), out_, err_);
-  while (first.Runs() && !fs::exists(folder_.File("out/manifest.jsonl"))) {
-    std::this_thread::sleep_for(milliseconds(1));
-  }
+  WaitFor([&] { return fs::exists(folder_.File("out/manifest.jsonl")) || !first.Runs(); });
   const std::string other = folder_.File("other");
   RunningProgram second(PROGRAM, Arguments("out"), other, other);
   EXPECT_EQ(second.Wait().code, 75);
@@ -367,6 +339,7 @@ TEST_F(SequenceCommand, WhatIsWrongIsToldByItsExitCodeBeforeAnythingIsDrawn) {
 TEST_F(SequenceCommand, OneBadFileLeavesTheOthersAlone) {
   // Its description is sound; its fields are not.
   WriteRunFile(storms_, 2, 1.0, true);
+  KeepFresh(RunFile(storms_, 2));
   EXPECT_EQ(Run(Arguments("out", {"--times", "2"})).code, 75) << "just written: " << Contents(err_);
   LeaveAlone(RunFile(storms_, 2));
   const std::vector<std::string> arguments =
@@ -392,7 +365,9 @@ TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
   // Of a kind that is no storm's, as beside any run.
   std::ofstream(storms_ + "/README") << "no storm";
   // Alone as well as in its folder: it may still be being written, until it has rested.
+  KeepFresh(cut);
   EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", cut}, out_, err_).Wait().code, 75);
+  KeepFresh(cut);
   EXPECT_EQ(Run(Arguments("out")).code, 75);
   EXPECT_EQ(Drawn(), 2 * (kTimes - 1)) << Contents(err_);
   EXPECT_THAT(Contents(err_), HasSubstr(cut));
@@ -418,6 +393,7 @@ TEST_F(SequenceCommand, SharesThatSeeDifferentFilesLeaveNoTimeOut) {
   const std::string first = RunFile(storms_, 0);
   const std::string whole = Contents(first);
   std::ofstream(first, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  KeepFresh(first);
   EXPECT_EQ(Run(Arguments("out", {"--shard", "0/2"})).code, 75) << Contents(err_);
   EXPECT_EQ(Drawn(), 2) << "of the third file: " << Contents(out_);
   std::ofstream(first, std::ios::binary) << whole;
@@ -431,20 +407,27 @@ TEST_F(SequenceCommand, SharesThatSeeDifferentFilesLeaveNoTimeOut) {
 }
 
 TEST_F(SequenceCommand, AnInputThatChangesWhileItIsReadNeverMakesAPicture) {
+  if (!kHasHangingStorage) GTEST_SKIP() << "a sanitizer must be the program's first library";
   const std::string file = RunFile(storms_, 1);
   const std::string next = folder_.File("next");
   const std::string thin = Contents(file);
   WriteRunFile(storms_, 1, 5.0);
   const std::string dense = Contents(file);
   bool is_dense = true;
-  RunningProgram program(PROGRAM, Arguments("out"), out_, err_);
-  while (program.Runs()) {
+  // Another file takes the place of the input whenever the program is about to open it.
+  HangAt(file);
+  const auto program = [&] {
+    const HangingStorage hanging;
+    return std::make_unique<RunningProgram>(PROGRAM, Arguments("out"), out_, err_);
+  }();
+  while (WaitFor([&] { return Hangs(file) || !program->Runs(); }) && program->Runs()) {
     is_dense = !is_dense;
     std::ofstream(next, std::ios::binary) << (is_dense ? dense : thin);
     fs::rename(next, file);
-    std::this_thread::sleep_for(milliseconds(3));
+    Release(file);
   }
-  EXPECT_EQ(program.Wait().code, 75) << Contents(err_);
+  HangNoLonger(file);
+  EXPECT_EQ(program->Wait().code, 75) << Contents(err_);
   EXPECT_THAT(Contents(err_), HasSubstr("was written to while it was drawn; try again"));
   for (const auto& [name, entry] : EntriesOf(folder_.File("out/manifest.jsonl"))) {
     EXPECT_NE(entry.input.path, file) << name;

@@ -1,19 +1,18 @@
 // `thunderhead sequence --server` and `watch --server`: each product once, whoever is killed.
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <memory>
+#include <regex>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "pipeline/sha256.h"
@@ -22,35 +21,22 @@
 #include "tests/service/synthetic_run.h"
 #include "tests/support/self_signed.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::milliseconds;
-using std::chrono::steady_clock;
 using ::testing::HasSubstr;
 
 constexpr int kSequenceTimes = 5;
-constexpr std::chrono::seconds kLongest{60};
 
-// A port that nobody uses now.
-std::string FreePort() {
-  const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof(address);
-  bind(socket, reinterpret_cast<sockaddr*>(&address), size);
-  getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size);
-  close(socket);
-  return std::to_string(ntohs(address.sin_port));
-}
-
-bool EventuallyTrue(const std::function<bool()>& holds) {
-  const auto until = steady_clock::now() + kLongest;
-  while (!holds() && steady_clock::now() < until) std::this_thread::sleep_for(milliseconds(5));
-  return holds();
+// Returns a loopback address of this process alone, so that no other program takes a port of a
+// server that is started again.
+std::string OwnHost() {
+  const pid_t process = getpid();
+  return absl::StrCat("127.", 1 + (process >> 16 & 127), ".", process >> 8 & 255, ".",
+                      process & 255);
 }
 
 class ServerSequence : public ::testing::Test {
@@ -60,8 +46,15 @@ class ServerSequence : public ::testing::Test {
     for (int time = 0; time < kSequenceTimes; ++time) WriteRunFile(storms_, time);
   }
 
-  std::unique_ptr<RunningProgram> Serve(const std::vector<std::string>& more = {}) const {
+  // Starts the server, at `address_` if it had one before, and waits until it is ready. All files
+  // that are there count as complete.
+  std::unique_ptr<RunningProgram> Serve(const std::vector<std::string>& more = {}) {
     fs::remove(served_);
+    WaitFor([this] {
+      const std::string last = RunFile(storms_, kSequenceTimes - 1);
+      const auto age = fs::file_time_type::clock::now() - fs::last_write_time(last);
+      return age > std::chrono::milliseconds(200);
+    });
     std::vector<std::string> arguments = {"serve",
                                           "--data",
                                           storms_,
@@ -74,13 +67,18 @@ class ServerSequence : public ::testing::Test {
                                           "--state",
                                           folder_.File("state"),
                                           "--settle-seconds",
-                                          "0.5"};
+                                          "0.1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     auto server =
         std::make_unique<RunningProgram>(PROGRAM, arguments, served_, folder_.File("server.err"));
-    EXPECT_TRUE(EventuallyTrue([&] {
-      return Contents(served_).find("ready") != std::string::npos;
-    })) << Contents(folder_.File("server.err"));
+    std::smatch ready;
+    std::string said;
+    EXPECT_TRUE(WaitFor([&] {
+      said = Contents(served_);
+      return std::regex_search(said, ready, std::regex("\\(gRPC ([0-9.:]+)\\)")) || !server->Runs();
+    }));
+    EXPECT_FALSE(ready.empty()) << Contents(folder_.File("server.err"));
+    if (!ready.empty()) address_ = ready[1];
     return server;
   }
 
@@ -122,7 +120,7 @@ class ServerSequence : public ::testing::Test {
   const std::string out_ = folder_.File("products");
   const std::string served_ = folder_.File("served");
   std::string size_ = "320x180";
-  const std::string address_ = "127.0.0.1:" + FreePort();
+  std::string address_ = OwnHost() + ":0";
 };
 
 TEST_F(ServerSequence, MakesEveryProductAndLeavesNothingAtTheServer) {
@@ -139,7 +137,7 @@ TEST_F(ServerSequence, AClientThatIsKilledGoesOnWhereItWas) {
   const auto server = Serve();
   for (std::size_t made = 1; made < kSequenceTimes; made += 2) {
     const auto client = Start("sequence", "run");
-    ASSERT_TRUE(EventuallyTrue([&] { return Made() >= made || !client->Runs(); })) << Errors();
+    ASSERT_TRUE(WaitFor([&] { return Made() >= made || !client->Runs(); })) << Errors();
     client->Signal(SIGKILL);
     client->Wait();
   }
@@ -156,15 +154,20 @@ TEST_F(ServerSequence, AJobThatAKilledClientLeftIsForgottenThoughNothingIsMissin
   for (const std::string& product : Products()) {
     fs::rename(out_ + "/" + product, aside + "/" + product);
   }
+  // Holds the client at its first product, so that results are left at the server.
+  const std::string held = out_ + "/" + Products()[0] + ".partial";
+  ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
   const auto client = Start("sequence", "run");
-  ASSERT_TRUE(EventuallyTrue([&] { return Kept() >= 1; })) << Errors();
+  ASSERT_TRUE(WaitFor([&] { return Kept() >= 1 || !client->Runs(); }));
+  ASSERT_TRUE(client->Runs()) << Errors();
   client->Signal(SIGKILL);
   client->Wait();
+  fs::remove(held);
   for (const std::string& product : Products()) {
     if (fs::exists(out_ + "/" + product)) continue;
     fs::rename(aside + "/" + product, out_ + "/" + product);
   }
-  ASSERT_TRUE(EventuallyTrue([&] { return Kept() >= 1; }));
+  ASSERT_TRUE(WaitFor([&] { return Kept() >= 1; }));
   EXPECT_EQ(Start("sequence", "run")->Wait().code, 0) << Errors();
   EXPECT_EQ(Kept(), 0U);
 }
@@ -172,29 +175,39 @@ TEST_F(ServerSequence, AJobThatAKilledClientLeftIsForgottenThoughNothingIsMissin
 TEST_F(ServerSequence, AServerThatIsKilledIsWaitedForAndGoesOn) {
   auto server = Serve();
   const auto client = Start("sequence", "run");
-  ASSERT_TRUE(EventuallyTrue([&] { return Made() >= 1; })) << Errors();
+  ASSERT_TRUE(WaitFor([&] { return Made() >= 1 || !client->Runs(); })) << Errors();
   for (std::size_t made = 2; made <= 4; made += 2) {
     server->Signal(SIGKILL);
     server->Wait();
     server = Serve();
-    ASSERT_TRUE(EventuallyTrue([&] { return Made() >= made; })) << Errors();
+    ASSERT_TRUE(WaitFor([&] { return Made() >= made || !client->Runs(); })) << Errors();
   }
   EXPECT_EQ(client->Wait().code, 0) << Errors();
   ExpectFinished(out_, Products());
 }
 
 TEST_F(ServerSequence, SaysWhatItEndsFor) {
+  address_ = OwnHost() + ":1";
   EXPECT_EQ(Start("sequence", "run")->Wait().code, 75) << "no server";
   EXPECT_THAT(Errors(), HasSubstr(address_));
+  address_ = OwnHost() + ":0";
   const auto server = Serve();
   EXPECT_EQ(Start("sequence", "nowhere")->Wait().code, 75) << "not there yet";
   EXPECT_THAT(Errors(), HasSubstr("no storm has the id 'nowhere'"));
   EXPECT_EQ(Start("sequence", "run", {"--times", "99"})->Wait().code, 64);
-  size_ = "1920x1080";
+  // Holds the client at a product, so that it cannot end before the signal has come.
+  const std::string held = out_ + "/" + Products()[0] + ".partial";
+  fs::create_directories(out_);
+  ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
   const auto client = Start("sequence", "run");
-  ASSERT_TRUE(EventuallyTrue([&] { return Made() >= 1; })) << Errors();
+  ASSERT_TRUE(WaitFor([&] { return Kept() >= 1 || !client->Runs(); }));
   client->Signal(SIGTERM);
+  EXPECT_TRUE(WaitFor([&] { return client->IsInterrupted() || !client->Runs(); }));
+  // Opened at both ends, so that the client's calls return, with an error of the last.
+  const int both = open(held.c_str(), O_RDWR | O_CLOEXEC);
   EXPECT_EQ(client->Wait().code, 75) << Errors();
+  close(both);
+  fs::remove(held);
   EXPECT_THAT(Errors(), HasSubstr("the same command goes on"));
 }
 
@@ -213,6 +226,8 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
   const std::string key = folder_.File("key.pem");
   WriteSelfSigned(certificate, key, 1);
   fs::permissions(key, fs::perms::owner_read | fs::perms::owner_write);
+  // The certificate is of localhost.
+  address_ = "127.0.0.1:0";
   const auto server =
       Serve({"--auth", "tokens", tokens, "--tls-cert", certificate, "--tls-key", key});
   const std::string west = folder_.File("west.json");
@@ -272,8 +287,12 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
 TEST_F(ServerSequence, WatchesAStormAsItsTimesCome) {
   const auto server = Serve();
   const auto client = Start("watch", "run", {"--until", std::to_string(kSequenceTimes + 1)});
-  ASSERT_TRUE(EventuallyTrue([&] { return Made() >= kSequenceTimes; })) << Errors();
-  WriteRunFile(storms_, kSequenceTimes);
+  ASSERT_TRUE(WaitFor([&] { return Made() >= kSequenceTimes || !client->Runs(); })) << Errors();
+  // Comes whole.
+  const std::string aside = folder_.File("aside");
+  fs::create_directory(aside);
+  WriteRunFile(aside, kSequenceTimes);
+  fs::rename(RunFile(aside, kSequenceTimes), RunFile(storms_, kSequenceTimes));
   EXPECT_EQ(client->Wait().code, 0) << Errors();
   ExpectFinished(out_, Products(kSequenceTimes + 1));
 }

@@ -33,6 +33,11 @@ void WriteRunFile(const std::string& folder, int time, double density, bool torn
   WriteWrf(file, RunFile(folder, time));
 }
 
+void KeepFresh(const std::string& file) {
+  std::filesystem::last_write_time(
+      file, std::filesystem::file_time_type::clock::now() + std::chrono::minutes(1));
+}
+
 void LeaveAlone(const std::string& file) {
   std::filesystem::last_write_time(
       file, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <netcdf.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -21,16 +22,14 @@
 #include "tests/service/running_program.h"
 #include "tests/service/synthetic_run.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
 
 namespace thunderhead::testing {
 namespace {
 
 namespace fs = std::filesystem;
-using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-void Pause(int milliseconds_long) { std::this_thread::sleep_for(milliseconds(milliseconds_long)); }
 
 class WatchCommand : public ::testing::Test {
  protected:
@@ -62,23 +61,47 @@ class WatchCommand : public ::testing::Test {
   }
 
   static void Await(const std::function<bool()>& holds, RunningProgram& program) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!holds() && program.Runs() && std::chrono::steady_clock::now() < until) Pause(5);
+    WaitFor([&] { return holds() || !program.Runs(); });
     EXPECT_TRUE(holds());
+  }
+
+  // Lines that programs have written so far.
+  std::size_t Lines() const {
+    std::size_t lines = 0;
+    for (const std::string& file : {out_, err_}) {
+      const std::string text = Contents(file);
+      lines += static_cast<std::size_t>(std::ranges::count(text, '\n'));
+    }
+    return lines;
+  }
+
+  // How often programs have found the file not whole.
+  std::size_t Refusals(int time) const {
+    const std::string text = Contents(err_);
+    const std::string refusal = "until it changes: " + RunFile(inbox_, time);
+    std::size_t count = 0;
+    for (std::size_t at = text.find(refusal); at != std::string::npos;
+         at = text.find(refusal, at + 1)) {
+      ++count;
+    }
+    return count;
   }
 
   void Put(int time, const std::string& bytes) const {
     std::ofstream(RunFile(inbox_, time), std::ios::binary) << bytes;
   }
 
-  // Writes the file in pieces, as a slow copy does.
+  // Writes the file in pieces, as a slow copy does: each piece comes after a program has found the
+  // file not whole.
   void PutSlowly(int time, const std::string& bytes) const {
     std::ofstream file(RunFile(inbox_, time), std::ios::binary);
-    constexpr std::size_t kPieces = 5;
+    constexpr std::size_t kPieces = 4;
     const std::size_t piece = bytes.size() / kPieces + 1;
     for (std::size_t at = 0; at < bytes.size(); at += piece) {
+      const std::size_t refusals = Refusals(time);
       file << bytes.substr(at, piece) << std::flush;
-      Pause(60);
+      if (at + piece >= bytes.size()) return;
+      EXPECT_TRUE(WaitFor([&] { return Refusals(time) > refusals; }));
     }
   }
 
@@ -116,20 +139,23 @@ TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
     Put(0, bytes[0]);
     Put(2, bytes[2].substr(0, bytes[2].size() / 2));
     PutSlowly(3, bytes[3]);
-    Pause(1500);
+    // Until these three are drawn, in two views.
+    EXPECT_TRUE(
+        WaitFor([&] { return EntriesOf(folder_.File("out/manifest.jsonl")).size() >= 3 * 2; }));
     Put(1, bytes[1]);
     PutSlowly(2, bytes[2]);
     PutSlowly(4, bytes[4]);
   });
   const std::vector<std::string> arguments =
-      Arguments({"--ready", "age:0.4", "--until", std::to_string(kFiles), "files", "--movie",
+      Arguments({"--ready", "age:0.1", "--until", std::to_string(kFiles), "files", "--movie",
                  folder_.File("out/{storm}.webm")});
   std::mt19937 random(5);
-  std::uniform_int_distribution<int> moment(200, 2500);
-  std::string recorded;
+  std::uniform_int_distribution<std::size_t> moment(1, 5);
   for (int i = 0; i < kills; ++i) {
+    // Killed once it has written so many lines: on products drawn and files that are not whole.
+    const std::size_t lines = Lines() + moment(random);
     RunningProgram program(PROGRAM, arguments, out_, err_);
-    Pause(moment(random));
+    WaitFor([&] { return Lines() >= lines || !program.Runs(); });
     program.Signal(SIGKILL);
     program.Wait();
     ExpectWholePictures(folder_.File("out"));
@@ -192,14 +218,15 @@ TEST_F(WatchCommand, AFileThatItsWriterHoldsOpenIsNotReady) {
   LeaveAlone(RunFile(inbox_, 0));
   EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", RunFile(inbox_, 0)}, out_, err_).Wait().code, 75);
   EXPECT_THAT(Contents(err_), HasSubstr("another program is writing it"));
-  RunningProgram program(PROGRAM, Arguments({"--ready", "age:0", "--until", "1"}), out_, err_);
-  while (program.Runs() && !fs::exists(folder_.File("out/manifest.jsonl"))) Pause(5);
-  Pause(700);
-  EXPECT_EQ(EntriesOf(folder_.File("out/manifest.jsonl")).size(), 0U);
+  // A file that comes later is drawn, and with it this one would be.
+  Put(1, Bytes(1));
+  RunningProgram program(PROGRAM, Arguments({"--ready", "age:0", "--until", "2"}), out_, err_);
+  const auto entries = [&] { return EntriesOf(folder_.File("out/manifest.jsonl")); };
+  Await([&] { return entries().size() == 2; }, program);
+  for (const auto& [name, entry] : entries()) EXPECT_EQ(entry.input.path, RunFile(inbox_, 1));
   ASSERT_EQ(nc_close(writer), NC_NOERR);
-  Await([&] { return !program.Runs(); }, program);
   EXPECT_EQ(program.Wait().code, 0) << Contents(err_);
-  ExpectFinished(folder_.File("out"), Products(1));
+  ExpectFinished(folder_.File("out"), Products(2));
 }
 
 TEST_F(WatchCommand, AFileWaitsForTheNextOrForItsSize) {
@@ -228,10 +255,11 @@ TEST_F(WatchCommand, AFileWaitsForTheNextOrForItsSize) {
 
 // The clock was set back by an hour since the file was written, or is another machine's.
 TEST_F(WatchCommand, AFileFromTheFutureWaitsNoLongerThanItRests) {
-  Put(0, Bytes(0));
-  fs::last_write_time(RunFile(inbox_, 0), fs::file_time_type::clock::now() + std::chrono::hours(1));
+  const std::string bytes = Bytes(0);
   const auto begun = std::chrono::steady_clock::now();
-  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "open", "--until", "1", "file", In(30)}),
+  Put(0, bytes);
+  fs::last_write_time(RunFile(inbox_, 0), fs::file_time_type::clock::now() + std::chrono::hours(1));
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "open", "--until", "1", "file", In(600)}),
                            out_, err_)
                 .Wait()
                 .code,
@@ -245,7 +273,7 @@ TEST_F(WatchCommand, ABadFileCountsAndTheEndTellsOfIt) {
   Put(0, Bytes(0));
   WriteRunFile(inbox_, 1, 1.0, true);
   EXPECT_EQ(
-      RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", "2", "files", In(60)}),
+      RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", "2", "files", In(600)}),
                      out_, err_)
           .Wait()
           .code,
@@ -258,7 +286,7 @@ TEST_F(WatchCommand, ABadFileCountsAndTheEndTellsOfIt) {
 // A suite may move what is drawn to an archive, also while nobody watches.
 TEST_F(WatchCommand, FilesThatAreMovedAwayOnceDrawnStillCount) {
   const std::vector<std::string> arguments =
-      Arguments({"--ready", "age:0", "--until", "3", "files", In(120), "--movie",
+      Arguments({"--ready", "age:0", "--until", "3", "files", In(3600), "--movie",
                  folder_.File("out/{storm}.webm")});
   const auto archive = [&](int time) {
     fs::rename(RunFile(inbox_, time), folder_.File("archived" + std::to_string(time)));
@@ -291,7 +319,8 @@ TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
   const std::string cut = Bytes(1);
   Put(1, cut.substr(0, cut.size() / 2));
   std::ofstream(folder_.File("inbox/README")) << "no storm";
-  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", In(6)}), out_, err_)
+  // The program looks at the folder at least once, also if it starts after that time.
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", In(1)}), out_, err_)
                 .Wait()
                 .code,
             75);
@@ -302,7 +331,7 @@ TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
   EXPECT_THAT(Contents(err_), HasSubstr("1 files are not complete"));
   ExpectFinished(folder_.File("out"), Products(1));
   WriteRunFile(inbox_, 1, 1.0, true);
-  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", In(6)}), out_, err_)
+  EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", In(1)}), out_, err_)
                 .Wait()
                 .code,
             65);
@@ -312,12 +341,9 @@ TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
 
 TEST_F(WatchCommand, ASignalEndsItWhileItWaits) {
   RunningProgram program(PROGRAM, Arguments({}), out_, err_);
-  while (program.Runs() && !fs::exists(folder_.File("out/manifest.jsonl"))) Pause(5);
-  Pause(100);
-  const auto begun = std::chrono::steady_clock::now();
+  Await([&] { return fs::exists(folder_.File("out/manifest.jsonl")); }, program);
   program.Signal(SIGTERM);
   EXPECT_EQ(program.Wait().code, 75);
-  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10)) << "slept on";
   EXPECT_THAT(Contents(err_), HasSubstr("thunderhead: interrupted: the products of 0 files"));
 }
 

@@ -11,7 +11,7 @@
 
 #include "base/error_details.h"
 #include "base/machine_memory.h"
-#include "base/out_of_memory.h"
+#include "base/guarded.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
@@ -145,7 +145,7 @@ TEST(MemoryBudgetTest, WhoIsPatientGetsWhatOthersGiveBackWhenTheyAreAsked) {
 
 TEST(MemoryBudgetTest, ARefusalThrownIsWhatTheWorkReturns) {
   const auto budget = MemoryBudget::Make({.bytes = 1});
-  const absl::Status refused = OrOutOfMemory([&]() -> absl::Status {
+  const absl::Status refused = Guarded([&]() -> absl::Status {
     throw FailedAllocation(budget->Reserve(MemoryUse::kDrawing, 2, "it").status());
   });
   EXPECT_EQ(DetailsOf(refused).reason, "TOO_LARGE_FOR_MEMORY");
