@@ -120,6 +120,16 @@ class Clock {
   const std::atomic<std::int64_t>* ahead_ns_ = nullptr;
 };
 
+// Returns whether the code at `address` is gRPC's. That keeps the real clock: it would take every
+// client for gone that does not answer within a few seconds of a clock that is moved.
+bool IsInGrpc(const void* address) {
+  static void* const a_function = dlsym(RTLD_DEFAULT, "gpr_now");
+  Dl_info grpc{};
+  Dl_info caller{};
+  return a_function != nullptr && dladdr(a_function, &grpc) != 0 && dladdr(address, &caller) != 0 &&
+         grpc.dli_fbase == caller.dli_fbase;
+}
+
 }  // namespace
 
 // NOLINTBEGIN: the names of libstdc++, which waits for futures by this function
@@ -145,7 +155,7 @@ bool __atomic_futex_unsigned_base::_M_futex_wait_until_steady(unsigned* address,
 extern "C" {
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
-  if (clock != CLOCK_MONOTONIC) {
+  if (clock != CLOCK_MONOTONIC || IsInGrpc(__builtin_return_address(0))) {
     static auto* const real = Real<int(clockid_t, timespec*)>("clock_gettime");
     return real(clock, time);
   }
