@@ -17,14 +17,20 @@ class ManualTime : public base::TimeSource {
   // all the same, or they would take a processor.
   Clock::time_point LookAgainAt(Clock::time_point deadline) const override {
     const Clock::time_point real = Clock::now();
+    ++looks_;
     return Now() >= deadline ? real : real + std::chrono::milliseconds(2);
   }
 
   // Moves the time forward.
   void Advance(Clock::duration by) { now_ += by.count(); }
 
+  // Returns how often threads have found that it is not time yet. Where one thread waits, two more
+  // looks after an Advance tell that it goes on waiting.
+  int Looks() const { return looks_; }
+
  private:
   // It starts at the real time, so that it can be mixed with times that were taken before.
+  mutable std::atomic<int> looks_{0};
   std::atomic<Clock::rep> now_{Clock::now().time_since_epoch().count()};
 };
 

@@ -249,7 +249,7 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   storage_->Hang();
   auto far = GetFar(*store, 0);
   time_.Advance(kDeadline);
-  EXPECT_EQ(far.wait_for(milliseconds(0)), std::future_status::timeout);
+  EXPECT_FALSE(store->Hung().has_value());
   time_.Advance(milliseconds(1));
   const absl::Status late = far.get();
   EXPECT_TRUE(absl::IsDeadlineExceeded(late)) << late;
