@@ -32,7 +32,7 @@ struct ServeFlags {
   std::string page;
   std::string clouds;
   std::string state;
-  std::string roster_timeouts;  // for tests
+  std::string roster_timeouts;         // for tests
   std::uint64_t memory_bytes = 0;      // 0: a share of the machine's
   std::uint64_t gpu_memory_bytes = 0;  // 0: by what the driver tells
   double read_deadline_s = 60.0;

@@ -10,8 +10,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
-#include "base/log.h"
 #include "base/guarded.h"
+#include "base/log.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::base {

@@ -5,8 +5,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
-#include "base/log.h"
 #include "base/guarded.h"
+#include "base/log.h"
 #include "base/random_hex.h"
 #include "base/status.h"
 #include "jobs/next_try.h"

@@ -48,10 +48,10 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   auto* const answer = new Answer(context, engine.limits, caller, *response);
   const session::Rules rules = RulesOf(request->rules(), {});
   FrameThen(engine, caller->identity().name, scene, [=, &engine](const absl::Status& framed) {
-    const absl::Status opened = framed.ok() ? base::Guarded([&] {
-      return Open(engine, caller->identity().name, rules, *response);
-    })
-                                            : framed;
+    const absl::Status opened =
+        framed.ok()
+            ? base::Guarded([&] { return Open(engine, caller->identity().name, rules, *response); })
+            : framed;
     const auto finish = [caller, answer](const absl::Status& outcome) {
       caller->Report("CreateSession", outcome);
       answer->Give(outcome);

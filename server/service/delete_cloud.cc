@@ -39,8 +39,7 @@ grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContex
   auto* const answer = new Answer(context, engine.limits, caller, *response);
   engine.executor.Submit(caller->identity().name, [=, &engine](const absl::Status& status) {
     const absl::Status deleted =
-        status.ok() ? base::Guarded([&] { return Delete(engine, request->storm_id()); })
-                    : status;
+        status.ok() ? base::Guarded([&] { return Delete(engine, request->storm_id()); }) : status;
     caller->Report("DeleteCloud", deleted);
     answer->Give(deleted);
   });

@@ -84,8 +84,7 @@ class ResultStream final : public ResultReactor {
 
   void Next() {
     reading_.threads.Submit(caller_->identity().name, [this](const absl::Status& status) {
-      const absl::Status read =
-          status.ok() ? base::Guarded([this] { return Read(); }) : status;
+      const absl::Status read = status.ok() ? base::Guarded([this] { return Read(); }) : status;
       if (!read.ok()) return End(ToGrpcStatus(read));
       delivery_.Begin(response_.chunk().size());
       StartWrite(&response_);

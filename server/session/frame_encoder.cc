@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/log.h"
 #include "base/guarded.h"
+#include "base/log.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "frame/image_codec.h"

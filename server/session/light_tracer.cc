@@ -5,9 +5,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/guarded.h"
 #include "base/log.h"
 #include "base/memory_budget.h"
-#include "base/guarded.h"
 #include "base/status.h"
 #include "gl/device_faults.h"
 

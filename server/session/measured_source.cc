@@ -26,9 +26,8 @@ absl::StatusOr<DisplayFrame> MeasuredSource::Draw(const std::string& view,
                                                   const accuracy::Evidence& evidence) {
   last_drawn_.reset();
   const auto begun_at = time_.Now();
-  THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame frame, base::Guarded([&] {
-                                 return source_->Draw(scene, fields, quality);
-                               }));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      DisplayFrame frame, base::Guarded([&] { return source_->Draw(scene, fields, quality); }));
   last_drawn_ = LastDrawn{scene, quality, fields};
   Report(view, {scene, quality, base::MsSince(time_, begun_at), frame.stages}, evidence, &frame);
   return frame;
@@ -38,9 +37,8 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
                                                          const scene::Scene& scene,
                                                          const Fields& fields) {
   last_drawn_.reset();
-  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked, base::Guarded([&] {
-                                 return source_->DrawChecked(scene, fields);
-                               }));
+  THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked,
+                               base::Guarded([&] { return source_->DrawChecked(scene, fields); }));
   last_drawn_ = LastDrawn{scene, FrameQuality{}, fields};
   Report(view, {scene, FrameQuality{}, TotalMs(checked.frame), checked.frame.stages},
          {.discretisation_error = checked.discretisation_error}, &checked.frame);

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/error_details.h"
-#include "base/machine_memory.h"
 #include "base/guarded.h"
+#include "base/machine_memory.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 

@@ -22,14 +22,14 @@ class FolderLinks : public ::testing::Test {
   FolderLinks() {
     fs::create_directories(data_ / "sub");
     fs::create_directories(outside_);
-    Write(data_ / "own.nc", 0);
-    Write(outside_ / "secret.nc", 600);
+    Write(data_ / "own.nc", "QCLOUD");
+    Write(outside_ / "secret.nc", "QRAIN");
   }
 
-  static void Write(const fs::path& path, double start_s) {
+  // Files with other fields are other storms, not further times of one.
+  static void Write(const fs::path& path, const std::string& field) {
     testing::SyntheticWrf storm;
-    storm.mixing_ratios["QCLOUD"] = [](const testing::WrfCell&) { return 1e-3; };
-    storm.times = {start_s == 0 ? "2013-05-20_20:00:00" : "2013-05-21_20:00:00"};
+    storm.mixing_ratios[field] = [](const testing::WrfCell&) { return 1e-3; };
     testing::WriteWrf(storm, path.string());
   }
 
