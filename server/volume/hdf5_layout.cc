@@ -86,7 +86,7 @@ absl::Status Look(const std::string& path, hid_t opened) {
         absl::StrCat(path, ": its HDF5 structure is damaged; copy the file again"));
   }
   if (status == 0) return absl::OkStatus();
-  return absl::PermissionDeniedError(
+  return absl::DataLossError(
       absl::StrCat(path, ": ", walk.complaint,
                    "; write all values into one file, for example with nccopy, and give that"));
 }

@@ -10,8 +10,8 @@
 
 namespace thunderhead::volume {
 
-// Return PERMISSION_DENIED if a dataset keeps its values in other files (external storage, virtual
-// datasets) or a link leads to another file, DATA_LOSS if the structure cannot be read, and OK for
+// Return DATA_LOSS if a dataset keeps its values in other files (external storage, virtual
+// datasets) or a link leads to another file, or if the structure cannot be read, and OK for
 // a file that is not HDF5. The caller holds NetcdfLock. The bytes are not copied.
 absl::Status CheckHdf5File(const std::string& path);
 absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes);

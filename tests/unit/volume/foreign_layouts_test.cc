@@ -65,7 +65,7 @@ class ForeignLayoutsTest : public ::testing::Test {
 
   void ExpectRefused(const std::string& what) {
     const absl::Status status = Read();
-    EXPECT_EQ(status.code(), absl::StatusCode::kPermissionDenied) << status;
+    EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << status;
     EXPECT_THAT(std::string(status.message()), HasSubstr(what));
     EXPECT_THAT(std::string(status.message()), HasSubstr(path_));
     EXPECT_THAT(std::string(LookAtBytes().message()), HasSubstr(what));
