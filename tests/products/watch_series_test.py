@@ -36,6 +36,7 @@ class WatchSeriesTest(ProductTest):
         self.inbox, self.products = self.folder / "run42", self.folder / "products"
         self.inbox.mkdir()
         self.log = self.folder / "events"
+        self.killed = threading.Event()
         self.command = [
             PROGRAM, "watch", self.inbox, "--until", "12", "files", "--size", "160x90", "--quality", "fast", "--device", "software",
             "--views", self.scene("west.json", '{"camera": {"orbit": {"azimuthDeg": 270}}}'),
@@ -66,8 +67,8 @@ class WatchSeriesTest(ProductTest):
             if number == AGAIN_AFTER:
                 wait_for("pictures of the third file", lambda: len(list(self.products.glob("run42_0030_*.png"))) == 2)
                 self.copy(self.files[2])
-        # Whole only after all others are drawn.
-        wait_for("pictures of the other files", lambda: self.pictures() == 2 * len(self.files) - 2)
+        # Whole only after all others are drawn, and the program has been killed for the last time.
+        wait_for("pictures of the other files", lambda: self.pictures() == 2 * len(self.files) - 2 and self.killed.is_set())
         self.copy(cut)
 
     def pictures(self) -> int:
@@ -88,6 +89,7 @@ class WatchSeriesTest(ProductTest):
             self.assertIsNone(program.poll(), (self.folder / "errors").read_text())
             program.kill()
             program.wait()
+        self.killed.set()
         program = self.watch()
         self.assertEqual(program.wait(HANG_LIMIT_S), 0, (self.folder / "errors").read_text())
         self.check()
