@@ -167,12 +167,12 @@ def build_in_roots(work, ccache):
 
 
 def answers(port, process):
-    """True once the server's /healthz answers, within two minutes."""
-    for _ in range(600):
+    """True once the server's /healthz answers, within ten minutes."""
+    for _ in range(3000):
         if process.poll() is not None:
             return False
         try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{port}/healthz", timeout=1) as answer:
+            with urllib.request.urlopen(f"http://127.0.0.1:{port}/healthz", timeout=60) as answer:
                 return answer.status == 200
         except OSError:
             time.sleep(0.2)
@@ -187,7 +187,7 @@ def start(command, port):
     finally:
         process.terminate()
         try:
-            process.wait(60)
+            process.wait(600)
         except subprocess.TimeoutExpired:
             process.kill()
 
