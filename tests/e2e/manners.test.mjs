@@ -59,13 +59,13 @@ async function visit(options, address = fast) {
 }
 
 // Letters lie over the picture on panels that let some of it through. With the picture gone and the page white behind them, as the brightest
-// cloud is, axe-core finds their contrast; what it still cannot find is a finding too, but for letters in a drawing,
+// cloud is, axe-core finds their contrast (the small pictures of kept views go, too); what it still cannot find is a finding too, but for letters in a drawing,
 // whose ground it does not know, and for what a panel covers.
 const isRead = ({ html, any }) => !html.startsWith("<text") && any[0]?.data?.messageKey !== "bgOverlap";
 
 async function findings(page) {
   await page.evaluate(AXE);
-  const style = await page.addStyleTag({ content: "canvas.storm, svg.annotations, svg.overlay { display: none } html, body { background: #fff !important }" });
+  const style = await page.addStyleTag({ content: "canvas.storm, svg.annotations, svg.overlay { display: none } html, body, .view { background: #fff none !important }" });
   const { violations, incomplete } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations", "incomplete"] }));
   await style.evaluate((element) => element.remove());
   const unknown = incomplete
