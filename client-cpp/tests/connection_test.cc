@@ -1,4 +1,4 @@
-// What a connection refuses before it calls anybody.
+// Tests of what a connection refuses before its first call.
 #include "thunderhead_client/connection.h"
 
 #include <fstream>

@@ -119,7 +119,7 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
   const std::string path(target.substr(0, target.find('?')));
   bool keep = false;
   if (const auto ambiguity = FindAmbiguity(request); ambiguity.has_value()) {
-    // What follows on the connection may be part of this request, so nothing more is read from it.
+    // The bytes after it may be part of this request, so nothing more is read from the connection.
     answers_.SetUnreadInput(true);
     keep = co_await answers_.SendText(request, http::status::bad_request, *ambiguity);
   } else if (!site_.policy.AllowsHost(host)) {

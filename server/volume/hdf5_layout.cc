@@ -33,7 +33,7 @@ class Handle {
   herr_t (*const close_)(hid_t);
 };
 
-// What a walk has found so far.
+// The state of a walk through a file.
 struct Walk {
   int objects = 0;
   std::string complaint;

@@ -86,7 +86,7 @@ bool ContinueOneAnother(const std::vector<StormFile>& files) {
   return distinct.size() * 2 > total;
 }
 
-// What symbolic links a search follows. All paths are canonical.
+// The rules by which a search follows symbolic links. All paths are canonical.
 struct LinkRules {
   std::vector<fs::path> targets;    // links lead into these alone
   std::vector<fs::path> untrusted;  // links in these are not followed

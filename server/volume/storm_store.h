@@ -94,8 +94,7 @@ struct LinkPolicy {
       untrusted;  // folders in which others may put links, which are not followed
 };
 
-// For commands that read files for the user who runs them, with that user's rights: nobody else
-// sees what a link leads to.
+// Follows every link: for commands that a user runs on own files, with the user's own rights.
 inline LinkPolicy EveryLink() { return {.allowed = {"/"}, .untrusted = {}}; }
 
 struct StormStoreOptions {
