@@ -1,7 +1,6 @@
 #include "volume/hdf5_layout.h"
 
 #include <hdf5.h>
-#include <hdf5_hl.h>
 
 #include <cstring>
 
@@ -91,6 +90,20 @@ absl::Status Look(const std::string& path, hid_t opened) {
                    "; write all values into one file, for example with nccopy, and give that"));
 }
 
+// Returns callbacks by which HDF5 uses the bytes of a file where they are, and neither copies nor
+// frees them.
+H5FD_file_image_callbacks_t ImageInPlace(void* image) {
+  return {.image_malloc = [](std::size_t, H5FD_file_image_op_t, void* bytes) { return bytes; },
+          .image_memcpy = [](void* to, const void*, std::size_t, H5FD_file_image_op_t,
+                             void*) { return to; },
+          .image_realloc = [](void*, std::size_t, H5FD_file_image_op_t,
+                              void*) { return static_cast<void*>(nullptr); },
+          .image_free = [](void*, H5FD_file_image_op_t, void*) { return herr_t{0}; },
+          .udata_copy = [](void* bytes) { return bytes; },
+          .udata_free = [](void*) { return herr_t{0}; },
+          .udata = image};
+}
+
 }  // namespace
 
 absl::Status CheckHdf5File(const std::string& path) {
@@ -106,9 +119,16 @@ absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> 
     found = std::memcmp(bytes.data() + at, kSignature, sizeof(kSignature)) == 0;
   }
   if (!found) return absl::OkStatus();
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
   void* const image = const_cast<std::byte*>(bytes.data());  // opened for reading alone
-  return Look(path, H5LTopen_file_image(image, bytes.size(),
-                                        H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE));
+  H5FD_file_image_callbacks_t callbacks = ImageInPlace(image);
+  constexpr std::size_t kGrowth_bytes = 1 << 16;
+  if (!access.ok() || H5Pset_fapl_core(access.get(), kGrowth_bytes, false) < 0 ||
+      H5Pset_file_image_callbacks(access.get(), &callbacks) < 0 ||
+      H5Pset_file_image(access.get(), image, bytes.size()) < 0) {
+    return absl::ResourceExhaustedError(absl::StrCat(path, ": HDF5 has no memory to look at it"));
+  }
+  return Look(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
 }
 
 }  // namespace thunderhead::volume
