@@ -128,7 +128,8 @@ absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> 
       H5Pset_file_image(access.get(), image, bytes.size()) < 0) {
     return absl::ResourceExhaustedError(absl::StrCat(path, ": HDF5 has no memory to look at it"));
   }
-  return Look(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
+  // HDF5 refuses the name of a file that exists.
+  return Look(path, H5Fopen("bytes in memory, no file", H5F_ACC_RDONLY, access.get()));
 }
 
 }  // namespace thunderhead::volume
