@@ -215,7 +215,7 @@ class LeastRateTest : public SlowClientsTest {
     client.ReadBody(15'000'000);
     time_.Advance(seconds(2));
     EXPECT_TRUE(time_.AwaitLooks());
-    // What the kernel has is less than the rest.
+    // The kernel holds fewer bytes than the rest.
     EXPECT_ANY_THROW(client.ReadBody(30'000'000));
   }
 

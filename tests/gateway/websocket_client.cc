@@ -38,7 +38,7 @@ WebSocketClient::WebSocketClient(uint16_t port, const Options& options) : socket
         for (const auto& [name, value] : options.headers) request.set(name, value);
       }));
   socket_.control_callback([this](websocket::frame_type kind, boost::beast::string_view) {
-    // What is posted runs after the answer is sent.
+    // Posted work runs after the answer is sent.
     if (kind == websocket::frame_type::ping) net::post(io_, [this] { ++pings_answered_; });
   });
   socket_.read_message_max(0);

@@ -276,7 +276,7 @@ TEST(AccessTest, WhoNeverJoinsIsCutOff) {
   service::ServerOptions options = Patient(time);
   options.limits.join_timeout = std::chrono::hours(1);
   GuardedService guarded(options);
-  // Who has joined stays, also when those are cut off who come later and do not join.
+  // A joined viewer stays, also when later connections that do not join are cut off.
   const auto created = guarded.Create();
   HandCall joined(guarded.stub(), "presenter");
   joined.Join(created.session_id());

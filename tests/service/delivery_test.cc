@@ -23,7 +23,7 @@
 namespace thunderhead::testing {
 namespace {
 
-// Of a client for what it asked for.
+// The time that a client has to take what it asked for.
 constexpr std::chrono::minutes kDelivery{2};
 
 service::ServerOptions Deliver(const base::TimeSource& time) {
