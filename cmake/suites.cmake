@@ -1,4 +1,4 @@
-# How ctest runs the tests. `./dev test` gives it two places a processor (ctest -j). A test that keeps a processor busy takes both places of one,
+# How ctest runs the tests. `./dev test` gives it two places a processor and one more (ctest -j). A test that keeps a processor busy takes two places,
 # so on two processors at most two such tests run at once; a test that mostly waits takes one place. The classes follow from measured
 # processor time (docs/testing.md). COST only sets the order: the longest begin first.
 #

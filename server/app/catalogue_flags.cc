@@ -23,12 +23,23 @@ void AddCatalogueFlags(CLI::App& command, CatalogueFlags& flags) {
                   "How long a file must have stayed the same to count as complete")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
+  command.add_option("--untrusted", flags.untrusted,
+                     "Folders in which others may put files: no symbolic link there is followed");
+  command.add_option(
+      "--allow-links-to", flags.allowed_links,
+      "Folders that symbolic links in the data folders may lead to; links into the data "
+      "folders are always followed, and links in --untrusted folders never");
+}
+
+volume::LinkPolicy LinksOf(const CatalogueFlags& flags) {
+  return {.allowed = flags.allowed_links, .untrusted = flags.untrusted};
 }
 
 std::optional<volume::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags) {
   if (flags.rescan_s <= 0.0) return std::nullopt;
   return volume::LiveCatalogueOptions{.rescan = Milliseconds(flags.rescan_s),
-                                      .settle = Milliseconds(flags.settle_s)};
+                                      .settle = Milliseconds(flags.settle_s),
+                                      .first_search = std::chrono::milliseconds(0)};
 }
 
 }  // namespace thunderhead::app

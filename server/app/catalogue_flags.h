@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "CLI/CLI.hpp"
 #include "volume/storm_store.h"
@@ -11,9 +13,13 @@ namespace thunderhead::app {
 struct CatalogueFlags {
   double rescan_s = 30.0;
   double settle_s = 3.0;
+  std::vector<std::string> untrusted;
+  std::vector<std::string> allowed_links;
 };
 
 void AddCatalogueFlags(CLI::App& command, CatalogueFlags& flags);
+
+volume::LinkPolicy LinksOf(const CatalogueFlags& flags);
 
 // Nothing where the storms are to stay those of the start.
 std::optional<volume::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags);

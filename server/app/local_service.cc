@@ -6,6 +6,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "app/confined_formats.h"
 #include "app/progress_bar.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
@@ -39,6 +40,7 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
 
 absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
   volume::StormStoreOptions options;
+  options.formats = ConfinedFormats();
   options.links = volume::EveryLink();
   options.read_ahead = 0;
   options.borders = volume::BorderData::Find(volume::kBorderFolder);

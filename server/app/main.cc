@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   try {
     // Not a subcommand: the server starts it, and nothing of the rest is to run before it.
     if (argc == 2 && std::string_view(argv[1]) == thunderhead::sandbox::kReaderCommand) {
-      _exit(thunderhead::sandbox::ReadUntrustedFile(thunderhead::volume::StormFormats::BuiltIn()));
+      _exit(thunderhead::sandbox::ReadStormFile(thunderhead::volume::StormFormats::BuiltIn()));
     }
     const int code = thunderhead::app::Main(argc, argv);
     if (thunderhead::base::LooseThread::AnyLeftBehind()) {

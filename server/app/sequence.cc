@@ -9,6 +9,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "app/commands.h"
+#include "app/confined_formats.h"
 #include "app/exit_codes.h"
 #include "app/interruption.h"
 #include "app/job_run.h"
@@ -69,7 +70,7 @@ absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
 // Looks at each path. A file that cannot be read leaves the others alone.
 absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   Found found;
-  const volume::StormFormats formats = volume::StormFormats::BuiltIn();
+  const volume::StormFormats formats = ConfinedFormats();
   const volume::StormSearch search{
       .describe = [&](const std::string& path) -> absl::StatusOr<volume::StormFile> {
         auto file = volume::DescribeFile(path, formats);

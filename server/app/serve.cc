@@ -102,6 +102,23 @@ void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& d
   }
 }
 
+// Waits for the first search of the folders, so that whoever comes finds their storms. A search of
+// many files does not hold up the server for longer than a while. False if it is told to stop.
+bool AwaitStorms(const volume::StormStore& store, const std::stop_token& stop) {
+  constexpr std::chrono::seconds kWhile{30};
+  constexpr std::chrono::milliseconds kPause{20};
+  const auto until = std::chrono::steady_clock::now() + kWhile;
+  while (store.IsSearching() && std::chrono::steady_clock::now() < until) {
+    if (stop.stop_requested()) return false;
+    std::this_thread::sleep_for(kPause);
+  }
+  if (store.IsSearching()) {
+    spdlog::warn(
+        "still searching the folders for storms; those found are served when it has ended");
+  }
+  return !stop.stop_requested();
+}
+
 // As many files as the system allows: each connection takes one, and the usual limit of 1024 was
 // made for programs that use select().
 void RaiseFileLimit() {
@@ -151,9 +168,9 @@ absl::Status Serve(ServeFlags flags) {
   store_options.byte_budget = budgets.memory->Bytes();
   store_options.read_deadline = std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
   store_options.live = LiveCatalogueOf(flags.catalogue);
-  THUNDERHEAD_ASSIGN_OR_RETURN(store_options.formats, FormatsOf(flags.sandbox));
-  store_options.links = {flags.sandbox.allowed_links, flags.sandbox.untrusted};
-  store_options.reader_apart = ReaderApart(flags.sandbox);
+  THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(LimitsOf(flags.reader)));
+  store_options.formats = ConfinedFormats(LimitsOf(flags.reader));
+  store_options.links = LinksOf(flags.catalogue);
   store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
@@ -192,7 +209,6 @@ absl::Status Serve(ServeFlags flags) {
       service::Server::Start(server_options, store,
                              session::GlFrameSources(flags.device, {.memory = budgets.memory,
                                                                     .gpu_memory = budgets.gpu})));
-  starting = {};
   gateway::GatewayOptions gateway_options = flags.gateway;
   gateway_options.address = http.host;
   gateway_options.port = http.port;
@@ -212,10 +228,15 @@ absl::Status Serve(ServeFlags flags) {
                                gateway::Gateway::Start(gateway_options, channel));
   http.port = gateway->Port();
   grpc.port = static_cast<std::uint16_t>(server->Port());
-  std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
-            << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
-  std::thread warm_up([channel, door] { WarmUp(channel, *door); });
-  operation->SetServer(server.get(), {budgets.memory, budgets.gpu, state.calls});
+  starting = {};
+  std::thread warm_up;
+  std::jthread becoming_ready([&](const std::stop_token& stop) {
+    if (!AwaitStorms(*store, stop)) return;
+    operation->SetServer(server.get(), {budgets.memory, budgets.gpu, state.calls});
+    std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
+              << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
+    warm_up = std::thread([channel, door] { WarmUp(channel, *door); });
+  });
   std::jthread roster_timeouts;
   if (!flags.roster_timeouts.empty()) {
     roster_timeouts = FollowRosterTimeouts(flags.roster_timeouts,
@@ -227,12 +248,13 @@ absl::Status Serve(ServeFlags flags) {
   operation->WaitAndDrain(signals, *server, last);
   const std::jthread ends_anyway = EndAnywayAfter(
       kEndPatience, [given_up] { return static_cast<int>(ExitCodeOf(*given_up)); }, last);
+  becoming_ready = {};
   operation->SetServer(nullptr);
   roster_timeouts = {};
   // First, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();
-  warm_up.join();
+  if (warm_up.joinable()) warm_up.join();
   return *given_up;
 }
 

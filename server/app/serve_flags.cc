@@ -183,7 +183,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   serve.add_option("--roster-timeouts", flags.roster_timeouts)->group("");
   AddMemoryFlags(serve, flags);
   AddCatalogueFlags(serve, flags.catalogue);
-  AddSandboxFlags(serve, flags.sandbox);
+  AddReaderFlags(serve, flags.reader);
   AddOperationFlags(serve, flags.operation);
   AddAccessFlags(serve, flags);
   AddLimitFlags(serve, flags);

@@ -13,9 +13,9 @@
 #include "access/door.h"
 #include "app/address.h"
 #include "app/catalogue_flags.h"
+#include "app/confined_formats.h"
 #include "app/jobs_flags.h"
 #include "app/operation.h"
-#include "app/sandbox_flags.h"
 #include "base/executor.h"
 #include "base/memory_budget.h"
 #include "gateway/gateway.h"
@@ -37,7 +37,7 @@ struct ServeFlags {
   std::uint64_t gpu_memory_bytes = 0;  // 0: by what the driver tells
   double read_deadline_s = 60.0;
   CatalogueFlags catalogue;
-  SandboxFlags sandbox;
+  ReaderFlags reader;
   OperationFlags operation;
   JobsFlags jobs;
 

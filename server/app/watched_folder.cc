@@ -9,9 +9,9 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "app/confined_formats.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
-#include "volume/storm_format.h"
 
 namespace thunderhead::app {
 namespace {
@@ -104,7 +104,7 @@ void WatchedFolder::ForgetGone(const std::set<std::string>& there) {
 }
 
 void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progress) const {
-  absl::StatusOr<volume::StormFile> storm = volume::StormFormats::BuiltIn().Describe(path);
+  absl::StatusOr<volume::StormFile> storm = ConfinedFormats().Describe(path);
   if (storm.ok()) {
     file.storm = *std::move(storm);
     file.state = State::kReady;

@@ -8,6 +8,15 @@
 
 namespace thunderhead::sandbox {
 
+std::optional<std::size_t> SharedPlaces::Next(std::size_t bytes) {
+  constexpr std::size_t kSmall = 64 << 10;
+  constexpr std::size_t kAlignment = 64;
+  if (bytes < kSmall || bytes > size_ - used_) return std::nullopt;
+  const std::size_t place = used_;
+  used_ = std::min(size_, place + (bytes + kAlignment - 1) / kAlignment * kAlignment);
+  return place;
+}
+
 void Sender::Write(const void* bytes, std::size_t count) {
   const auto* from = static_cast<const char*>(bytes);
   while (count > 0) {

@@ -1,11 +1,15 @@
-// Plain values over a pipe, in the layout of this machine: both ends are the same program. What is
-// received is never believed: no array is larger than its allowance, and no wait longer than its
-// time.
+// Plain values over a pipe, in the layout of this machine: both ends are the same program. Large
+// arrays go through memory that both ends share, one after another, and only their sizes through
+// the pipe. What is received is never believed: no array is larger than its allowance, and no wait
+// longer than its time.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -18,10 +22,25 @@ namespace thunderhead::sandbox {
 template <typename Value>
 concept Plain = std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>;
 
+// The place of each large array in the shared memory, which both ends work out for themselves.
+class SharedPlaces {
+ public:
+  explicit SharedPlaces(std::size_t size) : size_(size) {}
+
+  // The offset of the next array, of `bytes` bytes. Nothing if it goes through the pipe: it is
+  // small, or the memory that is left is too small for it.
+  std::optional<std::size_t> Next(std::size_t bytes);
+
+ private:
+  const std::size_t size_;
+  std::size_t used_ = 0;
+};
+
 // The end that writes; what cannot be written, as nobody reads any more, is dropped.
 class Sender {
  public:
-  explicit Sender(int pipe) : pipe_(pipe) {}
+  explicit Sender(int pipe, std::span<std::byte> shared = {})
+      : pipe_(pipe), shared_(shared), places_(shared.size()) {}
 
   template <Plain Value>
   void operator()(const Value& value) {
@@ -36,12 +55,18 @@ class Sender {
  private:
   template <typename Values>
   void Array(const Values& values) {
+    const std::size_t bytes = values.size() * sizeof(values[0]);
+    // The array before its size: whoever gets the size may read the array.
+    const std::optional<std::size_t> place = places_.Next(bytes);
+    if (place.has_value()) std::memcpy(shared_.data() + *place, values.data(), bytes);
     (*this)(static_cast<std::uint64_t>(values.size()));
-    Write(values.data(), values.size() * sizeof(values[0]));
+    if (!place.has_value()) Write(values.data(), bytes);
   }
   void Write(const void* bytes, std::size_t count);
 
   const int pipe_;
+  const std::span<std::byte> shared_;
+  SharedPlaces places_;
 };
 
 // The end that reads. After a failure every value is that of its type's zero.
@@ -51,8 +76,14 @@ class Receiver {
 
   // Waits for `patience` in all, by `time`; takes arrays of `allowance` bytes in all.
   Receiver(int pipe, std::chrono::milliseconds patience, std::uint64_t allowance,
-           const base::TimeSource& time = base::SteadyTime())
-      : pipe_(pipe), time_(time), patience_(patience), allowance_(allowance) {}
+           const base::TimeSource& time = base::SteadyTime(),
+           std::span<const std::byte> shared = {})
+      : pipe_(pipe),
+        time_(time),
+        patience_(patience),
+        allowance_(allowance),
+        shared_(shared),
+        places_(shared.size()) {}
 
   template <Plain Value>
   void operator()(Value& value) {
@@ -84,6 +115,14 @@ class Receiver {
     values.clear();
     if (count > most || count * each > allowance_) return Refuse();
     allowance_ -= count * each;
+    if (!Ok()) return;
+    using Value = typename Values::value_type;
+    if (const auto place = places_.Next(count * each); place.has_value()) {
+      // Copied before it is looked at, as the reader could still change it.
+      const auto* const first = reinterpret_cast<const Value*>(shared_.data() + *place);
+      values.assign(first, first + count);
+      return;
+    }
     values.resize(count);
     if (!Read(values.data(), count * each)) values.clear();
   }
@@ -94,6 +133,8 @@ class Receiver {
   const base::TimeSource& time_;
   std::chrono::nanoseconds patience_;
   std::uint64_t allowance_;
+  const std::span<const std::byte> shared_;
+  SharedPlaces places_;
   Failure failure_ = Failure::kNone;
 };
 

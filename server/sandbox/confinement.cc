@@ -22,8 +22,8 @@ namespace {
 
 absl::Status Impossible(const char* what, int error) {
   return absl::FailedPreconditionError(absl::StrCat(
-      "files cannot be read in a sandbox here: ", what, " fails (", std::strerror(error),
-      "); serve without --untrusted and --sandbox, or allow the program seccomp"));
+      "storm files cannot be read safely here: ", what, " fails (", std::strerror(error),
+      "); allow the program seccomp (a container's security profile may forbid it)"));
 }
 
 std::uint64_t AddressSpace() {

@@ -1,4 +1,4 @@
-// Messages between the server and the reader of an untrusted file, each as one list of its members
+// Messages between this program and the reader of a storm file, each as one list of its members
 // for both directions: `archive` is a Sender or a Receiver.
 #pragma once
 
@@ -22,6 +22,7 @@ struct Request {
   std::uint64_t record = 0;
   std::optional<volume::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // that reading may take, the file itself left out
+  std::uint64_t shared_bytes = 0;  // of the shared memory, an open descriptor; 0: there is none
   std::uint32_t processor_s = 0;
 };
 
@@ -50,6 +51,7 @@ void Visit(Archive& archive, Request& request) {
   archive(request.record);
   VisitOptional(archive, request.grid);
   archive(request.memory_bytes);
+  archive(request.shared_bytes);
   archive(request.processor_s);
 }
 

@@ -1,4 +1,4 @@
-// Checks on values from the reader of an untrusted file, which other rooms rely on: a reader that a
+// Checks on values from the reader of a storm file, which other rooms rely on: a reader that a
 // file has taken over may send anything.
 #pragma once
 

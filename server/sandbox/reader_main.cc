@@ -1,5 +1,6 @@
 #include "sandbox/reader_main.h"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
@@ -66,10 +67,28 @@ absl::StatusOr<std::span<const std::byte>> MapFile() {
   return std::span(static_cast<const std::byte*>(bytes), size);
 }
 
+// The memory for large arrays; none if it cannot be had.
+std::span<std::byte> MapShared(std::size_t size) {
+  if (size == 0) return {};
+  void* const bytes =
+      mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, kSharedDescriptor, 0);
+  close(kSharedDescriptor);
+  if (bytes == MAP_FAILED) return {};
+  return {static_cast<std::byte*>(bytes), size};
+}
+
+// If memory runs out, the kernel is to end this process and not the one that has asked.
+void OfferToEndFirst() {
+  const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (file < 0) return;
+  static_cast<void>(write(file, "1000", 4));
+  close(file);
+}
+
 class Reader {
  public:
-  Reader(const volume::StormFormats& formats, Request request)
-      : formats_(formats), request_(std::move(request)), server_(STDOUT_FILENO) {}
+  Reader(const volume::StormFormats& formats, Request request, std::span<std::byte> shared)
+      : formats_(formats), request_(std::move(request)), server_(STDOUT_FILENO, shared) {}
 
   absl::Status Prepare();
   absl::Status Answer();
@@ -96,6 +115,7 @@ class Reader {
 
 absl::Status Reader::Prepare() {
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("reader", log_));
+  OfferToEndFirst();
   if (request_.wanted != Wanted::kProbe) {
     auto bytes = MapFile();
     if (!bytes.ok()) return base::Annotate(bytes.status(), request_.path);
@@ -147,7 +167,7 @@ void Reader::Tell(const absl::Status& error) {
 
 }  // namespace
 
-int ReadUntrustedFile(const volume::StormFormats& formats) {
+int ReadStormFile(const volume::StormFormats& formats) {
   // Nobody waits for what is read after the server's end.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);
@@ -155,7 +175,10 @@ int ReadUntrustedFile(const volume::StormFormats& formats) {
   Receiver from_server(STDIN_FILENO, std::chrono::seconds(10), 1 << 10);
   Visit(from_server, request);
   if (!from_server.Ok()) return 1;
-  Reader reader(formats, std::move(request));
+  const std::span<std::byte> shared = MapShared(request.shared_bytes);
+  // The other end puts arrays there without asking.
+  if (shared.size() != request.shared_bytes) return 1;
+  Reader reader(formats, std::move(request), shared);
   absl::Status status = reader.Prepare();
   if (status.ok()) {
     status = base::Guarded([&reader] { return reader.Answer(); });

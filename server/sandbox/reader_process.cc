@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,8 +12,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -20,12 +23,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/file_descriptor.h"
 #include "base/guarded.h"
 #include "base/status.h"
 #include "base/utf8.h"
 #include "sandbox/reader_main.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/metrics.h"
+#include "volume/netcdf_file.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -36,35 +41,15 @@ constexpr std::string_view kReaderFailed = "READER_FAILED";
 constexpr char kWhatToDo[] =
     "; the file may be damaged or hostile: have it written again, or take it away";
 
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_(number) {}
-  ~Descriptor() { Close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int Number() const { return number_; }
-  void Set(int number) {
-    Close();
-    number_ = number;
-  }
-  void Close() {
-    if (number_ >= 0) close(std::exchange(number_, -1));
-  }
-
- private:
-  int number_;
-};
-
 absl::Status NoReader(const std::string& path, int error) {
   return absl::UnavailableError(absl::StrCat(path, ": no process can be started to read it (",
                                              std::strerror(error), "); try again"));
 }
 
 // An open descriptor of a regular file, never of a pipe or device that would block or act.
-absl::Status OpenFile(const std::string& path, Descriptor& file) {
-  file.Set(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
-  if (file.Number() < 0) {
+absl::StatusOr<base::FileDescriptor> OpenFile(const std::string& path) {
+  base::FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!file.IsOpen()) {
     const int error = errno;
     if (error == ENOENT) {
       return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
@@ -74,8 +59,10 @@ absl::Status OpenFile(const std::string& path, Descriptor& file) {
                                                     "); give this user permission to read it"));
   }
   struct stat information = {};
-  if (fstat(file.Number(), &information) == 0 && S_ISREG(information.st_mode)) {
-    return absl::OkStatus();
+  if (fstat(file.Get(), &information) == 0 && S_ISREG(information.st_mode)) {
+    // A folder may hold thousands of files of other kinds; none of them needs a process.
+    THUNDERHEAD_RETURN_IF_ERROR(volume::NetcdfFile::CheckStart(path, file.Get()));
+    return file;
   }
   return absl::InvalidArgumentError(
       absl::StrCat(path, ": is no regular file; give the model's output file"));
@@ -142,19 +129,65 @@ std::vector<char*> Environment() {
   return kept;
 }
 
+struct Unmap {
+  std::size_t size = 0;
+
+  void operator()(const std::byte* bytes) const { munmap(const_cast<std::byte*>(bytes), size); }
+};
+
+// Memory that the reader fills with arrays and this process reads. It takes no memory before it is
+// written.
+class SharedArrays {
+ public:
+  // Negative: there are none.
+  int File() const { return file_.Get(); }
+  std::span<const std::byte> Bytes() const { return {bytes_.get(), bytes_.get_deleter().size}; }
+
+  // Without it arrays go through the pipe.
+  static SharedArrays Make(std::size_t size) {
+    SharedArrays arrays;
+    base::FileDescriptor file(memfd_create("fields of a storm", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    // Sealed, as a memory that became smaller would end whoever reads it.
+    constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
+    if (!file.IsOpen() || ftruncate(file.Get(), static_cast<off_t>(size)) != 0 ||
+        fcntl(file.Get(), F_ADD_SEALS, kSeals) != 0) {
+      return arrays;
+    }
+    void* const bytes = mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_NORESERVE, file.Get(), 0);
+    if (bytes == MAP_FAILED) return arrays;
+    arrays.bytes_ = {static_cast<const std::byte*>(bytes), Unmap{size}};
+    arrays.file_ = std::move(file);
+    return arrays;
+  }
+
+ private:
+  base::FileDescriptor file_;
+  std::unique_ptr<const std::byte, Unmap> bytes_;
+};
+
+// What a reader gets.
+struct Descriptors {
+  int request = -1;
+  int reply = -1;
+  int file = -1;
+  int shared = -1;
+};
+
 // Starts the program with the descriptors that it may have, in a group of its own, so that Ctrl-C
 // reaches the server alone. 0 and the process, or an error number.
-int Spawn(const std::string& program, int request, int reply, int file, pid_t& process) {
+int Spawn(const std::string& program, const Descriptors& given, pid_t& process) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);
   posix_spawnattr_init(&attributes);
-  // From above, so that none is overwritten before it is copied.
-  posix_spawn_file_actions_adddup2(&actions, request, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, reply, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, given.request, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, given.reply, STDOUT_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  if (file >= 0) posix_spawn_file_actions_adddup2(&actions, file, kFileDescriptor);
-  posix_spawn_file_actions_addclosefrom_np(&actions, kFileDescriptor + (file >= 0 ? 1 : 0));
+  int kept = kFileDescriptor;
+  for (const int each : {given.file, given.shared}) {
+    if (each >= 0) posix_spawn_file_actions_adddup2(&actions, each, kept++);
+  }
+  posix_spawn_file_actions_addclosefrom_np(&actions, kept);
   sigset_t none;
   sigset_t all;
   sigemptyset(&none);
@@ -187,7 +220,7 @@ absl::Status TookTooLong(const std::string& path, milliseconds time) {
   return Failed(path, "time",
                 absl::DeadlineExceededError(
                     absl::StrCat("was ended after ", absl::FormatDuration(absl::FromChrono(time)),
-                                 " (--sandbox-seconds)", kWhatToDo)));
+                                 " (--sandbox-seconds of `serve`)", kWhatToDo)));
 }
 
 // Why a reader ended without a result.
@@ -224,8 +257,8 @@ absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   std::string text = OneLine(note.text);
   switch (code) {
     case absl::StatusCode::kResourceExhausted:
-      absl::StrAppend(&text, " (untrusted files have ", limits.memory_bytes >> 20,
-                      " MiB, by --sandbox-memory)");
+      absl::StrAppend(&text, " (reading a storm file may take ", limits.memory_bytes >> 20,
+                      " MiB; --sandbox-memory of `serve` sets that)");
       // The limit is of this one reader, so waiting until others end does not help.
       return base::WithDetails(absl::ResourceExhaustedError(text), {.permanent = true});
     case absl::StatusCode::kInvalidArgument:
@@ -291,37 +324,45 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
   request.memory_bytes = limits_.memory_bytes;
   request.processor_s = static_cast<std::uint32_t>(
       std::max<std::int64_t>(1, std::chrono::ceil<std::chrono::seconds>(limits_.time).count()));
-  Descriptor file;
+  base::FileDescriptor file;
   if (request.wanted != Wanted::kProbe) {
-    THUNDERHEAD_RETURN_IF_ERROR(OpenFile(request.path, file));
+    THUNDERHEAD_ASSIGN_OR_RETURN(file, OpenFile(request.path));
   }
+  SharedArrays shared;
+  if (request.wanted == Wanted::kFields) shared = SharedArrays::Make(limits_.memory_bytes);
+  request.shared_bytes = shared.Bytes().size();
   std::array<int, 2> asking{};
   std::array<int, 2> answering{};
   if (pipe2(asking.data(), O_CLOEXEC) != 0) return NoReader(request.path, errno);
-  Descriptor request_from(asking[0]);
+  base::FileDescriptor request_from(asking[0]);
   {
     // Before anybody reads: it fits into the pipe, and the end of a reader is then no SIGPIPE.
-    const Descriptor request_to(asking[1]);
-    Sender to_reader(request_to.Number());
+    const base::FileDescriptor request_to(asking[1]);
+    Sender to_reader(request_to.Get());
     Visit(to_reader, request);
   }
   if (pipe2(answering.data(), O_CLOEXEC) != 0) return NoReader(request.path, errno);
-  Descriptor reply_from(answering[0]);
-  Descriptor reply_to(answering[1]);
+  const base::FileDescriptor reply_from(answering[0]);
+  base::FileDescriptor reply_to(answering[1]);
   // Fewer switches between the processes; where it is not allowed, the pipe stays small.
-  fcntl(reply_to.Number(), F_SETPIPE_SZ, 1 << 20);
+  fcntl(reply_to.Get(), F_SETPIPE_SZ, 1 << 20);
   pid_t process = 0;
   const int error =
-      Spawn(program_, request_from.Number(), reply_to.Number(), file.Number(), process);
+      Spawn(program_, {request_from.Get(), reply_to.Get(), file.Get(), shared.File()}, process);
   if (error != 0) return NoReader(request.path, error);
   Child child(process, time_);
-  request_from.Close();
-  reply_to.Close();
-  Receiver from_reader(reply_from.Number(), limits_.time, limits_.memory_bytes, time_);
+  request_from = {};
+  reply_to = {};
+  Receiver from_reader(reply_from.Get(), limits_.time, limits_.memory_bytes, time_, shared.Bytes());
   absl::Status status = base::Guarded(
       [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits_); });
   if (!from_reader.Ok()) return Judge(request.path, from_reader, child, limits_);
   return status;
+}
+
+std::uint64_t MachineMemory() {
+  return static_cast<std::uint64_t>(std::max(sysconf(_SC_PHYS_PAGES), 1L)) *
+         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 bool IsReaderFailure(const absl::Status& status) {

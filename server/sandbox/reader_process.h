@@ -1,5 +1,5 @@
-// A process that reads one untrusted file for one request, watched from here: its time, its end,
-// and what it says. However it fails, the outcome is one error that names the file.
+// A confined process that reads one storm file for one request, watched from here: its time, its
+// end, and what it says. However it fails, the outcome is one error that names the file.
 #pragma once
 
 #include <sys/types.h>
@@ -18,9 +18,12 @@
 
 namespace thunderhead::sandbox {
 
+// The memory of this machine, in bytes.
+std::uint64_t MachineMemory();
+
 struct ReaderLimits {
-  std::uint64_t memory_bytes = std::uint64_t{4} << 30;  // of reading, and of what comes of it
-  std::chrono::milliseconds time{120'000};  // that this process waits, and processor time
+  std::uint64_t memory_bytes = MachineMemory();  // of reading, and of what comes of it
+  std::chrono::milliseconds time{3'600'000};     // that this process waits, and processor time
 };
 
 // Starts `program`, this one by default, as the reader, and waits for it by `time`.

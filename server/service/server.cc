@@ -76,6 +76,15 @@ Limits LimitsOf(const ServerOptions& options) {
   return limits;
 }
 
+// Has requests that are compressed refused with UNIMPLEMENTED, and none inflated: a megabyte of
+// gzip may hold a gigabyte, and gRPC inflates a message before it looks at its size.
+void RefuseCompression(grpc::ServerBuilder& builder) {
+  for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
+    builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
+  }
+  builder.AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
+}
+
 class RunningServer final : public Server {
  public:
   RunningServer(const ServerOptions& options, std::shared_ptr<volume::StormStore> store)
@@ -138,6 +147,7 @@ class RunningServer final : public Server {
     builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
     builder.SetMaxReceiveMessageSize(static_cast<int>(limits_.max_request_bytes));
     builder.SetMaxSendMessageSize(kMaxResponseBytes);
+    RefuseCompression(builder);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTimeMs);
     builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
     builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits_.max_streams_per_connection);

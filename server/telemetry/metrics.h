@@ -86,7 +86,7 @@ struct Metrics {
   Counter session_save_failures;  // attempts to save sessions that failed
   Labelled<Counter> job_pictures{"drawn", "failed", "dropped"};  // of render jobs, by outcome
   Counter device_losses;  // the device was reset, or could not be opened again
-  // Of untrusted files' readers, by what happened.
+  // Of storm files' readers, by what happened.
   Labelled<Counter> reader_failures{"time", "killed", "crashed", "nonsense"};
 };
 

@@ -36,6 +36,7 @@ class CachedStormStore::Handle final : public StormStore {
     return store_->TimesInMemory(id);
   }
   std::size_t CachedBytes() const override { return store_->CachedBytes(); }
+  bool IsSearching() const override { return store_->IsSearching(); }
   void Listen(CatalogueListener listener) override { store_->Listen(std::move(listener)); }
   std::size_t PendingReads() const override { return store_->PendingReads(); }
   std::optional<HungRead> Hung() const override { return store_->Hung(); }
@@ -62,12 +63,10 @@ void CachedStormStore::Start() {
       "reading a storm",
       [self = shared_from_this()] { self->ReadDue(self->asked_, self->reading_asked_); },
       *options_.time);
-  if (options_.reader_apart) {
-    threads_.emplace_back(
-        "reading a storm beside a storage that hangs",
-        [self = shared_from_this()] { self->ReadDue(self->beside_, self->reading_beside_); },
-        *options_.time);
-  }
+  threads_.emplace_back(
+      "reading a storm beside a storage that hangs",
+      [self = shared_from_this()] { self->ReadDue(self->beside_, self->reading_beside_); },
+      *options_.time);
   if (options_.read_ahead == 0) return;
   threads_.emplace_back(
       "reading ahead", [self = shared_from_this()] { self->ReadAhead(); }, *options_.time);

@@ -1,6 +1,6 @@
 // The store behind what StormStore::Open gives: a catalogue, a cache, a thread that reads what is
-// asked for, one that reads ahead, and one that has other storages read in another process while
-// one holds up these. A time is read once however many callers ask for it; reads that a caller
+// asked for, one that reads ahead, and one that reads from other storages while one holds up the
+// first. A time is read once however many callers ask for it; reads that a caller
 // waits for go before read-ahead, and before files that the catalogue looks at. A storage that
 // hangs holds up a thread, but no caller beyond the deadline.
 #pragma once
@@ -58,14 +58,17 @@ class CachedStormStore final : public StormStore,
   void LetReadersGoFirst();
 
   // Renews the store's storms from now on, as `scan` finds them.
-  void Follow(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first);
+  void Follow(std::unique_ptr<CatalogueScan> scan);
+  // Returns whether the first search has ended, after LiveCatalogueOptions::first_search at most.
+  bool AwaitFirstSearch();
+  bool IsSearching() const override;
 
  private:
   class Handle;
   using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
   enum class Purpose {
     kAsked,
-    kBeside,  // the same, by another process
+    kBeside,  // the same, while another storage holds up that thread
     kAhead,
   };
 
@@ -126,7 +129,7 @@ class CachedStormStore final : public StormStore,
   std::optional<Place> PlaceOf(const TimeKey& key) const;
   std::shared_ptr<PendingRead> Begin(const Place& place, Purpose purpose);
   // The read of that time that is pending, or another one. An error if it would wait behind a
-  // storage that hangs, and no other process may do it.
+  // storage that hangs and is its own.
   absl::StatusOr<std::shared_ptr<PendingRead>> ReadOf(const Place& place);
   // On a reading thread, whose activity is given.
   void Read(Lock& lock, PendingRead& read, Activity& activity);
@@ -140,24 +143,18 @@ class CachedStormStore final : public StormStore,
   base::TimeSource::Clock::time_point Now() const { return options_.time->Now(); }
   // When the activity hangs unless it goes on.
   std::chrono::steady_clock::time_point HangsAt(const Activity& activity) const;
-  // The file other than `path` that netCDF-C has worked on for longer than `time`.
-  std::optional<HungRead> HolderFor(std::chrono::milliseconds time, std::string_view path) const;
-  // The reads that a read beginning now in this process would wait behind.
-  std::optional<HungRead> HungBefore() const;
-  std::uint64_t DeviceOf(std::string_view path) const;
-  // True if another process may read that time while that read hangs: it is on another device or,
-  // where the device is unknown, in another folder.
+  // True if that time may be read while that read hangs: it is on another device or, where the
+  // device is unknown, in another folder.
   bool MayReadBeside(const Place& place, const HungRead& hung) const;
-  // The read by another process in place of `read`, which others may wait for already.
+  // The read by the thread beside in place of `read`, which others may wait for already.
   std::shared_ptr<PendingRead> Beside(const PendingRead& read);
-  std::shared_ptr<const RecordReader> ReaderOf(const StormFile& file, Purpose purpose) const;
-  absl::StatusOr<std::optional<VerticalGrid>> VerticalGridOf(Lock& lock, const Place& place,
-                                                             Purpose purpose);
+  absl::StatusOr<std::optional<VerticalGrid>> VerticalGridOf(Lock& lock, const Place& place);
   // Makes it the storm's, if that has none.
   void Choose(const Place& place, const VerticalGrid& grid);
   void WantAfter(const Place& place);
   std::optional<Place> NextWanted();
   bool IsWanted(const TimeKey& key) const;
+  void TakeFound(const CatalogueScan::Result& found);
   StormChange Replace(std::size_t place, std::optional<CataloguedStorm> found);
   std::string FreeId(const std::string& wanted, std::size_t place) const;
 
@@ -177,10 +174,10 @@ class CachedStormStore final : public StormStore,
   const StormStoreOptions options_;
 
   mutable std::mutex mutex_;
-  std::deque<Held> storms_;         // elements are never removed: indices stay
-  std::vector<std::size_t> order_;  // of those that are listed
-  std::condition_variable
-      changed_;  // a read ended, a time was wanted, a caller waits, or the store ends
+  std::deque<Held> storms_;          // elements are never removed: indices stay
+  std::vector<std::size_t> order_;   // of those that are listed
+  std::condition_variable changed_;  // a read ended, a time was wanted, a caller waits, the first
+                                     // search or the store ended
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
   std::deque<std::shared_ptr<PendingRead>> asked_;   // due, in order
@@ -191,6 +188,7 @@ class CachedStormStore final : public StormStore,
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;
   bool ending_ = false;
+  bool searching_ = false;  // for the first time
 
   std::mutex listening_;  // held while the listener is called; before mutex_
   CatalogueListener listener_;

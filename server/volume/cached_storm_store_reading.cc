@@ -16,7 +16,6 @@
 #include "spdlog/spdlog.h"
 #include "volume/border_data.h"
 #include "volume/cached_storm_store.h"
-#include "volume/netcdf_holder.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -143,7 +142,7 @@ absl::StatusOr<std::shared_ptr<CachedStormStore::PendingRead>> CachedStormStore:
   if (const auto at = pending_.find(place.key); at != pending_.end()) return at->second;
   NoteHang(reading_asked_);
   NoteHang(reading_ahead_);
-  const std::optional<HungRead> hung = HungBefore();
+  const std::optional<HungRead> hung = HungIn(reading_asked_);
   if (!hung.has_value()) return Begin(place, Purpose::kAsked);
   if (!MayReadBeside(place, *hung)) return Hangs(*hung);
   return Begin(place, Purpose::kBeside);
@@ -196,21 +195,10 @@ CachedStormStore::Activity& CachedStormStore::ActivityOf(const PendingRead& read
 }
 
 bool CachedStormStore::MayReadBeside(const Place& place, const HungRead& hung) const {
-  if (!options_.reader_apart) return false;
   const StormFile& file = FileOf(*place.storm, place.time);
   if (file.device != 0 && hung.device != 0) return file.device != hung.device;
   const auto folder = [](const std::string& path) { return fs::path(path).parent_path(); };
   return folder(file.path) != folder(hung.file);
-}
-
-std::uint64_t CachedStormStore::DeviceOf(std::string_view path) const {
-  for (const Held& held : storms_) {
-    if (held.storm == nullptr) continue;
-    for (const StormFile& file : held.storm->files) {
-      if (file.path == path) return file.device;
-    }
-  }
-  return 0;
 }
 
 std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Beside(const PendingRead& read) {
@@ -219,25 +207,10 @@ std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Beside(const Pe
   return Begin(read.place, Purpose::kBeside);
 }
 
-std::shared_ptr<const RecordReader> CachedStormStore::ReaderOf(const StormFile& file,
-                                                               Purpose purpose) const {
-  if (purpose != Purpose::kBeside) return file.reader;
-  std::shared_ptr<const RecordReader> apart = options_.reader_apart(file);
-  return apart != nullptr ? apart : file.reader;
-}
-
 std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const {
   if (!activity.reads) return std::nullopt;
   const auto since = Now() - activity.went_on;
-  const bool is_late = since > options_.read_deadline;
-  // It may only wait for another, and need not do so for the deadline if that one is known to hang.
-  // Another process waits for none.
-  if (&activity != &reading_beside_) {
-    const auto deadline = is_late ? options_.read_deadline / 2 : options_.read_deadline;
-    auto holder = HolderFor(deadline, activity.file);
-    if (holder.has_value()) return holder;
-  }
-  if (!is_late) return std::nullopt;
+  if (since <= options_.read_deadline) return std::nullopt;
   return HungRead{activity.file, duration<double>(since).count(), activity.device};
 }
 
@@ -252,24 +225,7 @@ std::optional<HungRead> CachedStormStore::NoteHang(Activity& activity) const {
 steady_clock::time_point CachedStormStore::HangsAt(const Activity& activity) const {
   // Once it begins or goes on, whoever waits looks again.
   if (!activity.reads) return Now() + options_.read_deadline;
-  auto since = activity.went_on;
-  const auto holder = &activity != &reading_beside_ ? NetcdfHolder::Now() : std::nullopt;
-  if (holder.has_value() && holder->path != activity.file) since = std::min(since, holder->since);
-  return since + options_.read_deadline;
-}
-
-std::optional<HungRead> CachedStormStore::HolderFor(std::chrono::milliseconds time,
-                                                    std::string_view path) const {
-  const std::optional<NetcdfHolder> holder = NetcdfHolder::Now();
-  if (!holder.has_value() || holder->path == path) return std::nullopt;
-  const auto since = Now() - holder->since;
-  if (since <= time) return std::nullopt;
-  return HungRead{holder->path, duration<double>(since).count(), DeviceOf(holder->path)};
-}
-
-std::optional<HungRead> CachedStormStore::HungBefore() const {
-  std::optional<HungRead> hung = HungIn(reading_asked_);
-  return hung.has_value() ? hung : HolderFor(options_.read_deadline, "");
+  return activity.went_on + options_.read_deadline;
 }
 
 std::optional<HungRead> CachedStormStore::Hung() const {
@@ -299,8 +255,8 @@ void CachedStormStore::ReadAhead() {
       changed_.wait(lock);
       continue;
     }
-    // It would wait behind it, and then who asks for that time does so with it.
-    if (HungBefore().has_value()) {
+    // What is wanted next is mostly on the storage that hangs.
+    if (HungIn(reading_asked_).has_value()) {
       changed_.wait_until(lock, options_.time->LookAgainAt(Now() + kLookAgain));
       continue;
     }
@@ -351,9 +307,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   if (place.storm->info.times[place.time].deleted) {
     return absl::NotFoundError(absl::StrCat(file.path, ": the file of this time is gone"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<VerticalGrid> grid,
-                               VerticalGridOf(lock, place, read.purpose));
-  const std::shared_ptr<const RecordReader> reader = ReaderOf(file, read.purpose);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<VerticalGrid> grid, VerticalGridOf(lock, place));
+  const std::shared_ptr<const RecordReader> reader = file.reader;
   activity.went_on = Now();
   const auto urgency = read.purpose != Purpose::kAhead ? base::MemoryBudget::Urgency::kPatient
                                                        : base::MemoryBudget::Urgency::kAhead;
@@ -400,15 +355,14 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
 // picture does not depend on which times were viewed before. It stays when an earlier time arrives
 // later. Nothing if this is the first time itself, or if the first cannot be read.
 absl::StatusOr<std::optional<VerticalGrid>> CachedStormStore::VerticalGridOf(Lock& lock,
-                                                                             const Place& place,
-                                                                             Purpose purpose) {
+                                                                             const Place& place) {
   const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;
   if (known.has_value()) return known->grid;
   if (place.time == 0) return std::nullopt;
   const CataloguedStorm& storm = *place.storm;
   const TimeSource first = storm.sources.front();
   const StormFile& file = storm.files[first.file];
-  const std::shared_ptr<const RecordReader> reader = ReaderOf(file, purpose);
+  const std::shared_ptr<const RecordReader> reader = file.reader;
   lock.unlock();
   const absl::StatusOr<VerticalGrid> chosen = reader->ReadVerticalGrid(first.record);
   const absl::Status replaced = CheckNotReplaced(file, ReplacedRetryAfter());

@@ -34,13 +34,39 @@ void CachedStormStore::Listen(CatalogueListener listener) {
   listener_ = std::move(listener);
 }
 
-void CachedStormStore::Follow(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first) {
-  following_ = true;
+void CachedStormStore::Follow(std::unique_ptr<CatalogueScan> scan) {
+  searching_ = true;
   live_ = std::make_unique<LiveCatalogue>(
-      std::move(scan), std::move(first), *options_.live, *options_.time,
-      [weak = weak_from_this()](const std::vector<CataloguedStorm>& found) {
-        if (const auto store = weak.lock()) store->Renew(found);
+      std::move(scan), *options_.live, *options_.time,
+      [weak = weak_from_this()](const CatalogueScan::Result& found) {
+        if (const auto store = weak.lock()) store->TakeFound(found);
       });
+}
+
+void CachedStormStore::TakeFound(const CatalogueScan::Result& found) {
+  Renew(found.storms);
+  {
+    const std::lock_guard lock(listening_);
+    following_ = true;
+  }
+  // What is still being written may be the only storm.
+  if (found.storms.empty() && found.look_again_at.has_value()) return;
+  {
+    const Lock lock(mutex_);
+    searching_ = false;
+  }
+  changed_.notify_all();
+}
+
+bool CachedStormStore::AwaitFirstSearch() {
+  Lock lock(mutex_);
+  return base::WaitUntil(*options_.time, changed_, lock, Now() + options_.live->first_search,
+                         [this] { return !searching_; });
+}
+
+bool CachedStormStore::IsSearching() const {
+  const Lock lock(mutex_);
+  return searching_;
 }
 
 void CachedStormStore::LetReadersGoFirst() {

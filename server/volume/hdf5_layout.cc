@@ -106,17 +106,20 @@ H5FD_file_image_callbacks_t ImageInPlace(void* image) {
 
 }  // namespace
 
+bool IsHdf5Signature(std::span<const std::byte> bytes) {
+  return bytes.size() >= sizeof(kSignature) &&
+         std::memcmp(bytes.data(), kSignature, sizeof(kSignature)) == 0;
+}
+
 absl::Status CheckHdf5File(const std::string& path) {
   if (H5Fis_hdf5(path.c_str()) <= 0) return absl::OkStatus();
   return Look(path, H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
 }
 
 absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes) {
-  // HDF5 looks for its signature at the start, and at 512 bytes and each power of two after it.
-  bool found = false;
-  for (std::size_t at = 0; at + sizeof(kSignature) <= bytes.size() && !found;
-       at = at == 0 ? 512 : 2 * at) {
-    found = std::memcmp(bytes.data() + at, kSignature, sizeof(kSignature)) == 0;
+  bool found = IsHdf5Signature(bytes);
+  for (std::size_t at = kFirstHdf5Offset; at < bytes.size() && !found; at *= 2) {
+    found = IsHdf5Signature(bytes.subspan(at));
   }
   if (!found) return absl::OkStatus();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);

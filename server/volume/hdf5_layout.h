@@ -10,6 +10,12 @@
 
 namespace thunderhead::volume {
 
+// HDF5's signature stands at the start of a file, or at this offset, or at a power of two times it.
+inline constexpr std::size_t kFirstHdf5Offset = 512;
+
+// Returns whether the bytes begin with HDF5's signature of eight bytes.
+bool IsHdf5Signature(std::span<const std::byte> bytes);
+
 // Return DATA_LOSS if a dataset keeps its values in other files (external storage, virtual
 // datasets) or a link leads to another file, or if the structure cannot be read, and OK for
 // a file that is not HDF5. The caller holds NetcdfLock. The bytes are not copied.

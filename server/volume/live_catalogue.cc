@@ -15,14 +15,11 @@ constexpr milliseconds kShortestPause{300};
 
 }  // namespace
 
-LiveCatalogue::LiveCatalogue(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first,
+LiveCatalogue::LiveCatalogue(std::unique_ptr<CatalogueScan> scan,
                              const LiveCatalogueOptions& options, const base::TimeSource& time,
                              Renew renew)
-    : running_(new Running{.options = options,
-                           .time = time,
-                           .renew = std::move(renew),
-                           .scan = std::move(scan),
-                           .newest = std::move(first)}),
+    : running_(new Running{
+          .options = options, .time = time, .renew = std::move(renew), .scan = std::move(scan)}),
       thread_(
           "the search for storms", [running = running_] { running->Run(); }, time) {}
 
@@ -32,6 +29,7 @@ LiveCatalogue::~LiveCatalogue() {
 }
 
 void LiveCatalogue::Running::Run() {
+  Scan();
   // Changes between the first scan and the watch have no event.
   bool again = WatchFolders();
   while (!stopping) {
@@ -64,7 +62,7 @@ void LiveCatalogue::Running::Scan() {
   complaint.clear();
   newest = *std::move(result);
   // Also without a change: somebody may have left what was deleted.
-  renew(newest.storms);
+  renew(newest);
 }
 
 // True if there is a folder that was not watched during the scan.

@@ -1,5 +1,5 @@
-// Keeps a store's storms those of its folders, on a thread of its own: scans them after the
-// kernel's events, when a file that was written may be complete, and now and then.
+// Keeps a store's storms those of its folders, on a thread of its own: scans them at once, after
+// the kernel's events, when a file that was written may be complete, and now and then.
 #pragma once
 
 #include <atomic>
@@ -17,13 +17,12 @@ namespace thunderhead::volume {
 
 class LiveCatalogue {
  public:
-  // Takes the storms that there are now.
-  using Renew = std::function<void(const std::vector<CataloguedStorm>&)>;
+  // Takes the result of each scan, whose storms are all that there are now.
+  using Renew = std::function<void(const CatalogueScan::Result&)>;
 
-  // `scan` has been made by `first`, whose storms are known. `renew` must own what it uses. `time`
-  // must outlive the thread.
-  LiveCatalogue(std::unique_ptr<CatalogueScan> scan, CatalogueScan::Result first,
-                const LiveCatalogueOptions& options, const base::TimeSource& time, Renew renew);
+  // `renew` must own what it uses. `time` must outlive the thread.
+  LiveCatalogue(std::unique_ptr<CatalogueScan> scan, const LiveCatalogueOptions& options,
+                const base::TimeSource& time, Renew renew);
   // Waits for a scan under way, unless it hangs.
   ~LiveCatalogue();
   LiveCatalogue(const LiveCatalogue&) = delete;
@@ -43,7 +42,7 @@ class LiveCatalogue {
     const base::TimeSource& time;
     const Renew renew;
     const std::unique_ptr<CatalogueScan> scan;
-    CatalogueScan::Result newest;
+    CatalogueScan::Result newest = {};
     base::FolderEvents events = {};
     std::string complaint = {};  // logged last
     std::atomic<bool> stopping = false;

@@ -6,16 +6,20 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <streambuf>
+#include <string_view>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "base/file_descriptor.h"
 #include "base/status.h"
 #include "volume/classic_file_size.h"
 #include "volume/classic_header.h"
@@ -37,12 +41,15 @@ constexpr std::size_t kLongestText = 1 << 20;
 
 // True if a writer holds the file: HDF5 locks what it writes with flock(2), and its reader then
 // fails with what netCDF-C gives for any damage (NC_EHDFERR).
+bool IsHeldByWriter(int file) {
+  if (flock(file, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
+  flock(file, LOCK_UN);
+  return false;
+}
+
 bool IsHeldByWriter(const std::string& path) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool held = flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  close(file);
-  return held;
+  const base::FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  return file.IsOpen() && IsHeldByWriter(file.Get());
 }
 
 absl::Status HeldByWriter(const std::string& path) {
@@ -179,6 +186,22 @@ int OpenMemory(const MemoryFile& file, int& handle) {
 
 }  // namespace
 
+absl::Status NetcdfFile::CheckStart(const std::string& path, int file) {
+  if (IsHeldByWriter(file)) return HeldByWriter(path);
+  std::array<char, 8> start{};
+  const auto read_at = [&](std::uint64_t offset) {
+    return pread(file, start.data(), start.size(), static_cast<off_t>(offset));
+  };
+  ssize_t count = read_at(0);
+  if (count == 0) return OpenError(path, NC_EHDFERR);
+  if (std::string_view(start.data(), 3) == "CDF") return absl::OkStatus();
+  for (std::uint64_t offset = kFirstHdf5Offset; count == std::ssize(start); offset *= 2) {
+    if (IsHdf5Signature(std::as_bytes(std::span(start)))) return absl::OkStatus();
+    count = read_at(offset);
+  }
+  return OpenError(path, NC_ENOTNC);
+}
+
 absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   if (const std::optional<MemoryFile>& file = InMemory(); file.has_value()) {
     if (path != file->path) return OpenError(path, EACCES);
@@ -187,7 +210,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
     std::istream header(&buffer);
     THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
     int handle = kNoHandle;
-    const NetcdfLock lock(path);
+    const NetcdfLock lock;
     THUNDERHEAD_RETURN_IF_ERROR(CheckHdf5Bytes(path, file->bytes));
     if (const int code = OpenMemory(*file, handle); code != NC_NOERR) return OpenError(path, code);
     return Checked(path, handle, file->bytes.size());
@@ -200,7 +223,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   std::ifstream header(path, std::ios::binary);
   THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
   int handle = kNoHandle;
-  const NetcdfLock lock(path);
+  const NetcdfLock lock;
   if (const absl::Status layout = CheckHdf5File(path); !layout.ok()) {
     return IsHeldByWriter(path) ? HeldByWriter(path) : layout;
   }
@@ -245,18 +268,18 @@ NetcdfFile::~NetcdfFile() { Close(); }
 
 void NetcdfFile::Close() {
   if (handle_ == kNoHandle) return;
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   nc_close(std::exchange(handle_, kNoHandle));
 }
 
 bool NetcdfFile::HasVariable(const std::string& variable) const {
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = 0;
   return nc_inq_varid(handle_, variable.c_str(), &id) == NC_NOERR;
 }
 
 std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimension) const {
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = 0;
   std::size_t length = 0;
   if (nc_inq_dimid(handle_, dimension.c_str(), &id) != NC_NOERR ||
@@ -267,7 +290,7 @@ std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimens
 }
 
 std::vector<std::string> NetcdfFile::Variables() const {
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int count = 0;
   std::vector<std::string> names;
   if (nc_inq_nvars(handle_, &count) != NC_NOERR) return names;
@@ -279,7 +302,7 @@ std::vector<std::string> NetcdfFile::Variables() const {
 }
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::Dimensions(const std::string& variable) const {
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = 0;
   int rank = 0;
   int dimensions[NC_MAX_VAR_DIMS];
@@ -306,7 +329,7 @@ absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& v
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, CountThatFits(variable, shape, 8));
   std::vector<double> values(total);
   if (total == 0) return values;
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   THUNDERHEAD_ASSIGN_OR_RETURN(const int id, NumbersId(variable, shape.size()));
   if (const int code = nc_get_var_double(handle_, id, values.data()); code != NC_NOERR) {
     return ReadError(variable, code);
@@ -323,7 +346,7 @@ absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& v
 }
 
 absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& variable) const {
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = 0;
   int rank = 0;
   int dimensions[NC_MAX_VAR_DIMS];
@@ -345,7 +368,7 @@ absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& va
 
 std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable,
                                                      const std::string& attribute) const {
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = NC_GLOBAL;
   if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
   nc_type type;
@@ -369,7 +392,7 @@ std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable
 
 std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
                                                   const std::string& attribute) const {
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = NC_GLOBAL;
   if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
   const double value =
@@ -379,7 +402,7 @@ std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = 0;
   nc_type type = NC_NAT;
   nc_inq_varid(handle_, variable.c_str(), &id);
@@ -438,7 +461,7 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
   Packing packing;
   std::vector<double> packed;
   {
-    const NetcdfLock lock(path_);
+    const NetcdfLock lock;
     THUNDERHEAD_ASSIGN_OR_RETURN(const int id, NumbersId(variable, count.size()));
     packing = PackingOf(handle_, id);
     // No chunk cache: every chunk is read once, and the cache would keep a second copy of each

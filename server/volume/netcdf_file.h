@@ -28,6 +28,11 @@ class NetcdfFile {
   NetcdfFile& operator=(NetcdfFile&& other) noexcept;
   ~NetcdfFile();
 
+  // Checks an open file before anything parses it: INVALID_ARGUMENT if it does not begin as netCDF
+  // does, DATA_LOSS if it is empty, UNAVAILABLE while another program writes it (HDF5 locks it
+  // then).
+  static absl::Status CheckStart(const std::string& path, int file);
+
   const std::string& Path() const { return path_; }
 
   bool HasVariable(const std::string& variable) const;

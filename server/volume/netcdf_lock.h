@@ -5,23 +5,18 @@
 #include <hdf5.h>
 
 #include <mutex>
-#include <string>
-
-#include "volume/netcdf_holder.h"
 
 namespace thunderhead::volume {
 
-// Held around every call of netCDF-C, by which it reads or writes the file of that path.
+// Held around every call of netCDF-C.
 class NetcdfLock {
  public:
-  explicit NetcdfLock(const std::string& path) : lock_(Mutex()) {
+  NetcdfLock() : lock_(Mutex()) {
     // HDF5 prints failed look-ups unless switched off, thread by thread; netCDF does so only in the
     // thread that opens the first file.
     thread_local const herr_t silenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     static_cast<void>(silenced);
-    NetcdfHolder::Begins(path);
   }
-  ~NetcdfLock() { NetcdfHolder::Ends(); }
   NetcdfLock(const NetcdfLock&) = delete;
   NetcdfLock& operator=(const NetcdfLock&) = delete;
 

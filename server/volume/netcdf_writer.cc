@@ -13,7 +13,7 @@ constexpr int kCompression = 4;
 
 }  // namespace
 
-NetcdfWriter::NetcdfWriter(const std::string& path, Where where) : lock_(path), where_(where) {
+NetcdfWriter::NetcdfWriter(const std::string& path, Where where) : where_(where) {
   Keep(where == Where::kInMemory ? nc_create_mem(path.c_str(), NC_NETCDF4, 0, &file_)
                                  : nc_create(path.c_str(), NC_NETCDF4 | NC_CLOBBER, &file_));
   open_ = Good();

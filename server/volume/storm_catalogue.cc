@@ -172,10 +172,7 @@ absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
     }
     (is_folder ? folder.folders : folder.files).push_back(entry);
   }
-  if (error) {
-    return absl::PermissionDeniedError(
-        absl::StrCat(path.string(), ": the folder cannot be listed (", error.message(), ")"));
-  }
+  if (error) return CannotBeListed(path.string(), error);
   std::ranges::sort(folder.files);
   std::ranges::sort(folder.folders);
   return folder;
@@ -301,6 +298,11 @@ void DropRepeated(std::vector<NamedStorm>& storms) {
 }
 
 }  // namespace
+
+absl::Status CannotBeListed(const std::string& folder, const std::error_code& error) {
+  return absl::PermissionDeniedError(
+      absl::StrCat(folder, ": the folder cannot be listed (", error.message(), ")"));
+}
 
 std::vector<std::vector<StormFile>> FilesOfRuns(std::vector<StormFile> files) {
   std::map<decltype(RunKey(files[0])), std::vector<StormFile>> by_key;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -54,6 +55,9 @@ struct StormSearch {
   FoundByPath* found = nullptr;
   LinkPolicy links = {};
 };
+
+// PERMISSION_DENIED: the folder is there, but cannot be listed.
+absl::Status CannotBeListed(const std::string& folder, const std::error_code& error);
 
 // Describes files by the formats; a file whose metadata exhausts the memory is an error.
 absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormFormats& formats);

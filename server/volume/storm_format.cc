@@ -42,9 +42,7 @@ absl::Status CheckDescribed(StormFile& file) {
 }  // namespace
 
 absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const {
-  if (elsewhere_) {
-    if (auto file = elsewhere_(path); file.has_value()) return *std::move(file);
-  }
+  if (elsewhere_) return elsewhere_(path);
   const UnknownFile file{path, NetcdfFile::Open(path)};
   FormatFit best = FormatFit::kNone;
   std::vector<const StormFormat*> fitting;  // as well as `best`

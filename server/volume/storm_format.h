@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -62,10 +61,8 @@ class StormFormats {
 
   void Add(std::shared_ptr<const StormFormat> format) { formats_.push_back(std::move(format)); }
 
-  // Describes files that the formats are not to open here, and gives them their readers; nothing
-  // for all others.
-  using Elsewhere =
-      std::function<std::optional<absl::StatusOr<StormFile>>(const std::string& path)>;
+  // Has another process describe every file, and read it by the reader that it gives it.
+  using Elsewhere = std::function<absl::StatusOr<StormFile>(const std::string& path)>;
   void LeaveTo(Elsewhere elsewhere) { elsewhere_ = std::move(elsewhere); }
 
   // Describes the file at `path` by the format that fits it best. Two that fit equally well, or

@@ -34,10 +34,12 @@ absl::Status CheckPaths(const std::vector<std::string>& paths, const StormFormat
     std::error_code error;
     const auto is_folder = [&] {
       const base::SlowCall call(path);
-      return std::filesystem::is_directory(path, error);
+      if (!std::filesystem::is_directory(path, error)) return false;
+      std::filesystem::directory_iterator(path, error);
+      return true;
     };
-    if (is_folder()) continue;
-    THUNDERHEAD_RETURN_IF_ERROR(DescribeFile(path, formats).status());
+    if (!is_folder()) THUNDERHEAD_RETURN_IF_ERROR(DescribeFile(path, formats).status());
+    if (error) return CannotBeListed(path, error);
   }
   return absl::OkStatus();
 }
@@ -58,18 +60,11 @@ absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::stri
                                    if (const auto held = weak.lock()) held->LetReadersGoFirst();
                                  },
                              .time = options.time});
-  THUNDERHEAD_ASSIGN_OR_RETURN(CatalogueScan::Result first, scan->Scan(options.time->Now()));
-  if (first.storms.empty() && first.look_again_at.has_value()) {
-    spdlog::info("waiting until the files of {} are complete", absl::StrJoin(paths, ", "));
-    base::SleepUntil(*options.time, *first.look_again_at);
-    THUNDERHEAD_ASSIGN_OR_RETURN(first, scan->Scan(options.time->Now()));
-  }
-  if (first.storms.empty()) {
+  store->Follow(std::move(scan));
+  if (store->AwaitFirstSearch() && store->Storms().empty()) {
     spdlog::warn("{}: holds no storm yet; model output ({}) is shown as soon as it is complete",
                  absl::StrJoin(paths, ", "), options.formats.Examples());
   }
-  store->Renew(first.storms);
-  store->Follow(std::move(scan), std::move(first));
   return CachedStormStore::Owned(store);
 }
 

@@ -84,6 +84,9 @@ struct LiveCatalogueOptions {
   std::chrono::milliseconds rescan{30'000};
   // A file whose size or date has changed within this time is still being written.
   std::chrono::milliseconds settle{3'000};
+  // How long Open waits for the first search. After that it goes on in the background, and storms
+  // come when it has ended.
+  std::chrono::milliseconds first_search{std::chrono::minutes(10)};
 };
 
 // Which symbolic links a search for storms follows. Links into the searched paths are always
@@ -107,9 +110,6 @@ struct StormStoreOptions {
   std::chrono::milliseconds read_deadline{60'000};
   StormFormats formats = StormFormats::BuiltIn();
   LinkPolicy links = {};
-  // Gives a reader of the file that works in another process, for while this one's is held up by
-  // another storage, or null; empty: such reads are refused.
-  std::function<std::shared_ptr<const RecordReader>(const StormFile& file)> reader_apart;
   // Coasts and borders for storms with a place on Earth; null: none.
   std::shared_ptr<BorderData> borders;
   // Absent: the storms are those of the start. With it, a folder without storms is no error.
@@ -153,8 +153,8 @@ class StormStore {
 
   // The fields of one time: from the cache, or read now (blocking). `time_index` must be one of the
   // storm's. Errors: NOT_FOUND (id), OUT_OF_RANGE (time), RESOURCE_EXHAUSTED (no room in memory),
-  // DEADLINE_EXCEEDED (a storage hangs, this time's or, where no other process reads, one before
-  // it; at once where that is known), and those of the file's reader.
+  // DEADLINE_EXCEEDED (this time's storage hangs; at once where that is known), and those of the
+  // file's reader.
   // `progress` may be empty.
   virtual absl::StatusOr<std::shared_ptr<const HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) = 0;
@@ -164,6 +164,9 @@ class StormStore {
 
   // The indices of the storm's times that are in the cache, in order; none for an unknown id.
   virtual std::vector<int> TimesInMemory(std::string_view id) const = 0;
+
+  // True until the first search of the folders has ended: there may be more storms than are known.
+  virtual bool IsSearching() const { return false; }
 
   // Bytes of all cached times.
   virtual std::size_t CachedBytes() const = 0;

@@ -57,6 +57,7 @@ class FakeStormStore final : public volume::StormStore {
   // Adds a storm with the file's name, if the file exists.
   absl::StatusOr<volume::StormInfoPtr> Add(const std::string& path) override;
   absl::Status Remove(std::string_view id) override;
+  bool IsSearching() const override { return searching; }
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
       std::string_view id, int time_index, const volume::ReadProgress& progress) override;
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view id,
@@ -77,6 +78,8 @@ class FakeStormStore final : public volume::StormStore {
   bool AwaitReads(int count);
 
   Gate reading;
+
+  std::atomic<bool> searching = false;
 
  private:
   std::deque<volume::StormInfoPtr> storms_;

@@ -5,6 +5,7 @@
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -244,6 +245,74 @@ TEST(PortsTest, GrpcListensOnAddressesOfIpv6) {
   options.address = "[::]:0";
   FakeService fake(options);
   EXPECT_TRUE(IsReached(fake.server().Port())) << "and of IPv4, by any address";
+}
+
+// A value of /proc/self/status, in MiB.
+double OwnStatusMib(const std::string& name) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(name + ":")) return std::stod(line.substr(name.size() + 1)) / 1024.0;
+  }
+  return 0.0;
+}
+
+std::string Gzip(const std::string& text) {
+  z_stream stream{};
+  constexpr int kGzip = 16;
+  EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, MAX_WBITS + kGzip, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string compressed(deflateBound(&stream, text.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(compressed.data());
+  stream.avail_out = static_cast<uInt>(compressed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  compressed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return compressed;
+}
+
+TEST(PortsTest, CompressedRequestsAreRefused) {
+  FakeService fake;
+  for (const auto algorithm : {GRPC_COMPRESS_GZIP, GRPC_COMPRESS_DEFLATE}) {
+    grpc::ClientContext unary;
+    unary.set_compression_algorithm(algorithm);
+    v1::ListStormsResponse storms;
+    EXPECT_EQ(fake.stub().ListStorms(&unary, v1::ListStormsRequest(), &storms).error_code(),
+              grpc::StatusCode::UNIMPLEMENTED);
+    grpc::ClientContext stream;
+    stream.set_compression_algorithm(algorithm);
+    const auto call = fake.stub().Interact(&stream);
+    v1::InteractRequest request;
+    request.mutable_join()->set_session_key(std::string(1000, 'x'));
+    call->Write(request);
+    EXPECT_EQ(call->Finish().error_code(), grpc::StatusCode::UNIMPLEMENTED);
+  }
+  v1::ListStormsResponse storms;
+  grpc::ClientContext plain;
+  EXPECT_TRUE(fake.stub().ListStorms(&plain, v1::ListStormsRequest(), &storms).ok());
+}
+
+// Some 60 kB that would become 60 MiB.
+TEST(PortsTest, CompressedRequestsAreNotInflated) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer keeps what is freed";
+#endif
+  service::ServerOptions options = Patient();
+  options.address = "127.0.0.1:0";
+  FakeService fake(options);
+  const std::string bomb = Gzip(std::string(60 << 20, '\0'));
+  // From now on VmHWM is the most that the process holds.
+  std::ofstream("/proc/self/clear_refs") << 5;
+  const double before_mib = OwnStatusMib("VmHWM");
+  std::vector<std::unique_ptr<UntakingClient>> clients;
+  for (int i = 0; i < 4; ++i) {
+    clients.push_back(std::make_unique<UntakingClient>(fake.server().Port()));
+    clients.back()->CallCompressed("ThunderheadService/ListStorms", bomb);
+  }
+  for (const auto& client : clients) {
+    EXPECT_TRUE(WaitFor([&] { return client->Refused() > 0 || client->IsReset(); }));
+  }
+  EXPECT_LT(OwnStatusMib("VmHWM") - before_mib, 40.0);
 }
 
 // The name of this process' newest local socket.

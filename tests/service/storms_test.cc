@@ -47,6 +47,18 @@ TEST(StormsTest, StormsAreListedInOrder) {
   EXPECT_EQ(list.storms(1).id(), "clear");
 }
 
+TEST(StormsTest, AStormThatIsNotFoundYetIsToBeAskedForAgain) {
+  FakeService service;
+  service.store->searching = true;
+  v1::StormDescription storm;
+  EXPECT_TRUE(Describe(service, "anvil", 2, &storm).ok());
+  const grpc::Status early = Describe(service, "squall", 0, &storm);
+  EXPECT_EQ(early.error_code(), grpc::StatusCode::UNAVAILABLE) << early.error_message();
+  EXPECT_THAT(early.error_message(), HasSubstr("still searches"));
+  service.store->searching = false;
+  EXPECT_EQ(Describe(service, "squall", 0, &storm).error_code(), grpc::StatusCode::NOT_FOUND);
+}
+
 TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
   FakeService service;
   v1::StormDescription storm;

@@ -32,13 +32,14 @@ std::string Text(const std::string& text) {
   return std::string(1, static_cast<char>(text.size())) + text;
 }
 
-std::string HeadersOf(const std::string& method) {
+std::string HeadersOf(const std::string& method, const std::string& encoding = "identity") {
   std::string headers;
   for (const auto& [name, value] : {std::pair<std::string, std::string>{":method", "POST"},
                                     {":scheme", "http"},
                                     {":path", "/thunderhead.v1." + method},
                                     {":authority", "localhost"},
                                     {"te", "trailers"},
+                                    {"grpc-encoding", encoding},
                                     {"content-type", "application/grpc"}}) {
     // A literal that is not indexed.
     headers += '\0' + Text(name) + Text(value);
@@ -67,6 +68,17 @@ void UntakingClient::Call(const std::string& method, const std::string& message,
   const std::string data = '\0' + Number(message.size(), 4) + message;
   Send(Frame(kHeaders, kEndHeaders, stream_, HeadersOf(method)) +
        Frame(kData, stream == Stream::kEnds ? kEndStream : 0, stream_, data));
+  stream_ += 2;
+}
+
+void UntakingClient::CallCompressed(const std::string& method, const std::string& gzip) {
+  Send(Frame(kHeaders, kEndHeaders, stream_, HeadersOf(method, "gzip")));
+  const std::string data = '\1' + Number(gzip.size(), 4) + gzip;
+  constexpr std::size_t kLargestFrame = 16384;
+  for (std::size_t at = 0; at < data.size(); at += kLargestFrame) {
+    const bool last = at + kLargestFrame >= data.size();
+    Send(Frame(kData, last ? kEndStream : 0, stream_, data.substr(at, kLargestFrame)));
+  }
   stream_ += 2;
 }
 

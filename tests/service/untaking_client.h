@@ -15,6 +15,8 @@ class UntakingClient {
   enum class Stream { kEnds, kStaysOpen };
   // `method` with its service; its own side of the call ends with the message, or stays open.
   void Call(const std::string& method, const std::string& message, Stream stream = Stream::kEnds);
+  // A call whose message is `gzip`, compressed already.
+  void CallCompressed(const std::string& method, const std::string& gzip);
   // The headers of a call whose message does not come.
   void Announce(const std::string& method);
 

@@ -1,6 +1,7 @@
 #include "service/messages/prepare_scene.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -28,14 +29,21 @@ std::string NamesOf(const std::vector<volume::StormInfoPtr>& storms) {
 
 absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
                                                const std::string& id) {
+  const bool searching = store.IsSearching();
   const std::vector<volume::StormInfoPtr> storms = store.Storms();
+  const auto at = std::ranges::find(storms, id, [](const auto& storm) { return storm->id; });
+  if (at != storms.end()) return *at;
+  if (searching) {
+    return base::WithDetails(
+        absl::UnavailableError(
+            "the server has just started and still searches its folders for storms; try again"),
+        {.reason = "SEARCHING_STORMS", .retry_after = std::chrono::seconds(2)});
+  }
   if (storms.empty()) {
     return base::WithDetails(absl::NotFoundError("the server has no storms"),
                              {.reason = kStormNotFound});
   }
   if (id.empty()) return storms.front();
-  const auto at = std::ranges::find(storms, id, [](const auto& storm) { return storm->id; });
-  if (at != storms.end()) return *at;
   return base::WithDetails(absl::NotFoundError(absl::StrCat("no storm has the id '", id,
                                                             "'; there is ", NamesOf(storms))),
                            {.reason = kStormNotFound, .metadata = {{"storm_id", id}}});

@@ -13,7 +13,7 @@
 int main(int argc, char** argv) {
   using thunderhead::sandbox::FormatsWithMisbehaving;
   if (argc == 2 && std::string_view(argv[1]) == thunderhead::sandbox::kReaderCommand) {
-    _exit(thunderhead::sandbox::ReadUntrustedFile(FormatsWithMisbehaving()));
+    _exit(thunderhead::sandbox::ReadStormFile(FormatsWithMisbehaving()));
   }
 #ifdef __SANITIZE_ADDRESS__
   // A reader's signal is what these tests wait for, not AddressSanitizer's report of it.

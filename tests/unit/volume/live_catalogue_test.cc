@@ -60,7 +60,7 @@ class LiveFolder : public ::testing::Test {
       return cell.level == 4 ? cloud : 0.0;
     };
     const std::string path = elsewhere_ + "/written";
-    const NetcdfLock lock(path);  // a catalogue may be reading
+    const NetcdfLock lock;  // a catalogue may be reading
     testing::WriteWrf(file, path);
     return Bytes(path);
   }
@@ -273,6 +273,27 @@ TEST_F(LiveFolder, AnEmptyFolderIsWaitedFor) {
   // The scan after the start is over, so that only the kernel's event tells of this one.
   MoveInto(File(1), WrfBytes({1}));
   EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 2; }));
+}
+
+TEST_F(LiveFolder, ASearchThatTakesLongDoesNotHoldUpTheStart) {
+  PutOld(File(0), WrfBytes({0}));
+  std::promise<void> may_go_on;
+  const std::shared_future<void> goes_on = may_go_on.get_future();
+  StormStoreOptions options;
+  options.read_ahead = 0;
+  options.live = LiveCatalogueOptions{.first_search = milliseconds(0)};
+  options.time = &time_;
+  options.formats.LeaveTo([goes_on](const std::string& path) {
+    goes_on.wait();
+    return StormFormats::BuiltIn().Describe(path);
+  });
+  const auto store = StormStore::Open({data_}, options);
+  ASSERT_TRUE(store.ok()) << store.status();
+  EXPECT_TRUE((*store)->IsSearching());
+  EXPECT_TRUE((*store)->Storms().empty());
+  may_go_on.set_value();
+  EXPECT_TRUE(testing::WaitFor([&] { return !(*store)->IsSearching(); }));
+  EXPECT_EQ((*store)->Storms().size(), 1U);
 }
 
 TEST_F(LiveFolder, APathThatIsNotThereIsAnError) {

@@ -18,7 +18,6 @@
 #include "tests/support/manual_time.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait_for.h"
-#include "volume/netcdf_lock.h"
 #include "volume/storm_store.h"
 
 namespace thunderhead::volume {
@@ -66,8 +65,7 @@ class Storage {
 constexpr std::uint64_t kFarDevice = 4711;
 
 // "cube" is one storm of many times of cells in a cube; a file whose name begins with "far" comes
-// from the storage, which is a device of its own. One with "locked" in it is read by netCDF-C, as
-// it were.
+// from the storage, which is a device of its own.
 class CubeFormat final : public StormFormat {
  public:
   explicit CubeFormat(std::shared_ptr<Storage> storage) : storage_(std::move(storage)) {}
@@ -88,32 +86,20 @@ class CubeFormat final : public StormFormat {
     described.fields = {physics::Hydrometeor::kRain};
     const bool far = file.path.find("/far") != std::string::npos;
     if (far) described.device = kFarDevice;
-    const bool locked = file.path.ends_with("locked.cube");
-    described.reader = std::make_shared<Reader>(far ? storage_ : nullptr, described.cells,
-                                                locked ? file.path : "");
+    described.reader = std::make_shared<Reader>(far ? storage_ : nullptr, described.cells);
     return described;
-  }
-
-  // A reader in another process, as it were, which waits for no lock of this one.
-  static std::shared_ptr<const RecordReader> ReaderApart(const StormFile& file) {
-    return std::make_shared<Reader>(nullptr, file.cells, "");
   }
 
  private:
   class Reader final : public RecordReader {
    public:
-    // `locked` is the path if it is read by netCDF-C, else empty.
-    Reader(std::shared_ptr<Storage> storage, const glm::ivec3& cells, std::string locked)
-        : storage_(std::move(storage)), cells_(cells), locked_(std::move(locked)) {}
+    Reader(std::shared_ptr<Storage> storage, const glm::ivec3& cells)
+        : storage_(std::move(storage)), cells_(cells) {}
 
     absl::StatusOr<HydrometeorFields> Read(std::size_t /*record*/,
                                            const std::optional<VerticalGrid>& /*grid*/,
                                            const ReadCheckpoint& checkpoint) const override {
-      {
-        std::optional<NetcdfLock> lock;
-        if (!locked_.empty()) lock.emplace(locked_);
-        if (storage_ != nullptr) storage_->Pass();
-      }
+      if (storage_ != nullptr) storage_->Pass();
       if (absl::Status ended = checkpoint(0.5); !ended.ok()) return ended;
       HydrometeorFields fields;
       fields.grid = {cells_, glm::dvec3(100.0), glm::dvec3(0.0)};
@@ -130,19 +116,9 @@ class CubeFormat final : public StormFormat {
    private:
     const std::shared_ptr<Storage> storage_;
     const glm::ivec3 cells_;
-    const std::string locked_;
   };
 
   const std::shared_ptr<Storage> storage_;
-};
-
-// NetCDF-C's holder counts by that time while this lives.
-class NetcdfIsMeasuredBy {
- public:
-  explicit NetcdfIsMeasuredBy(const base::TimeSource& time) { NetcdfHolder::MeasureBy(time); }
-  ~NetcdfIsMeasuredBy() { NetcdfHolder::MeasureBy(base::SteadyTime()); }
-  NetcdfIsMeasuredBy(const NetcdfIsMeasuredBy&) = delete;
-  NetcdfIsMeasuredBy& operator=(const NetcdfIsMeasuredBy&) = delete;
 };
 
 // Time moves only where a test moves it.
@@ -258,26 +234,20 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   EXPECT_TRUE(base::DetailsOf(late).retry_after.has_value());
   ASSERT_TRUE(store->Hung().has_value());
   EXPECT_THAT(store->Hung()->file, HasSubstr("far.cube"));
-  // Times in memory are still given; a read that would wait behind is refused at once, while time
+  // Times in memory are still given; a read of the same storage is refused at once, while time
   // stands still.
   EXPECT_TRUE(store->Get("near.cube", 0, {}).ok());
   EXPECT_EQ(store->Storms().size(), 2U);
-  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("near.cube", 9, {}).status()));
+  EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 9, {}).status()));
   // Or the store would wait for its thread, while time stands still.
   storage_->Answer();
 }
 
-TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherProcess) {
+TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   std::filesystem::create_directories(folder_.Path() / "other");
-  std::atomic<int> apart{0};
-  const auto store = Open(
-      {Cube("far", kCells), Cube("other/farther", kCells), Cube("b", kCells)},
-      {.read_ahead = 0, .read_deadline = kDeadline, .reader_apart = [&](const StormFile& file) {
-         ++apart;
-         return file.reader;
-       }});
+  const auto store = Open({Cube("far", kCells), Cube("other/farther", kCells), Cube("b", kCells)},
+                          {.read_ahead = 0, .read_deadline = kDeadline});
   ASSERT_TRUE(store->Get("b.cube", 0, {}).ok());
-  EXPECT_EQ(apart, 0) << "nothing hangs";
   storage_->Hang();
   auto far = GetFar(*store, 0);
   // Somebody else's read, that waits behind it.
@@ -291,51 +261,31 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherProcess) {
   double progress = 0.0;
   EXPECT_TRUE(store->Get("b.cube", 2, [&](double share) { progress = share; }).ok());
   EXPECT_EQ(progress, 0.5);
-  EXPECT_GE(apart, 2);
-  // Of the storage that hangs nothing is read by yet another process, of no folder.
-  const int before = apart;
+  // Of the storage that hangs nothing more is read, of no folder.
+  const int before = storage_->Passed();
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("farther.cube", 0, {}).status()));
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 1, {}).status()));
-  EXPECT_EQ(apart, before);
+  EXPECT_EQ(storage_->Passed(), before);
   storage_->Answer();
   EXPECT_TRUE(store->Get("b.cube", 2, {}).ok());
   EXPECT_TRUE(WaitFor([&] { return store->Get("far.cube", 0, {}).ok(); }));
 }
 
 TEST_F(StormMemory, PlaybackGoesOnBesideAStorageThatHangs) {
-  const NetcdfIsMeasuredBy measured(time_);
-  const auto store =
-      Open({Cube("far-locked", kCells), Cube("locked", kCells)},
-           {.read_ahead = 1, .read_deadline = kDeadline, .reader_apart = CubeFormat::ReaderApart});
-  ASSERT_TRUE(store->Get("locked.cube", 0, {}).ok());
-  ASSERT_TRUE(WaitFor([&] { return store->Peek("locked.cube", 1) != nullptr; }));
+  const auto store = Open({Cube("far", kCells), Cube("near", kCells)},
+                          {.read_ahead = 1, .read_deadline = kDeadline});
+  ASSERT_TRUE(store->Get("near.cube", 0, {}).ok());
+  ASSERT_TRUE(WaitFor([&] { return store->Peek("near.cube", 1) != nullptr; }));
   storage_->Hang();
-  auto hung =
-      std::async(std::launch::async, [&] { return store->Get("far-locked.cube", 0, {}).status(); });
+  auto hung = GetFar(*store, 0);
   ASSERT_TRUE(WaitFor([&] { return storage_->Passed() == 1; }));
-  // Reading ahead begins, and waits behind it, before it is known to hang.
-  time_.Advance(kDeadline / 2);
-  ASSERT_TRUE(store->Get("locked.cube", 1, {}).ok());
-  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 2; }));
-  time_.Advance(kDeadline / 2 + milliseconds(1));
+  time_.Advance(kDeadline + milliseconds(1));
   EXPECT_TRUE(absl::IsDeadlineExceeded(hung.get()));
   // It is known to hang, so these are given while time stands still.
-  for (int time = 2; time < 8; ++time) {
-    EXPECT_TRUE(store->Get("locked.cube", time, {}).ok()) << time;
+  for (int time = 1; time < 8; ++time) {
+    EXPECT_TRUE(store->Get("near.cube", time, {}).ok()) << time;
   }
   storage_->Answer();
-}
-
-TEST_F(StormMemory, AFileThatNetcdfHangsWithOutsideTheStoreIsNamed) {
-  const NetcdfIsMeasuredBy measured(time_);
-  const auto store = Open({Cube("locked", kCells)}, {.read_ahead = 0, .read_deadline = kDeadline});
-  std::optional<NetcdfLock> other(folder_.File("written.nc"));
-  time_.Advance(kDeadline + milliseconds(1));
-  // At once, while time stands still, as it is known.
-  const absl::Status late = store->Get("locked.cube", 0, {}).status();
-  EXPECT_THAT(std::string(late.message()), HasSubstr("written.nc"));
-  other.reset();
-  EXPECT_TRUE(store->Get("locked.cube", 0, {}).ok());
 }
 
 TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {

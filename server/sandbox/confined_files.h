@@ -1,5 +1,5 @@
-// Storm files that the operator does not trust: described and read by a confined process for each
-// request, so that one that takes over, crashes or exhausts its reader costs one error.
+// Storm files, each described and read by a confined process for each request, so that one that
+// takes over, crashes or exhausts its reader costs one error.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -20,25 +19,19 @@
 
 namespace thunderhead::sandbox {
 
-struct UntrustedOptions {
-  std::vector<std::string> folders;  // files below them, also by a link
-  bool all = false;                  // every file
-  ReaderLimits limits;
+struct ConfinedOptions {
+  ReaderLimits limits = {};
   const base::TimeSource* time = &base::SteadyTime();  // must outlive the files
 };
 
-class UntrustedFiles : public std::enable_shared_from_this<UntrustedFiles> {
+class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
  public:
-  explicit UntrustedFiles(UntrustedOptions options);
+  explicit ConfinedFiles(const ConfinedOptions& options = {});
 
   // OK if this machine can confine a reader.
   absl::Status Probe() const;
 
-  bool Includes(const std::string& path) const;
-
   absl::StatusOr<volume::StormFile> Describe(const std::string& path);
-  // Reads the file of that description by confined processes.
-  std::shared_ptr<const volume::RecordReader> ReaderOf(const volume::StormFile& file);
   // `of` is the file's description.
   absl::StatusOr<volume::HydrometeorFields> Read(const volume::StormFile& of, std::size_t record,
                                                  const std::optional<volume::VerticalGrid>& grid,
@@ -58,13 +51,13 @@ class UntrustedFiles : public std::enable_shared_from_this<UntrustedFiles> {
   absl::Status Run(Request request, Reply wanted, const ReaderLimits& limits,
                    const volume::ReadCheckpoint& checkpoint, const ReaderProcess::Take& take);
 
-  const UntrustedOptions options_;
+  const ConfinedOptions options_;
   std::mutex mutex_;
   std::map<std::string, Offender> offenders_;
 };
 
-// `formats` with those files left to `untrusted`.
-volume::StormFormats WithUntrusted(volume::StormFormats formats,
-                                   const std::shared_ptr<UntrustedFiles>& untrusted);
+// `formats` with every file left to confined readers, which have the formats of the program.
+volume::StormFormats Confined(volume::StormFormats formats,
+                              const std::shared_ptr<ConfinedFiles>& files);
 
 }  // namespace thunderhead::sandbox

@@ -1,8 +1,6 @@
-#include "sandbox/untrusted_files.h"
+#include "sandbox/confined_files.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "base/status.h"
@@ -11,36 +9,15 @@
 namespace thunderhead::sandbox {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A description reads no fields, and the catalogue waits for it.
-constexpr std::chrono::milliseconds kDescriptionTime{20'000};
+constexpr std::chrono::milliseconds kDescriptionTime{60'000};
 
 // How long a file that made its reader fail is left alone while it stays the same.
 constexpr std::chrono::minutes kPause{10};
 
-// Absolute, with its links followed as far as it exists, or as it is written.
-fs::path Followed(const std::string& path) {
-  std::error_code error;
-  fs::path followed = fs::weakly_canonical(path, error);
-  return error ? fs::absolute(path).lexically_normal() : followed;
-}
-
-fs::path Written(const std::string& path) {
-  std::error_code error;
-  const fs::path written = fs::absolute(path, error).lexically_normal();
-  // "folder/" is "folder".
-  return written.has_filename() ? written : written.parent_path();
-}
-
-bool IsBelow(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first ==
-         folder.end();
-}
-
-class UntrustedRecordReader final : public volume::RecordReader {
+class ConfinedRecordReader final : public volume::RecordReader {
  public:
-  UntrustedRecordReader(std::shared_ptr<UntrustedFiles> files, volume::StormFile description)
+  ConfinedRecordReader(std::shared_ptr<ConfinedFiles> files, volume::StormFile description)
       : files_(std::move(files)), description_(std::move(description)) {}
 
   absl::StatusOr<volume::HydrometeorFields> Read(
@@ -54,7 +31,7 @@ class UntrustedRecordReader final : public volume::RecordReader {
   }
 
  private:
-  const std::shared_ptr<UntrustedFiles> files_;
+  const std::shared_ptr<ConfinedFiles> files_;
   const volume::StormFile description_;
 };
 
@@ -68,9 +45,9 @@ Request RequestFor(Wanted wanted, const std::string& path, std::size_t record = 
 
 }  // namespace
 
-UntrustedFiles::UntrustedFiles(UntrustedOptions options) : options_(std::move(options)) {}
+ConfinedFiles::ConfinedFiles(const ConfinedOptions& options) : options_(options) {}
 
-absl::Status UntrustedFiles::Probe() const {
+absl::Status ConfinedFiles::Probe() const {
   return ReaderProcess(options_.limits, *options_.time)
       .Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, {}, [](Receiver& from_reader) {
         Note nothing;
@@ -79,16 +56,9 @@ absl::Status UntrustedFiles::Probe() const {
       });
 }
 
-bool UntrustedFiles::Includes(const std::string& path) const {
-  if (options_.all) return true;
-  return std::ranges::any_of(options_.folders, [&path](const std::string& folder) {
-    return IsBelow(Written(path), Written(folder)) || IsBelow(Followed(path), Followed(folder));
-  });
-}
-
-absl::Status UntrustedFiles::Run(Request request, Reply wanted, const ReaderLimits& limits,
-                                 const volume::ReadCheckpoint& checkpoint,
-                                 const ReaderProcess::Take& take) {
+absl::Status ConfinedFiles::Run(Request request, Reply wanted, const ReaderLimits& limits,
+                                const volume::ReadCheckpoint& checkpoint,
+                                const ReaderProcess::Take& take) {
   const std::string path = request.path;
   const std::optional<base::FileStamp> stamp = base::StampOf(path);
   {
@@ -109,7 +79,7 @@ absl::Status UntrustedFiles::Run(Request request, Reply wanted, const ReaderLimi
   return status;
 }
 
-absl::StatusOr<volume::StormFile> UntrustedFiles::Describe(const std::string& path) {
+absl::StatusOr<volume::StormFile> ConfinedFiles::Describe(const std::string& path) {
   ReaderLimits limits = options_.limits;
   limits.time = std::min(limits.time, kDescriptionTime);
   volume::StormFile file;
@@ -119,16 +89,11 @@ absl::StatusOr<volume::StormFile> UntrustedFiles::Describe(const std::string& pa
                                     return CheckPlausible(file);
                                   }));
   file.path = path;
-  file.reader = ReaderOf(file);
+  file.reader = std::make_shared<ConfinedRecordReader>(shared_from_this(), file);
   return file;
 }
 
-std::shared_ptr<const volume::RecordReader> UntrustedFiles::ReaderOf(
-    const volume::StormFile& file) {
-  return std::make_shared<UntrustedRecordReader>(shared_from_this(), file);
-}
-
-absl::StatusOr<volume::HydrometeorFields> UntrustedFiles::Read(
+absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
     const volume::StormFile& of, std::size_t record,
     const std::optional<volume::VerticalGrid>& grid, const volume::ReadCheckpoint& checkpoint) {
   Request request = RequestFor(Wanted::kFields, of.path, record);
@@ -142,8 +107,8 @@ absl::StatusOr<volume::HydrometeorFields> UntrustedFiles::Read(
   return fields;
 }
 
-absl::StatusOr<volume::VerticalGrid> UntrustedFiles::ReadVerticalGrid(const std::string& path,
-                                                                      std::size_t record) {
+absl::StatusOr<volume::VerticalGrid> ConfinedFiles::ReadVerticalGrid(const std::string& path,
+                                                                     std::size_t record) {
   volume::VerticalGrid grid;
   THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kVerticalGrid, path, record), Reply::kGrid,
                                   options_.limits, {}, [&grid](Receiver& from_reader) {
@@ -153,13 +118,9 @@ absl::StatusOr<volume::VerticalGrid> UntrustedFiles::ReadVerticalGrid(const std:
   return grid;
 }
 
-volume::StormFormats WithUntrusted(volume::StormFormats formats,
-                                   const std::shared_ptr<UntrustedFiles>& untrusted) {
-  formats.LeaveTo([untrusted](const std::string& path) {
-    using Described = absl::StatusOr<volume::StormFile>;
-    return untrusted->Includes(path) ? std::optional<Described>(untrusted->Describe(path))
-                                     : std::nullopt;
-  });
+volume::StormFormats Confined(volume::StormFormats formats,
+                              const std::shared_ptr<ConfinedFiles>& files) {
+  formats.LeaveTo([files](const std::string& path) { return files->Describe(path); });
   return formats;
 }
 

@@ -1,0 +1,25 @@
+// The formats by which commands open storm files: every file is described and read by a confined
+// process (sandbox/confined_files.h).
+#pragma once
+
+#include "CLI/CLI.hpp"
+#include "sandbox/reader_process.h"
+#include "volume/storm_format.h"
+
+namespace thunderhead::app {
+
+volume::StormFormats ConfinedFormats(const sandbox::ReaderLimits& limits = {});
+
+struct ReaderFlags {
+  double memory_mib = static_cast<double>(sandbox::MachineMemory() >> 20);
+  double seconds = 3600.0;
+};
+
+void AddReaderFlags(CLI::App& command, ReaderFlags& flags);
+
+sandbox::ReaderLimits LimitsOf(const ReaderFlags& flags);
+
+// FAILED_PRECONDITION if this machine cannot confine a reader, so that no storm file can be read.
+absl::Status ProbeReaders(const sandbox::ReaderLimits& limits);
+
+}  // namespace thunderhead::app
