@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
@@ -31,6 +32,13 @@ absl::StatusOr<std::vector<double>> ReadBounds(const NetcdfFile& file, const std
   const auto name = file.TextAttribute(dimension, "bounds");
   std::vector<double> faces;
   if (!name.has_value() || !file.HasVariable(*name)) return faces;
+  // Bounds are in the units of their coordinate, and CF files usually leave theirs out.
+  const std::string units = file.TextOrEmpty(*name, "units");
+  if (!units.empty() && units != file.TextOrEmpty(dimension, "units")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", *name, " has units '", units, "', and ", dimension,
+                     ", whose bounds they are, others; give both the same"));
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(*name));
   if (shape != std::vector<std::size_t>{cells, 2}) {
     return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
@@ -54,16 +62,41 @@ absl::StatusOr<std::vector<double>> ReadBounds(const NetcdfFile& file, const std
   return faces;
 }
 
+// True for longitudes and latitudes by their names, which may lack units.
+bool IsAngle(const CfDescription& coordinate) {
+  const std::string name = absl::AsciiStrToLower(
+      coordinate.standard_name.empty() ? coordinate.name : coordinate.standard_name);
+  return name == "lon" || name == "lat" || name.ends_with("longitude") ||
+         name.ends_with("latitude");
+}
+
 absl::StatusOr<double> MetresPerUnit(const NetcdfFile& file, const CfDescription& coordinate,
                                      CfDirection direction, double metres_per_degree) {
-  if (direction != CfDirection::kZ && IsDegrees(coordinate.units)) return metres_per_degree;
+  if (IsDegrees(coordinate.units, direction)) return metres_per_degree;
   const auto metres = MetresIn(coordinate.units);
+  const bool assumed = PlainUnits(coordinate.units).empty();
+  if (assumed && IsAngle(coordinate)) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ",
+                                                   coordinate.name,
+                                                   " has no units; add them: degrees, m or km"));
+  }
+  if (assumed) spdlog::warn("{}: {} has no units; taken to be in m", file.Path(), coordinate.name);
   if (metres.has_value()) return *metres;
   return absl::InvalidArgumentError(absl::StrCat(
       file.Path(), ": the coordinate ", coordinate.name, " has units '", coordinate.units,
       direction == CfDirection::kZ
           ? "'; heights in m or km are needed: interpolate to heights first"
           : "'; m, km or degrees are needed"));
+}
+
+// 1, or -1 for depths.
+absl::StatusOr<double> UpwardSign(const NetcdfFile& file, const CfDescription& coordinate) {
+  const std::string positive = absl::AsciiStrToLower(coordinate.positive);
+  if (positive.empty() || positive == "up") return 1.0;
+  if (positive == "down") return -1.0;
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": the coordinate ", coordinate.name, " has the attribute positive '",
+      coordinate.positive, "'; it must be 'up' or 'down'"));
 }
 
 absl::StatusOr<Coordinate> ReadCoordinate(const NetcdfFile& file, const std::string& dimension,
@@ -87,10 +120,13 @@ absl::StatusOr<Coordinate> ReadCoordinate(const NetcdfFile& file, const std::str
   THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.centres_m, file.ReadDoubles(dimension));
   THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.faces_m,
                                ReadBounds(file, dimension, coordinate.centres_m.size()));
-  if (IsDegrees(description.units)) {
+  if (IsDegrees(description.units, direction)) {
     coordinate.middle_deg = 0.5 * (coordinate.centres_m.front() + coordinate.centres_m.back());
   }
-  if (direction == CfDirection::kZ && description.positive == "down") scale = -scale;
+  if (direction == CfDirection::kZ) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const double sign, UpwardSign(file, description));
+    scale *= sign;
+  }
   for (double& centre : coordinate.centres_m) centre *= scale;
   for (double& face : coordinate.faces_m) face *= scale;
   return coordinate;
@@ -214,9 +250,7 @@ int CommonDivisor(const std::vector<double>& faces_m, int max_cells) {
 }  // namespace
 
 CfDescription DescribeCf(const NetcdfFile& file, const std::string& variable) {
-  const auto text = [&](const char* attribute) {
-    return file.HasVariable(variable) ? file.TextAttribute(variable, attribute).value_or("") : "";
-  };
+  const auto text = [&](const char* attribute) { return file.TextOrEmpty(variable, attribute); };
   return {variable, text("standard_name"), text("units"), text("axis"), text("positive")};
 }
 

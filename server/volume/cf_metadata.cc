@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "volume/date_time.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -125,6 +126,10 @@ absl::Status FindAir(const NetcdfFile& file, const std::vector<CfDescription>& v
     THUNDERHEAD_ASSIGN_OR_RETURN(const auto shape, file.Shape(variable.name));
     if (shape.size() < 3) continue;
     if (!air->known_units) return WrongUnits(file, variable, "kg m-3, Pa, K or kg kg-1");
+    if (PlainUnits(variable.units).empty()) {
+      spdlog::warn("{}: {} has no units; taken to be in kg m-3, Pa, K or kg kg-1", file.Path(),
+                   variable.name);
+    }
     THUNDERHEAD_ASSIGN_OR_RETURN(CfVariable arranged, Arrange(file, variable.name));
     metadata->air.push_back({std::move(arranged), *air});
   }
@@ -182,6 +187,18 @@ absl::Status CheckSameAxes(const NetcdfFile& file, const CfVariable& variable,
   return absl::OkStatus();
 }
 
+// Where a variable of wind or turbulent energy lies; an error says why it cannot be used.
+absl::StatusOr<CfVariable> ArrangeWind(const NetcdfFile& file, const CfDescription& variable,
+                                       const CfWind& wind, const CfMetadata& metadata) {
+  if (!wind.known_units) {
+    return WrongUnits(file, variable,
+                      wind.variable == WindVariable::kTurbulentEnergy ? "m2 s-2" : "m s-1");
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(CfVariable arranged, Arrange(file, variable.name));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSameAxes(file, arranged, metadata));
+  return arranged;
+}
+
 // The wind and the turbulent energy, as far as the file has them on the fields' own grid.
 void FindWind(const NetcdfFile& file, const std::vector<CfDescription>& variables,
               CfMetadata* metadata) {
@@ -189,13 +206,17 @@ void FindWind(const NetcdfFile& file, const std::vector<CfDescription>& variable
     return std::ranges::find(metadata->wind, wind, &CfWindField::wind) != metadata->wind.end();
   };
   for (const CfDescription& variable : variables) {
-    const std::optional<WindVariable> wind = WindVariableOf(variable);
-    if (!wind.has_value() || has(*wind)) continue;
+    const std::optional<CfWind> wind = WindVariableOf(variable);
+    if (!wind.has_value() || has(wind->variable)) continue;
     const auto shape = file.Shape(variable.name);
     if (!shape.ok() || shape->size() < 3) continue;
-    absl::StatusOr<CfVariable> arranged = Arrange(file, variable.name);
-    if (!arranged.ok() || !CheckSameAxes(file, *arranged, *metadata).ok()) continue;
-    metadata->wind.push_back({*std::move(arranged), *wind});
+    absl::StatusOr<CfVariable> arranged = ArrangeWind(file, variable, *wind, *metadata);
+    if (arranged.ok()) {
+      metadata->wind.push_back({*std::move(arranged), wind->variable});
+    } else {
+      spdlog::warn("the motion of the air is read without {}: {}", variable.name,
+                   std::string(arranged.status().message()));
+    }
   }
   if (has(WindVariable::kEastward) && has(WindVariable::kNorthward) && has(WindVariable::kUpward)) {
     return;
@@ -205,46 +226,55 @@ void FindWind(const NetcdfFile& file, const std::vector<CfDescription>& variable
   });
 }
 
-struct TimeUnits {
-  absl::Time origin;
-  double seconds = 1.0;
-};
+// A storm without a date counts as idealised and begins in year 1, as in WRF.
+absl::Time IdealisedStart() {
+  return absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
+}
 
-// "minutes since 2013-05-20 18:00".
-std::optional<TimeUnits> ParseTimeUnits(const std::string& units) {
-  const std::vector<std::string> words =
-      absl::StrSplit(units, absl::ByAnyChar(" T"), absl::SkipEmpty());
-  if (words.size() < 3 || words[1] != "since") return std::nullopt;
-  const std::string unit = absl::AsciiStrToLower(words[0]);
-  TimeUnits parsed;
-  if (unit.starts_with("day") || unit == "d") {
-    parsed.seconds = 86400.0;
-  } else if (unit.starts_with("hour") || unit == "h" || unit == "hr") {
-    parsed.seconds = 3600.0;
-  } else if (unit.starts_with("min")) {
-    parsed.seconds = 60.0;
-  } else if (!unit.starts_with("sec") && unit != "s") {
-    return std::nullopt;
+// CF's default calendar is the Julian one before this day, and dates here are all Gregorian.
+absl::Time FirstGregorianDay() {
+  return absl::FromCivil(absl::CivilSecond(1582, 10, 15), absl::UTCTimeZone());
+}
+
+absl::Status CheckCalendar(const NetcdfFile& file, const std::string& name, absl::Time origin,
+                           const std::vector<absl::Time>& times) {
+  const std::string calendar = absl::AsciiStrToLower(file.TextOrEmpty(name, "calendar"));
+  if (calendar == "proleptic_gregorian") return absl::OkStatus();
+  if (!calendar.empty() && calendar != "standard" && calendar != "gregorian") {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the coordinate ", name, " counts in the calendar '", calendar,
+                     "'; write its times in the calendar 'standard'"));
   }
-  int year = 0;
-  int month = 0;
-  int day = 0;
-  int hour = 0;
-  int minute = 0;
-  double second = 0.0;
-  if (std::sscanf(words[2].c_str(), "%d-%d-%d", &year, &month, &day) != 3) return std::nullopt;
-  if (words.size() > 3) std::sscanf(words[3].c_str(), "%d:%d:%lf", &hour, &minute, &second);
-  const absl::CivilSecond civil(year, month, day, hour, minute, 0);
-  parsed.origin = absl::FromCivil(civil, absl::UTCTimeZone()) + absl::Seconds(second);
-  return parsed;
+  const bool begins_julian = origin < FirstGregorianDay();
+  const bool crosses = std::ranges::any_of(times, [begins_julian](absl::Time time) {
+    return (time < FirstGregorianDay()) != begins_julian;
+  });
+  if (!crosses) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": the coordinate ", name, " counts across the change of calendars in 1582; ",
+      "count from a later date, or set the attribute calendar to 'proleptic_gregorian'"));
+}
+
+// The units of the coordinate of time; nothing if it has none and its only time needs none.
+absl::StatusOr<std::optional<TimeUnits>> ReadTimeUnits(const NetcdfFile& file,
+                                                       const std::string& name,
+                                                       std::size_t records) {
+  const CfDescription time = DescribeCf(file, name);
+  const bool given = !absl::StripAsciiWhitespace(time.units).empty();
+  if (!given && records == 1) return std::optional<TimeUnits>();
+  std::optional<TimeUnits> units = ParseTimeUnits(time.units);
+  if (units.has_value()) return units;
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": the coordinate ", name, " has ",
+      given ? absl::StrCat("units '", absl::CEscape(time.units), "'") : "no units",
+      " where 'seconds since 2013-05-20 18:00:00' or the like is needed (s, min, h or days; an ",
+      "offset such as +05:30 may follow); correct them"));
 }
 
 absl::Status ReadCfTimes(const NetcdfFile& file, CfMetadata* metadata) {
-  // A storm without a date counts as idealised and gets year 1, as in WRF.
-  const absl::Time nowhen = absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
   const CfVariable& first = metadata->fields.front().variable;
   if (first.time < 0) {
-    metadata->times = {nowhen};
+    metadata->times = {IdealisedStart()};
     return absl::OkStatus();
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto names, file.Dimensions(first.name));
@@ -254,36 +284,47 @@ absl::Status ReadCfTimes(const NetcdfFile& file, CfMetadata* metadata) {
     return absl::InvalidArgumentError(absl::StrCat(
         file.Path(), ": holds no times yet; the model may still be writing it: try again later"));
   }
-  const std::string units = DescribeCf(file, name).units;
-  const std::optional<TimeUnits> parsed = ParseTimeUnits(units);
-  if (!parsed.has_value() && records > 1) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.Path(), ": the coordinate ", name, " has units '", units,
-        "' where 'seconds since 2013-05-20 18:00:00' or the like is needed; add them"));
-  }
-  if (!parsed.has_value()) {
-    metadata->times = {nowhen};
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<TimeUnits> units,
+                               ReadTimeUnits(file, name, records));
+  if (!units.has_value()) {
+    spdlog::warn("{}: its only time has no units; taken as that of an idealised run", file.Path());
+    metadata->times = {IdealisedStart()};
     return absl::OkStatus();
   }
+  if (!units->origin.has_value()) {
+    spdlog::warn("{}: {} counts from no date; taken as the time of an idealised run", file.Path(),
+                 name);
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values, file.ReadDoubles(name));
+  if (values.size() != records) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ", name, " has ",
+                                                   values.size(), " values for ", records,
+                                                   " times; it must have one each"));
+  }
   for (const double value : values) {
     if (!std::isfinite(value)) {
       return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ", name,
                                                      " has missing values; fill them in"));
     }
-    metadata->times.push_back(parsed->origin + absl::Seconds(value * parsed->seconds));
+    metadata->times.push_back(units->origin.value_or(IdealisedStart()) +
+                              absl::Seconds(value * units->seconds));
   }
-  return absl::OkStatus();
+  if (!units->origin.has_value()) return absl::OkStatus();
+  return CheckCalendar(file, name, *units->origin, metadata->times);
 }
 
-std::optional<std::string> FindSurface(const NetcdfFile& file,
-                                       const std::vector<CfDescription>& variables,
-                                       const CfMetadata& metadata) {
+// The ground's height is optional: one that cannot be read is left out.
+std::optional<CfSurface> FindSurface(const NetcdfFile& file,
+                                     const std::vector<CfDescription>& variables,
+                                     const CfMetadata& metadata) {
   const std::vector<std::string> on = {metadata.axes[1].dimension, metadata.axes[0].dimension};
   for (const CfDescription& variable : variables) {
-    if (variable.standard_name != "surface_altitude" || MetresIn(variable.units) != 1.0) continue;
+    if (variable.standard_name != "surface_altitude") continue;
+    const std::optional<double> metres = MetresIn(variable.units);
     const auto names = file.Dimensions(variable.name);
-    if (names.ok() && *names == on) return variable.name;
+    if (metres.has_value() && names.ok() && *names == on) return CfSurface{variable.name, *metres};
+    spdlog::warn("{}: {} (units '{}') is not read; it must be on ({}), in m or km", file.Path(),
+                 variable.name, variable.units, absl::StrJoin(on, ", "));
   }
   return std::nullopt;
 }

@@ -41,6 +41,12 @@ struct CfWindField {
   WindVariable wind;
 };
 
+// The height of the ground on y, x.
+struct CfSurface {
+  std::string variable;
+  double metres = 1.0;  // in one of its units
+};
+
 // Radius of the sphere on which degrees become metres.
 inline constexpr double kCfEarthRadius_m = 6.371e6;
 
@@ -52,8 +58,8 @@ struct CfMetadata {
   std::vector<CfAirField> air;    // only the variables that mixing ratios need
   // Turbulent energy, and either all three components of the wind or none.
   std::vector<CfWindField> wind;
-  std::optional<std::string> surface;  // height of the ground (m) on y, x
-  std::string source;                  // the file's title, else its source
+  std::optional<CfSurface> surface;
+  std::string source;  // the file's title, else its source
 };
 
 // True if a variable's name or standard name is that of a quantity that can be drawn.

@@ -145,10 +145,42 @@ std::optional<AirVariable> AirByName(const CfDescription& variable) {
   return std::nullopt;
 }
 
+std::optional<WindVariable> WindByName(const CfDescription& variable) {
+  const std::string& standard = variable.standard_name;
+  const std::string name = absl::AsciiStrToLower(variable.name);
+  const bool plain = standard.empty();
+  if (IsOneOf(standard, {"eastward_wind", "x_wind", "grid_eastward_wind"}) ||
+      (plain && IsOneOf(name, {"u", "ua", "uinterp", "u_wind"}))) {
+    return WindVariable::kEastward;
+  }
+  if (IsOneOf(standard, {"northward_wind", "y_wind", "grid_northward_wind"}) ||
+      (plain && IsOneOf(name, {"v", "va", "vinterp", "v_wind"}))) {
+    return WindVariable::kNorthward;
+  }
+  if (standard == "upward_air_velocity" ||
+      (plain && IsOneOf(name, {"w", "wa", "winterp", "w_wind"}))) {
+    return WindVariable::kUpward;
+  }
+  if (standard == "specific_turbulent_kinetic_energy_of_air" ||
+      (plain && IsOneOf(name, {"tke", "tke_pbl"}))) {
+    return WindVariable::kTurbulentEnergy;
+  }
+  return std::nullopt;
+}
+
+bool IsEastwards(std::string_view plain_units) {
+  return IsOneOf(plain_units, {"degreeseast", "degreeeast", "degreee", "degreese"});
+}
+
+bool IsNorthwards(std::string_view plain_units) {
+  return IsOneOf(plain_units, {"degreesnorth", "degreenorth", "degreen", "degreesn"});
+}
+
 }  // namespace
 
 std::string PlainUnits(std::string_view units) {
   std::string plain = absl::AsciiStrToLower(absl::string_view(units.data(), units.size()));
+  if (units.starts_with("Mg")) plain[0] = 'M';
   std::erase_if(plain, [](char c) { return c == ' ' || c == '*' || c == '^' || c == '.'; });
   std::erase_if(plain, [](char c) { return c == '(' || c == ')' || c == '_'; });
   return plain;
@@ -199,31 +231,14 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   return air;
 }
 
-std::optional<WindVariable> WindVariableOf(const CfDescription& variable) {
-  const std::string& standard = variable.standard_name;
-  const std::string name = absl::AsciiStrToLower(variable.name);
-  const bool plain = standard.empty();
+std::optional<CfWind> WindVariableOf(const CfDescription& variable) {
+  const std::optional<WindVariable> kind = WindByName(variable);
+  if (!kind.has_value()) return std::nullopt;
   const std::string units = PlainUnits(variable.units);
-  if (IsOneOf(units, {"ms-1", "m/s", "meterspersecond", "metrespersecond"})) {
-    if (IsOneOf(standard, {"eastward_wind", "x_wind", "grid_eastward_wind"}) ||
-        (plain && IsOneOf(name, {"u", "ua", "uinterp", "u_wind"}))) {
-      return WindVariable::kEastward;
-    }
-    if (IsOneOf(standard, {"northward_wind", "y_wind", "grid_northward_wind"}) ||
-        (plain && IsOneOf(name, {"v", "va", "vinterp", "v_wind"}))) {
-      return WindVariable::kNorthward;
-    }
-    if (standard == "upward_air_velocity" ||
-        (plain && IsOneOf(name, {"w", "wa", "winterp", "w_wind"}))) {
-      return WindVariable::kUpward;
-    }
-  }
-  if (IsOneOf(units, {"m2s-2", "m2/s2", "jkg-1", "j/kg"}) &&
-      (standard == "specific_turbulent_kinetic_energy_of_air" ||
-       (plain && IsOneOf(name, {"tke", "tke_pbl"})))) {
-    return WindVariable::kTurbulentEnergy;
-  }
-  return std::nullopt;
+  const bool known = *kind == WindVariable::kTurbulentEnergy
+                         ? IsOneOf(units, {"m2s-2", "m2/s2", "jkg-1", "j/kg"})
+                         : IsOneOf(units, {"ms-1", "m/s", "meterspersecond", "metrespersecond"});
+  return CfWind{*kind, known};
 }
 
 std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
@@ -246,10 +261,9 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
   if (standard == "time" || absl::StrContains(coordinate.units, " since ")) {
     return CfDirection::kTime;
   }
-  const std::string units = absl::AsciiStrToLower(coordinate.units);
-  if (IsOneOf(units, {"degrees_east", "degree_east", "degreee", "degreese"}))
-    return CfDirection::kX;
-  if (IsOneOf(units, {"degrees_north", "degree_north", "degreen"})) return CfDirection::kY;
+  const std::string units = PlainUnits(coordinate.units);
+  if (IsEastwards(units)) return CfDirection::kX;
+  if (IsNorthwards(units)) return CfDirection::kY;
   if (!coordinate.positive.empty()) return CfDirection::kZ;
   const std::string name = absl::AsciiStrToLower(coordinate.name);
   if (IsOneOf(name, {"x", "xh", "xc", "lon", "longitude", "easting", "nx", "west_east"})) {
@@ -272,9 +286,12 @@ std::optional<double> MetresIn(std::string_view units) {
   return std::nullopt;
 }
 
-bool IsDegrees(std::string_view units) {
-  return absl::StartsWith(absl::AsciiStrToLower(absl::string_view(units.data(), units.size())),
-                          "degree");
+bool IsDegrees(std::string_view units, CfDirection direction) {
+  const std::string plain = PlainUnits(units);
+  if (direction == CfDirection::kX && IsEastwards(plain)) return true;
+  if (direction == CfDirection::kY && IsNorthwards(plain)) return true;
+  const bool horizontal = direction == CfDirection::kX || direction == CfDirection::kY;
+  return horizontal && IsOneOf(plain, {"degree", "degrees"});
 }
 
 }  // namespace thunderhead::volume

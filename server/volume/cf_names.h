@@ -19,7 +19,8 @@ struct CfDescription {
   std::string positive;
 };
 
-// Units without blanks, stars, hats, dots and brackets, in lower case: "kg m**-3" is "kgm-3".
+// Units without blanks, stars, hats, dots and brackets, in lower case: "kg m**-3" is "kgm-3". "Mg"
+// keeps its capital, as these are a thousand million "mg".
 std::string PlainUnits(std::string_view units);
 
 // A variable that can be drawn. Values times `scale` are in the quantity's unit.
@@ -50,8 +51,12 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable);
 // Variables of the motion of the air.
 enum class WindVariable { kEastward, kNorthward, kUpward, kTurbulentEnergy };
 
-// Nothing if the variable is none of them, or not in m s-1 or m2 s-2.
-std::optional<WindVariable> WindVariableOf(const CfDescription& variable);
+struct CfWind {
+  WindVariable variable = WindVariable::kEastward;
+  bool known_units = true;  // false: not in m s-1 or m2 s-2
+};
+
+std::optional<CfWind> WindVariableOf(const CfDescription& variable);
 
 enum class CfDirection { kX, kY, kZ, kTime };
 
@@ -61,7 +66,8 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate);
 // The unit in metres; nothing if it is not a length. An empty unit means metres.
 std::optional<double> MetresIn(std::string_view units);
 
-// Degrees of latitude or longitude.
-bool IsDegrees(std::string_view units);
+// True for degrees along x (of longitude) or y (of latitude), and for degrees that do not say
+// which, as of a rotated grid.
+bool IsDegrees(std::string_view units, CfDirection direction);
 
 }  // namespace thunderhead::volume

@@ -221,12 +221,13 @@ absl::Status CfTimeReader::ReadTerrain(HydrometeorFields* fields) const {
   terrain.assign(nx * ny, ground_m);
   if (!metadata_.surface.has_value()) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,
-                               file_.ReadPart(*metadata_.surface, {0, 0}, {ny, nx}));
+                               file_.ReadPart(metadata_.surface->variable, {0, 0}, {ny, nx}));
+  const auto metres = static_cast<float>(metadata_.surface->metres);
   for (std::size_t y = 0; y < ny; ++y) {
     for (std::size_t x = 0; x < nx; ++x) {
       const std::size_t from_y = metadata_.axes[1].reversed ? ny - 1 - y : y;
       const std::size_t from_x = metadata_.axes[0].reversed ? nx - 1 - x : x;
-      const float height_m = read[from_y * nx + from_x];
+      const float height_m = read[from_y * nx + from_x] * metres;
       if (!std::isnan(height_m)) terrain[y * nx + x] = height_m;
     }
   }

@@ -400,6 +400,18 @@ std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
+std::string NetcdfFile::TextOrEmpty(const std::string& variable,
+                                    const std::string& attribute) const {
+  if (std::optional<std::string> text = TextAttribute(variable, attribute); text.has_value()) {
+    return *std::move(text);
+  }
+  const NetcdfLock lock(path_);
+  int id = NC_GLOBAL;
+  if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return "";
+  const bool absent = nc_inq_att(handle_, id, attribute.c_str(), nullptr, nullptr) != NC_NOERR;
+  return absent ? "" : "(not text)";
+}
+
 absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
   const NetcdfLock lock;

@@ -55,6 +55,9 @@ class NetcdfFile {
                                            const std::string& attribute) const;
   std::optional<double> NumberAttribute(const std::string& variable,
                                         const std::string& attribute) const;
+  // A text attribute that is empty if absent. One of another type is "(not text)", which no reader
+  // knows, so that it is refused like any other unknown text.
+  std::string TextOrEmpty(const std::string& variable, const std::string& attribute) const;
 
   // The rows of a two-dimensional character variable, up to the first NUL each.
   absl::StatusOr<std::vector<std::string>> ReadRows(const std::string& variable) const;

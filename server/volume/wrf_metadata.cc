@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "absl/strings/ascii.h"
@@ -15,6 +14,7 @@
 #include "absl/strings/strip.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "volume/date_time.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -37,6 +37,10 @@ constexpr Unit kVelocity = {"m s-1", {"ms-1", "m/s", "meters/s", "metres/s"}};
 constexpr Unit kTemperature = {"K", {"K", "kelvin", "Kelvin", "degK"}};
 constexpr Unit kLength = {"m", {"m", "meter", "meters", "metres"}};
 constexpr Unit kPerMass = {"kg-1", {"kg-1", "/kg", "#kg-1", "#/kg"}};
+constexpr Unit kShare = {"1", {"1", "-", "fraction", "dimensionless"}};
+constexpr Unit kPercent = {"%", {"%", "percent"}};
+constexpr Unit kNorth = {"degree_north", {"degreenorth", "degreesnorth", "degree", "degrees"}};
+constexpr Unit kEast = {"degree_east", {"degreeeast", "degreeseast", "degree", "degrees"}};
 
 // Variables of particle sizes. Radii come before numbers, for which a size distribution must be
 // assumed.
@@ -57,9 +61,8 @@ constexpr std::array kSizeNames = {
 };
 
 absl::Status CheckUnits(const NetcdfFile& file, const std::string& variable, const Unit& unit) {
-  const std::optional<std::string> units = file.TextAttribute(variable, "units");
-  if (!units.has_value()) return absl::OkStatus();
-  std::string spelling = *units;
+  const std::string units = file.TextOrEmpty(variable, "units");
+  std::string spelling = units;
   std::erase_if(spelling, [](char c) { return c == ' ' || c == '*' || c == '^' || c == '.'; });
   std::erase_if(spelling, [](char c) { return c == '(' || c == ')' || c == '_'; });
   if (spelling.empty() || std::ranges::find(unit.spellings, spelling) != unit.spellings.end()) {
@@ -67,7 +70,7 @@ absl::Status CheckUnits(const NetcdfFile& file, const std::string& variable, con
   }
   const std::string_view wanted = unit.name;
   return absl::InvalidArgumentError(
-      absl::StrCat(file.Path(), ": ", variable, " has units '", *units, "' where '",
+      absl::StrCat(file.Path(), ": ", variable, " has units '", units, "' where '",
                    std::string(wanted), "' is needed; convert it (and its units attribute) first"));
 }
 
@@ -131,26 +134,26 @@ absl::Status ReadGrid(const NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
+// A time of the model has a time of day to the second; a row that is only partly written is
+// shorter.
 std::optional<absl::Time> ParseWrfTime(const std::string& text) {
-  int year = 0;
-  int month = 0;
-  int day = 0;
-  int hour = 0;
-  int minute = 0;
-  int second = 0;
-  int length = 0;
-  // The separator between date and time is '_' in WRF's own files and 'T' or a blank in others.
-  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%*1[_T ]%2d:%2d:%2d%n", &year, &month, &day, &hour,
-                  &minute, &second, &length) != 6 ||
-      length < 16) {
-    return std::nullopt;
+  constexpr std::size_t kWhole = std::string_view("2013-05-20_20:00:00").size();
+  if (absl::StripAsciiWhitespace(text).size() < kWhole) return std::nullopt;
+  return ParseDateTime(text);
+}
+
+// When the run began, by the attribute `name`; nothing if the file does not have it.
+absl::StatusOr<std::optional<absl::Time>> ReadStart(const NetcdfFile& file,
+                                                    const std::string& name) {
+  const std::string text = file.TextOrEmpty("", name);
+  if (text.empty()) return std::optional<absl::Time>();
+  std::optional<absl::Time> start = ParseWrfTime(text);
+  if (!start.has_value()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the attribute ", name, " is '", absl::CEscape(text),
+                     "', not a date like 2013-05-20_20:00:00; correct it"));
   }
-  const absl::CivilSecond civil(year, month, day, hour, minute, second);
-  if (civil.month() != month || civil.day() != day || civil.hour() != hour ||
-      civil.minute() != minute || civil.second() != second) {
-    return std::nullopt;
-  }
-  return absl::FromCivil(civil, absl::UTCTimeZone());
+  return start;
 }
 
 absl::Status NoTimes(const NetcdfFile& file) {
@@ -159,12 +162,32 @@ absl::Status NoTimes(const NetcdfFile& file) {
                    "again when it has finished"));
 }
 
-// Times from minutes since the start of the run, for files whose Times were left out.
-absl::StatusOr<std::vector<absl::Time>> TimesFromMinutes(const NetcdfFile& file) {
-  std::optional<std::string> start = file.TextAttribute("", "SIMULATION_START_DATE");
-  if (!start.has_value()) start = file.TextAttribute("", "START_DATE");
-  const std::optional<absl::Time> origin = start.has_value() ? ParseWrfTime(*start) : std::nullopt;
-  if (!file.HasVariable("XTIME") || !origin.has_value()) {
+// The units of XTIME: minutes since the start of the run, unless the file says otherwise.
+absl::StatusOr<TimeUnits> ReadXtimeUnits(const NetcdfFile& file) {
+  const std::string text = file.TextOrEmpty("XTIME", "units");
+  const std::optional<TimeUnits> units = ParseTimeUnits(text.empty() ? "minutes" : text);
+  if (!units.has_value()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": XTIME has units '", absl::CEscape(text),
+                     "' where 'minutes since 2013-05-20 12:00:00' or the like is needed; correct "
+                     "them"));
+  }
+  if (units->origin.has_value()) return *units;
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::optional<absl::Time> start,
+                               ReadStart(file, "SIMULATION_START_DATE"));
+  if (!start.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(start, ReadStart(file, "START_DATE"));
+  }
+  return TimeUnits{units->seconds, start};
+}
+
+// Times from XTIME, for files whose Times were left out.
+absl::StatusOr<std::vector<absl::Time>> TimesFromXtime(const NetcdfFile& file) {
+  TimeUnits units;
+  if (file.HasVariable("XTIME")) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(units, ReadXtimeUnits(file));
+  }
+  if (!units.origin.has_value()) {
     return absl::InvalidArgumentError(
         absl::StrCat(file.Path(), ": has no variable Times (nor XTIME with the attribute ",
                      "SIMULATION_START_DATE); extract Times as well"));
@@ -174,12 +197,11 @@ absl::StatusOr<std::vector<absl::Time>> TimesFromMinutes(const NetcdfFile& file)
     return absl::InvalidArgumentError(
         absl::StrCat(file.Path(), ": XTIME has dimensions ", AsText(shape), ", not (time)"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> minutes,
-                               file.ReadPart("XTIME", {0}, shape));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values, file.ReadDoubles("XTIME"));
   std::vector<absl::Time> times;
-  for (const float minute : minutes) {
-    if (!std::isfinite(minute)) return NoTimes(file);
-    times.push_back(*origin + absl::Seconds(std::round(static_cast<double>(minute) * 60.0)));
+  for (const double value : values) {
+    if (!std::isfinite(value)) return NoTimes(file);
+    times.push_back(*units.origin + absl::Seconds(std::round(value * units.seconds)));
   }
   return times;
 }
@@ -189,7 +211,7 @@ absl::StatusOr<std::vector<absl::Time>> ReadWrfTimes(const NetcdfFile& file) {
   if (records == 0) return NoTimes(file);
   std::vector<absl::Time> times;
   if (!file.HasVariable("Times")) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(times, TimesFromMinutes(file));
+    THUNDERHEAD_ASSIGN_OR_RETURN(times, TimesFromXtime(file));
   } else {
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> rows, file.ReadRows("Times"));
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -197,8 +219,8 @@ absl::StatusOr<std::vector<absl::Time>> ReadWrfTimes(const NetcdfFile& file) {
       if (!time.has_value()) {
         return absl::DataLossError(absl::StrCat(
             file.Path(), ": Times of record ", i, " is '", absl::CEscape(rows[i]),
-            "', not a date like 2013-05-20_20:00:00; the model may still be writing the file: ",
-            "try again when it has finished"));
+            "', not a date like 2013-05-20_20:00:00; try again if the model is still writing the ",
+            "file, else correct it"));
       }
       times.push_back(*time);
     }
@@ -238,12 +260,18 @@ void FindMotion(const NetcdfFile& file, WrfMetadata& metadata) {
   const auto nz = static_cast<std::size_t>(metadata.cells.z);
   const auto fits = [&](const std::string& variable, const std::vector<std::size_t>& shape,
                         const Unit& unit) {
-    return file.HasVariable(variable) && CheckVariable(file, variable, shape, unit).ok();
+    if (!file.HasVariable(variable)) return false;
+    const absl::Status fit = CheckVariable(file, variable, shape, unit);
+    if (!fit.ok()) {
+      spdlog::warn("the motion of the air is not read: {}", std::string(fit.message()));
+    }
+    return fit.ok();
   };
   for (const char* name : {"TKE", "QKE", "TKE_PBL"}) {
-    const bool in_layers = fits(name, {records, nz, ny, nx}, kEnergy);
-    if (!in_layers && !fits(name, {records, nz + 1, ny, nx}, kEnergy)) continue;
-    metadata.energy = {name, !in_layers, std::string_view(name) == "QKE"};
+    const absl::StatusOr<std::vector<std::size_t>> shape = file.Shape(name);
+    const bool at_interfaces = shape.ok() && shape->size() == 4 && (*shape)[1] == nz + 1;
+    if (!fits(name, {records, at_interfaces ? nz + 1 : nz, ny, nx}, kEnergy)) continue;
+    metadata.energy = {name, at_interfaces, std::string_view(name) == "QKE"};
     break;
   }
   metadata.has_wind = fits("U", {records, nz, ny, nx + 1}, kVelocity) &&
@@ -336,6 +364,12 @@ absl::Status ReadPlace(const NetcdfFile& file, WrfMetadata& metadata) {
   metadata.idealised = file.NumberAttribute("", "MAP_PROJ").value_or(1.0) == 0.0;
   if (metadata.idealised) return absl::OkStatus();
   if (!file.HasVariable("XLAT") || !file.HasVariable("XLONG")) return absl::OkStatus();
+  absl::Status units = CheckUnits(file, "XLAT", kNorth);
+  if (units.ok()) units = CheckUnits(file, "XLONG", kEast);
+  if (!units.ok()) {
+    spdlog::warn("the storm is shown without a place on Earth: {}", std::string(units.message()));
+    return absl::OkStatus();
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(const double latitude_deg, Middle(file, "XLAT", metadata));
   THUNDERHEAD_ASSIGN_OR_RETURN(const double longitude_deg, Middle(file, "XLONG", metadata));
   if (!std::isfinite(latitude_deg) || !std::isfinite(longitude_deg)) return absl::OkStatus();
@@ -359,16 +393,23 @@ std::optional<physics::LandUseScheme> LandUseSchemeOf(const NetcdfFile& file) {
 }
 
 // The ground's cover of a run with a place. Classes of an unknown table are left out, and so is a
-// variable of unexpected shape.
+// variable of unexpected shape or units.
 WrfLand FindLand(const NetcdfFile& file, const WrfMetadata& metadata) {
   WrfLand land;
   if (metadata.idealised || !metadata.latitude_deg.has_value()) return land;
-  const auto find = [&](std::initializer_list<const char*> names) -> std::string {
+  const auto find = [&](std::initializer_list<const char*> names,
+                        const std::optional<Unit>& unit) -> std::string {
     const std::vector<std::size_t> columns = {metadata.times.size(),
                                               static_cast<std::size_t>(metadata.cells.y),
                                               static_cast<std::size_t>(metadata.cells.x)};
     for (const char* name : names) {
       if (!file.HasVariable(name)) continue;
+      const absl::Status units =
+          unit.has_value() ? CheckUnits(file, name, *unit) : absl::OkStatus();
+      if (!units.ok()) {
+        spdlog::warn("the ground is drawn without {}: {}", name, std::string(units.message()));
+        continue;
+      }
       const auto shape = file.Shape(name);
       if (shape.ok() && *shape == columns) return name;
       spdlog::warn("{}: {} has not one value a column and is not read", file.Path(), name);
@@ -386,13 +427,13 @@ WrfLand FindLand(const NetcdfFile& file, const WrfMetadata& metadata) {
     return land;
   }
   land.scheme = *scheme;
-  land.land_use = find({"LU_INDEX"});
+  land.land_use = find({"LU_INDEX"}, std::nullopt);
   if (land.land_use.empty()) return land;
-  land.mask = find({"XLAND", "LANDMASK"});
-  land.albedo = find({"ALBEDO"});
-  land.green = find({"VEGFRA"});
-  land.snow_share = find({"SNOWC"});
-  if (land.snow_share.empty()) land.snow_depth = find({"SNOWH"});
+  land.mask = find({"XLAND", "LANDMASK"}, std::nullopt);
+  land.albedo = find({"ALBEDO"}, kShare);
+  land.green = find({"VEGFRA"}, kPercent);
+  land.snow_share = find({"SNOWC"}, kShare);
+  if (land.snow_share.empty()) land.snow_depth = find({"SNOWH"}, kLength);
   return land;
 }
 
@@ -436,7 +477,8 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const NetcdfFile& file) {
   metadata.model = ModelName(file);
   metadata.microphysics = MicrophysicsOf(file);
   metadata.domain = static_cast<int>(file.NumberAttribute("", "GRID_ID").value_or(1.0));
-  metadata.simulation_start = file.TextAttribute("", "SIMULATION_START_DATE").value_or("");
+  THUNDERHEAD_RETURN_IF_ERROR(ReadStart(file, "SIMULATION_START_DATE").status());
+  metadata.simulation_start = file.TextOrEmpty("", "SIMULATION_START_DATE");
   return metadata;
 }
 

@@ -67,6 +67,7 @@ void WriteCf(const SyntheticCf& file, const std::string& path) {
     PutAttributes(id, variable, {{"bounds", name}});
     const int both[2] = {dimension, two};
     Must(nc_def_var(id, name.c_str(), NC_DOUBLE, 2, both, &variable));
+    PutAttributes(id, variable, file.bounds_attributes);
     std::vector<double> pairs;
     for (std::size_t i = 0; i + 1 < coordinate.faces.size(); ++i) {
       pairs.push_back(coordinate.faces[i]);
@@ -82,6 +83,13 @@ void WriteCf(const SyntheticCf& file, const std::string& path) {
                     &variable));
     PutAttributes(id, variable, content.attributes);
     contents.emplace_back(variable, Values(file, content));
+  }
+  for (const auto& [name, attributes] : file.number_attributes) {
+    int variable = 0;
+    Must(nc_inq_varid(id, name.c_str(), &variable));
+    for (const auto& [attribute, number] : attributes) {
+      Must(nc_put_att_double(id, variable, attribute.c_str(), NC_DOUBLE, 1, &number));
+    }
   }
   Must(nc_enddef(id));
   for (const auto& [variable, values] : contents) {

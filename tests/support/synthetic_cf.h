@@ -30,6 +30,9 @@ struct SyntheticCf {
   std::vector<CfCoordinate> coordinates;
   std::vector<CfContent> variables;
   std::map<std::string, std::string> attributes;
+  std::map<std::string, std::string> bounds_attributes;  // of the bounds of every coordinate
+  // Attributes that are numbers, by variable and name.
+  std::map<std::string, std::map<std::string, double>> number_attributes;
 };
 
 void WriteCf(const SyntheticCf& file, const std::string& path);

@@ -57,6 +57,20 @@ class Writer {
     }
   }
 
+  void Minutes() {
+    if (file_.minutes.empty()) return;
+    int variable = 0;
+    const int dimension = dimensions_.at("Time");
+    const auto units = file_.units.find("XTIME");
+    Define([&] {
+      Succeed(nc_def_var(id_, "XTIME", NC_FLOAT, 1, &dimension, &variable));
+      Text(variable, "units", units == file_.units.end() ? "" : units->second);
+    });
+    const std::size_t start = 0;
+    const std::size_t count = file_.minutes.size();
+    Succeed(nc_put_vara_double(id_, variable, &start, &count, file_.minutes.data()));
+  }
+
   // `level_dimension` empty: a field of columns.
   void Field(const std::string& name, const std::string& level_dimension, const std::string& units,
              const Value& value) {
@@ -186,6 +200,7 @@ double InterfaceHeight_m(const SyntheticWrf& file, const WrfCell& cell) {
 void WriteWrf(const SyntheticWrf& file, const std::string& path) {
   Writer writer(file, path);
   writer.Times();
+  writer.Minutes();
   // State is split into a base that is the same for all times and the perturbation, as WRF does.
   const auto base_geopotential = [&](const WrfCell& cell) {
     WrfCell first = cell;

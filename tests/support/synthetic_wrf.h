@@ -72,7 +72,8 @@ struct SyntheticWrf {
   std::map<std::string, std::string> units;   // units attribute in place of the right one
   std::map<std::string, double> fill_values;  // _FillValue attribute
   std::vector<StoredValue> stored_values;
-  int times_left_blank = 0;  // records at the end whose Times are not written yet
+  std::vector<double> minutes;  // XTIME; empty: not in the file
+  int times_left_blank = 0;     // records at the end whose Times are not written yet
 };
 
 // Height of an interface of `file`.

@@ -85,6 +85,16 @@ TEST_F(BrokenFiles, WithWrongUnits) {
   }
 }
 
+TEST_F(BrokenFiles, WithUnitsThatNobodyKnows) {
+  for (const char* name : {"QCLOUD", "QVAPOR", "P", "PB", "T", "PH", "PHB", "HGT"}) {
+    for (const std::string units : {"furlongs", "kg kg-2", "Mg kg-1", "10 Pa"}) {
+      SyntheticWrf file = Storm();
+      file.units[name] = units;
+      ExpectError(Read(file), std::string(name) + " has units '" + units + "'");
+    }
+  }
+}
+
 TEST_F(BrokenFiles, OtherSpellingsOfTheRightUnitsAreRead) {
   for (const char* units : {"kg/kg", "kg kg^-1", "kg kg**-1", "1", "", "kg.kg-1"}) {
     SyntheticWrf file = Storm();
@@ -128,9 +138,39 @@ TEST_F(BrokenFiles, StillGrowing) {
 }
 
 TEST_F(BrokenFiles, WithATimeThatIsNone) {
+  for (const std::string time :
+       {"2013-02-30_20:00:00", "2013-13-20_20:00:00", "2013-05-20_99:99:99", "2013-05-20_24:00:00",
+        "2013-05-20_20:00:60", "2013-05-20_20:00:0x", "2013-05-20_20:00   ", "2013-05-20         ",
+        "2013-+5-20_20:00:00", "-013-05-20_20:00:00"}) {
+    SyntheticWrf file = Storm();
+    file.times = {time};
+    ExpectError(Read(file), "Times of record 0 is '" + time + "'");
+  }
+}
+
+TEST_F(BrokenFiles, WithAStartThatIsNoTime) {
+  for (const std::string start : {"2013-13-20_12:00:00", "2013-05-20_99:99:99", "2013-05-20",
+                                  "soon", "2013-05-20_12:00:00 +9999"}) {
+    SyntheticWrf file = Storm();
+    file.simulation_start = start;
+    ExpectError(Read(file), "the attribute SIMULATION_START_DATE is '" + start + "'");
+  }
+}
+
+TEST_F(BrokenFiles, WhoseMinutesCountFromNoTime) {
   SyntheticWrf file = Storm();
-  file.times = {"2013-02-30_20:00:00"};
-  ExpectError(Read(file), "Times of record 0");
+  file.omitted = {"Times"};
+  file.minutes = {480.0};
+  for (const std::string units :
+       {"minutes since 2013-13-20 12:00:00", "months since 2013-05-20", "fortnights", "K"}) {
+    file.units["XTIME"] = units;
+    ExpectError(Read(file), "XTIME has units '" + units + "'");
+  }
+  file.units.clear();
+  file.simulation_start = "2013-05-20_99:99:99";
+  ExpectError(Read(file), "SIMULATION_START_DATE");
+  file.omitted.insert("SIMULATION_START_DATE");
+  ExpectError(Read(file), "no variable Times");
 }
 
 TEST_F(BrokenFiles, WithoutAnyAir) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "physics/air.h"
+#include "tests/support/captured_log.h"
 #include "tests/support/synthetic_cf.h"
 #include "tests/support/temporary_folder.h"
 #include "volume/cf_axes.h"
@@ -15,6 +16,7 @@
 namespace thunderhead::volume {
 namespace {
 
+using testing::CapturedLog;
 using testing::CfContent;
 using testing::CfCoordinate;
 using testing::ExtinctionFile;
@@ -294,6 +296,130 @@ TEST_F(CfReader, TimesAreRecords) {
   EXPECT_EQ(info_.times[1].valid_time, "2013-05-20T19:30:30Z");
 }
 
+// One time, in these units.
+SyntheticCf Timed(const std::string& units, double time) {
+  SyntheticCf file = Small();
+  file.coordinates.push_back({"time", {time}, {{"units", units}}, {}});
+  file.variables[0].dimensions = {"time", "z", "y", "x"};
+  return file;
+}
+
+TEST_F(CfReader, TimesCountFromTheDateOfTheirUnits) {
+  const std::tuple<const char*, double, const char*> cases[] = {
+      {"seconds since 2013-05-20 18:00:00", 90.0, "2013-05-20T18:01:30Z"},
+      {"hours since 2013-05-20 18:00:00 +05:30", 2.0, "2013-05-20T14:30:00Z"},
+      {"hours since 2013-05-20 18:00:00 -6:00", -1.0, "2013-05-20T23:00:00Z"},
+      {"days since 2012-02-28", 1.0, "2012-02-29T00:00:00Z"},
+      {"days since 2013-02-28", 1.0, "2013-03-01T00:00:00Z"},
+      {"minutes since 0001-01-01 00:00:00", 20.0, "0001-01-01T00:20:00Z"},
+      {"min", 20.0, "0001-01-01T00:20:00Z"},  // of an idealised run
+      {"", 20.0, "0001-01-01T00:00:00Z"},
+  };
+  for (const auto& [units, time, expected] : cases) {
+    const auto fields = Read(Timed(units, time));
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_EQ(info_.times[0].valid_time, expected) << units;
+  }
+}
+
+TEST_F(CfReader, TimesThatCountFromNoDateAreRefused) {
+  for (const std::string units :
+       {"seconds since 2013-13-20 18:00:00", "seconds since 2013-05-20 99:99:99",
+        "seconds since 2013-05-20 18:00:00 +9999", "seconds since 2013-02-29",
+        "seconds since 2013-05-20 24:00:00", "fortnights since 2013-05-20",
+        "months since 2013-05-20", "day as %Y%m%d.%f", "K"}) {
+    ExpectError(Timed(units, 0.0), "the coordinate time has units '" + units + "'");
+  }
+  SyntheticCf file = Timed("", 0.0);
+  file.coordinates.back().values = {0.0, 1.0};
+  ExpectError(file, "the coordinate time has no units");
+}
+
+TEST_F(CfReader, TimesOfOtherCalendarsAreRefused) {
+  SyntheticCf file = Timed("days since 2013-02-28", 1.0);
+  for (const char* calendar : {"standard", "gregorian", "Gregorian", "proleptic_gregorian"}) {
+    file.coordinates.back().attributes["calendar"] = calendar;
+    ASSERT_TRUE(Read(file).ok()) << calendar;
+    EXPECT_EQ(info_.times[0].valid_time, "2013-03-01T00:00:00Z");
+  }
+  for (const std::string calendar : {"noleap", "360_day", "all_leap", "julian", "mayan"}) {
+    file.coordinates.back().attributes["calendar"] = calendar;
+    ExpectError(file, "counts in the calendar '" + calendar + "'");
+  }
+  // CF's default calendar has two days more in the years since 1.
+  file = Timed("hours since 0001-01-01 00:00:00", 17'637'120.0);
+  ExpectError(file, "across the change of calendars in 1582");
+  file.coordinates.back().attributes["calendar"] = "proleptic_gregorian";
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_EQ(info_.times[0].valid_time, "2013-01-13T00:00:00Z");
+}
+
+TEST_F(CfReader, CoordinatesInOtherUnitsAreRefused) {
+  SyntheticCf file = Small();
+  file.coordinates[0].attributes["axis"] = "X";
+  for (const std::string units : {"ft", "Mm", "mm", "degrees_north", "degrees_west",
+                                  "degree_Celsius", "radian", "rotations", "10 m", "1"}) {
+    file.coordinates[0].attributes["units"] = units;
+    ExpectError(file, "the coordinate x has units '" + units + "'");
+  }
+  file = Small();
+  file.coordinates[2].attributes["axis"] = "Z";
+  for (const std::string units : {"ft", "hPa", "degrees_north", "degrees", "1", "level"}) {
+    file.coordinates[2].attributes["units"] = units;
+    ExpectError(file, "the coordinate z has units '" + units + "'");
+  }
+  file = Small();
+  file.coordinates[2].attributes["positive"] = "sideways";
+  ExpectError(file, "positive 'sideways'");
+  file = Small();
+  file.coordinates[0].name = "lon";
+  file.coordinates[0].attributes.clear();
+  file.variables[0].dimensions = {"z", "y", "lon"};
+  file.variables[0].value = [](const Index&) { return 0.0; };
+  ExpectError(file, "the coordinate lon has no units");
+}
+
+TEST_F(CfReader, CoordinatesWithoutUnitsAreTakenToBeInMetres) {
+  SyntheticCf file = Small();
+  for (CfCoordinate& coordinate : file.coordinates) coordinate.attributes.clear();
+  const CapturedLog log;
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.spacing_m, glm::dvec3(100.0, 200.0, 50.0));
+  for (const char* name : {"x", "y", "z"}) {
+    EXPECT_THAT(log.Text(), HasSubstr(std::string(name) + " has no units; taken to be in m"));
+  }
+}
+
+TEST_F(CfReader, BoundsAreInTheUnitsOfTheirCoordinate) {
+  SyntheticCf file = Small();
+  file.coordinates[2] = {"z", {0.025, 0.075}, {{"units", "km"}}, {0.0, 0.05, 0.1}};
+  file.bounds_attributes = {{"units", "km"}};
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.z, 50.0, 1e-9);
+  file.bounds_attributes = {{"units", "m"}};
+  ExpectError(file, "z_bounds has units 'm'");
+}
+
+TEST_F(CfReader, TheGroundIsInItsUnits) {
+  SyntheticCf file = Small();
+  file.variables.push_back(
+      {"orog",
+       {"y", "x"},
+       {{"standard_name", "surface_altitude"}, {"units", "km"}},
+       [](const Index& at) { return 0.01 * static_cast<double>(at.at("x")); }});
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_FLOAT_EQ((*fields)->terrain_height_m[3], 30.0F);
+  file.variables.back().attributes["units"] = "ft";
+  const CapturedLog log;
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->terrain_height_m[3], 0.0F);
+  EXPECT_THAT(log.Text(), HasSubstr("orog (units 'ft') is not read"));
+}
+
 TEST_F(CfReader, DegreesHaveAPlaceOnEarth) {
   SyntheticCf file = Small();
   file.coordinates[0] = {"lon", {9.98, 9.99, 10.0, 10.01}, {{"units", "degrees_east"}}, {}};
@@ -356,6 +482,51 @@ TEST_F(CfReader, SaysWhatAFileLacks) {
   ExpectError(file, "q");
 }
 
+TEST_F(CfReader, AmountsInUnknownUnitsAreRefused) {
+  for (const std::string units : {"kg", "g", "kg m-2", "Mg m-3", "ppm", "mol m-3", "10 g m-3",
+                                  "kg kg-2", "(not text)", "%"}) {
+    ExpectError(Water("lwc", {{"units", units}}, 1e-3), "lwc has units '" + units + "'");
+  }
+  // "Mm-1", as of aerosols, is not "mm-1".
+  for (const std::string units : {"Mm-1", "mm-1", "kg m-3", "cm-1"}) {
+    SyntheticCf file = Small();
+    file.variables[0].attributes["units"] = units;
+    ExpectError(file, "extinction has units '" + units + "'");
+  }
+  SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
+  for (const auto& [name, units] : {std::pair<std::string, std::string>{"prs", "atm"},
+                                    {"prs", "MPa"},
+                                    {"temp", "degF"},
+                                    {"qv", "ppm"},
+                                    {"rho", "g m-3"}}) {
+    file.variables.resize(1);
+    file.variables.push_back(UniformField(name, units, 1.0));
+    ExpectError(file, name + " has units '" + units + "'");
+  }
+}
+
+// Units that are a number say nothing, and are not absent either.
+TEST_F(CfReader, UnitsThatAreNoTextAreRefused) {
+  SyntheticCf file = Small();
+  file.number_attributes["extinction"]["units"] = 1.0;
+  file.variables[0].attributes.clear();
+  ExpectError(file, "extinction has units '(not text)'");
+  file = Small();
+  file.number_attributes["x"]["units"] = 1.0;
+  file.coordinates[0].attributes.clear();
+  ExpectError(file, "the coordinate x has units '(not text)'");
+}
+
+TEST_F(CfReader, AirWithoutUnitsIsTakenToBeInThoseOfTheSi) {
+  SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
+  file.variables.push_back(UniformField("rho", "", 0.9));
+  const CapturedLog log;
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * 0.9, 1e-9);
+  EXPECT_THAT(log.Text(), HasSubstr("rho has no units"));
+}
+
 // Cloud water below ice, and wind that grows with height: two layers of 50 m.
 SyntheticCf Windy() {
   SyntheticCf file = Water("lwc", {{"units", "kg m-3"}}, 0.0);
@@ -409,8 +580,10 @@ TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
   // Pressure velocity; wind on a grid of its own, as CM1 has it; missing values.
   SyntheticCf file = Windy();
   file.variables[4].attributes["units"] = "Pa s-1";
+  const CapturedLog log;
   auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_THAT(log.Text(), HasSubstr("winterp has units 'Pa s-1' where m s-1 is needed"));
   EXPECT_EQ((*fields)->motion.source, TurbulenceSource::kGradient);
   EXPECT_TRUE((*fields)->motion.turbulence.empty());
   file = Windy();
@@ -419,6 +592,13 @@ TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
   fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_EQ((*fields)->motion.source, TurbulenceSource::kGradient);
+  EXPECT_THAT(log.Text(), HasSubstr("u has a dimension xf"));
+  file = Windy();
+  file.variables.push_back(UniformField("tke", "kg", 0.25));
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, TurbulenceSource::kDeformation);
+  EXPECT_THAT(log.Text(), HasSubstr("tke has units 'kg' where m2 s-2 is needed"));
   file = Windy();
   file.variables[2].value = [](const Index& at) {
     return at.at("x") == 0 ? std::nan("") : 5.0 + static_cast<double>(at.at("z"));
@@ -432,6 +612,14 @@ TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
 TEST(CfNames, UnitsAreReadInTheirSpellings) {
   EXPECT_EQ(PlainUnits("kg m**-3"), "kgm-3");
   EXPECT_EQ(PlainUnits("g.m^(-3)"), "gm-3");
+  EXPECT_EQ(PlainUnits("mg m-3"), "mgm-3");
+  EXPECT_EQ(PlainUnits("MG M-3"), "mgm-3");
+  EXPECT_EQ(PlainUnits("Mg m-3"), "Mgm-3");
+  EXPECT_TRUE(IsDegrees("degrees_E", CfDirection::kX));
+  EXPECT_TRUE(IsDegrees("degree_north", CfDirection::kY));
+  EXPECT_TRUE(IsDegrees("degrees", CfDirection::kY));
+  EXPECT_FALSE(IsDegrees("degrees_E", CfDirection::kY));
+  EXPECT_FALSE(IsDegrees("degrees", CfDirection::kZ));
   EXPECT_EQ(MetresIn("km"), 1000.0);
   EXPECT_FALSE(MetresIn("hPa").has_value());
 }

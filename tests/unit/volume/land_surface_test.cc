@@ -109,6 +109,21 @@ TEST_F(LandSurfaceTest, TakesDepthWhereSnowsShareIsLeftOut) {
   EXPECT_NEAR(Luminance(LandAt(fields.land, fields.grid, {3000.0, 0.0}).reflectance), 0.7F, 0.01F);
 }
 
+TEST_F(LandSurfaceTest, LeavesOutWhatIsInOtherUnits) {
+  SyntheticWrf file = Coast();
+  file.columns.erase("ALBEDO");
+  file.columns.erase("SNOWC");
+  file.columns["SNOWH"] = [](const WrfCell&) { return 0.5; };
+  const auto seen = [&] {
+    const HydrometeorFields fields = Read(file);
+    return Luminance(LandAt(fields.land, fields.grid, {3000.0, 0.0}).reflectance);
+  };
+  file.units["SNOWH"] = "m";
+  EXPECT_NEAR(seen(), 0.7F, 0.01F);
+  file.units["SNOWH"] = "cm";
+  EXPECT_NEAR(seen(), 0.12F, 0.003F);
+}
+
 TEST_F(LandSurfaceTest, TakesMaskOrClassWhereXlandIsLeftOut) {
   SyntheticWrf file = Coast();
   file.columns.erase("XLAND");

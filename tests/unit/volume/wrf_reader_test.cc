@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "tests/support/captured_log.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
 
@@ -272,6 +273,46 @@ TEST_F(WrfReader, EndsWhereItsCallerSaysSo) {
   });
   EXPECT_EQ(fields.status().code(), absl::StatusCode::kCancelled);
   EXPECT_EQ(calls, 4);
+}
+
+TEST_F(WrfReader, TakesTimesFromXtimeWhereTimesAreLeftOut) {
+  const std::string path = folder_.File("wrfout");
+  SyntheticWrf file = Uniform(1e-3);
+  file.omitted = {"Times"};
+  file.minutes = {90.5};
+  const auto first = [&](const std::string& units) {
+    file.units["XTIME"] = units;
+    testing::WriteWrf(file, path);
+    const auto metadata = ReadWrfMetadata(path);
+    EXPECT_TRUE(metadata.ok()) << metadata.status();
+    return metadata.ok() ? absl::FormatTime(metadata->times.at(0), absl::UTCTimeZone()) : "";
+  };
+  EXPECT_EQ(first(""), "2013-05-20T13:30:30+00:00");
+  EXPECT_EQ(first("minutes"), "2013-05-20T13:30:30+00:00");
+  EXPECT_EQ(first("minutes since 2013-05-20 18:00:00"), "2013-05-20T19:30:30+00:00");
+  EXPECT_EQ(first("hours since 2013-05-20 18:00:00"), "2013-05-24T12:30:00+00:00");
+}
+
+TEST_F(WrfReader, LeavesOutWhatIsInOtherUnits) {
+  SyntheticWrf file = Uniform(1e-3);
+  file.mixing_ratios["TKE"] = [](const WrfCell&) { return 0.25; };
+  file.units["TKE"] = "m2 s-2";
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->motion.source, TurbulenceSource::kEnergy);
+  file.units["TKE"] = "kg";
+  const testing::CapturedLog log;
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->motion.source, TurbulenceSource::kGradient);
+  EXPECT_THAT(log.Text(), ::testing::HasSubstr("TKE has units 'kg' where 'm2 s-2' is needed"));
+  file.units["XLAT"] = "radian";
+  const std::string path = folder_.File("wrfout");
+  testing::WriteWrf(file, path);
+  const auto metadata = ReadWrfMetadata(path);
+  ASSERT_TRUE(metadata.ok()) << metadata.status();
+  EXPECT_FALSE(metadata->latitude_deg.has_value());
+  EXPECT_THAT(log.Text(), ::testing::HasSubstr("XLAT has units 'radian'"));
 }
 
 TEST_F(WrfReader, FindsTheMiddleOfTheDomain) {
