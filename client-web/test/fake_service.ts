@@ -16,12 +16,17 @@ export interface FakeCall {
   leave(): void;
 }
 
+export const END_NOT_SAVED =
+  "the session is closed, but comes back if the server ends before that is saved: the disk is full";
+
 export class FakeService {
   readonly sessions: FakeSession[] = [];
   // No map is sent.
   mapless = false;
   // This storm cannot be described.
   undescribed = "";
+  // Sessions and their ends are not saved.
+  diskFull = false;
   #count = 0;
   #later = 0;
   readonly #storms = [
@@ -92,12 +97,14 @@ export class FakeService {
           viewerKey: session.viewerKey,
           scene: session.scene,
           sceneRevision: session.revision,
+          durable: !this.diskFull,
         };
       },
       closeSession: ({ sessionId }) => {
         const session = this.sessions.find(({ presenterKey }) => presenterKey === sessionId);
         if (session === undefined) throw new ConnectError("no such session", Code.NotFound);
         this.end(session, "The presenter has ended the session");
+        if (this.diskFull) throw new ConnectError(END_NOT_SAVED, Code.Unavailable);
         return {};
       },
     });

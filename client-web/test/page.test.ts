@@ -11,7 +11,7 @@ import {
 } from "../src/gen/thunderhead/v1/interact_pb";
 import { Page } from "../src/view/page";
 import { FakeNetwork } from "./fake_network";
-import { FakeService } from "./fake_service";
+import { END_NOT_SAVED, FakeService } from "./fake_service";
 import { FakeCanvas, FakeStorage, FakeWindow, stubGlobals } from "./fake_window";
 
 const HOME = "http://host/storms/";
@@ -444,6 +444,28 @@ describe("the page in a session", () => {
     expect(viewer.page.state.session.tool.value).toBe("camera");
     viewer.page.takeInHand("pen");
     expect(viewer.page.state.session.tool.value).toBe("camera");
+  });
+
+  it("says that the session is not saved, until one is", async () => {
+    service.diskFull = true;
+    const { page } = await visit();
+    const texts = () => page.state.notices.value.map(({ text }) => text);
+    expect(texts()).toEqual([
+      "This session is not saved: it ends with the server, unless the server can save it later.",
+    ]);
+    await pass(60_000);
+    expect(texts()).toHaveLength(1);
+    await page.actions.endSession();
+    expect(texts()).toContain(`Ending the session: ${END_NOT_SAVED}`);
+    service.diskFull = false;
+    page.actions.openNewSession();
+    await pass(500);
+    expect(texts().join()).not.toContain("not saved: it ends");
+  });
+
+  it("says nothing of a session that is saved", async () => {
+    const { page } = await visit();
+    expect(page.state.notices.value).toEqual([]);
   });
 
   it("ends for everybody when the presenter says so, and opens a new one only by the button", async () => {

@@ -1,9 +1,25 @@
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 
 namespace thunderhead::service {
+namespace {
+
+// UNAVAILABLE if the session's end could not be saved, for whatever reason.
+absl::Status EndSaved(const absl::Status& removed) {
+  if (removed.ok()) return removed;
+  const absl::Status unsaved = base::WithDetails(
+      absl::UnavailableError(absl::StrCat(
+          "the session is closed, but comes back if the server ends before that is saved: ",
+          removed.message())),
+      base::DetailsOf(removed));
+  return base::WithDetails(unsaved, {.reason = "SESSION_END_NOT_SAVED"});
+}
+
+}  // namespace
 
 grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerContext* context,
                                        const CallerRef& caller,
@@ -14,9 +30,8 @@ grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerConte
   caller->Report("CloseSession", status);
   if (!status.ok()) return Refused(context, status);
   auto* const answer = new Answer(context, engine.limits, caller, *response);
-  SaveThen(engine, [answer](const absl::Status& saved) {
-    answer->Give(base::Annotate(
-        saved, "the session is closed, but comes back if the server ends before that is saved"));
+  SaveThen(engine, [answer](const session::SessionKeeper::Outcome& outcome) {
+    answer->Give(EndSaved(outcome.removed));
   });
   return answer;
 }

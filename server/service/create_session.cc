@@ -1,4 +1,6 @@
+#include "base/error_details.h"
 #include "base/guarded.h"
+#include "base/patient_calls.h"
 #include "base/status.h"
 #include "service/finished.h"
 #include "service/handlers.h"
@@ -22,15 +24,17 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
   return absl::OkStatus();
 }
 
-// After the session was saved, or could not be.
-absl::Status Saved(Engine& engine, const absl::Status& saved, const std::string& presenter_key) {
-  if (saved.ok()) {
-    telemetry::Counted().sessions_opened.Add();
-    return saved;
+// After an attempt to save the session. One on a full disk is opened all the same, as that must not
+// keep a class from beginning; where the storage hangs, nothing will tell when it is saved.
+absl::Status Saved(Engine& engine, const absl::Status& saved, v1::CreateSessionResponse& response) {
+  if (base::DetailsOf(saved).reason == base::kStorageHangs) {
+    // Nobody has its keys.
+    (void)engine.sessions.Close(response.session_id());
+    return base::Annotate(saved, "no session can be opened, as it could not be kept");
   }
-  // Nobody has its keys.
-  (void)engine.sessions.Close(presenter_key);
-  return base::Annotate(saved, "no session can be opened, as it could not be kept");
+  if (engine.keeper != nullptr) response.set_durable(saved.ok());
+  telemetry::Counted().sessions_opened.Add();
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -57,8 +61,8 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
       answer->Give(outcome);
     };
     if (!opened.ok()) return finish(opened);
-    SaveThen(engine, [=, &engine](const absl::Status& saved) {
-      finish(Saved(engine, saved, response->session_id()));
+    SaveThen(engine, [=, &engine](const session::SessionKeeper::Outcome& outcome) {
+      finish(Saved(engine, outcome.saved, *response));
     });
   });
   return answer;

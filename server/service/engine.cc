@@ -11,7 +11,7 @@
 namespace thunderhead::service {
 
 void SaveThen(Engine& engine, session::SessionKeeper::Done done) {
-  if (engine.keeper == nullptr) return done(absl::OkStatus());
+  if (engine.keeper == nullptr) return done({});
   engine.keeper->SaveThen(std::move(done));
 }
 

@@ -37,8 +37,8 @@ struct Engine {
   Limits limits;
 };
 
-// Calls `done` when what has been done to sessions outlives the server: at once if they end with
-// it, else on another thread, as SessionKeeper::SaveThen.
+// Calls `done` after an attempt to save what has been done to sessions: at once, and with OK, if
+// they end with the server, else on another thread, as SessionKeeper::SaveThen.
 void SaveThen(Engine& engine, session::SessionKeeper::Done done);
 
 // The storm's fields at that time. An error names `path`, the request's field with the storm's id.

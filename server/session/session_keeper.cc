@@ -3,17 +3,15 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "base/error_details.h"
 #include "base/log.h"
-#include "base/patient_calls.h"
 #include "base/status.h"
 #include "telemetry/metrics.h"
 
 namespace thunderhead::session {
 namespace {
 
-bool Hangs(const absl::Status& outcome) {
-  return base::DetailsOf(outcome).reason == base::kStorageHangs;
+absl::Status FirstError(const SessionKeeper::Outcome& outcome) {
+  return outcome.saved.ok() ? outcome.removed : outcome.saved;
 }
 
 }  // namespace
@@ -65,10 +63,10 @@ absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
   }
   THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(too_old));
   // Before anybody sees their new revisions, so that the next restart's are larger still.
-  return SaveChanges();
+  return FirstError(SaveChanges());
 }
 
-absl::Status SessionKeeper::SaveChanges() {
+SessionKeeper::Outcome SessionKeeper::SaveChanges() {
   for (const auto& session : sessions_.All()) kept_[session->id()].session = session;
   std::vector<SessionRecord> records;
   std::map<std::string, Kept> saved;
@@ -86,11 +84,16 @@ absl::Status SessionKeeper::SaveChanges() {
     records.push_back(kept.session->Record());
     saved[id] = {kept.session, version, use};
   }
-  if (!ended.empty()) THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(ended));
-  for (const std::string& id : ended) kept_.erase(id);
-  if (!records.empty()) THUNDERHEAD_RETURN_IF_ERROR(store_.Save(records));
-  for (auto& [id, kept] : saved) kept_[id] = std::move(kept);
-  return absl::OkStatus();
+  Outcome outcome;
+  if (!ended.empty()) outcome.removed = store_.Remove(ended);
+  if (outcome.removed.ok()) {
+    for (const std::string& id : ended) kept_.erase(id);
+  }
+  if (!records.empty()) outcome.saved = store_.Save(records);
+  if (outcome.saved.ok()) {
+    for (auto& [id, kept] : saved) kept_[id] = std::move(kept);
+  }
+  return outcome;
 }
 
 void SessionKeeper::Log(const absl::Status& outcome) {
@@ -112,9 +115,9 @@ void SessionKeeper::Run() {
     last = stopping_;
     const auto waiting = std::exchange(waiting_, {});
     lock.unlock();
-    const absl::Status outcome = SaveChanges();
-    Log(outcome);
-    for (const Done& done : waiting) done(Hangs(outcome) ? outcome : absl::OkStatus());
+    const Outcome outcome = SaveChanges();
+    Log(FirstError(outcome));
+    for (const Done& done : waiting) done(outcome);
     lock.lock();
   }
 }

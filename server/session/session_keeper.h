@@ -45,10 +45,14 @@ class SessionKeeper {
   SessionKeeper(const SessionKeeper&) = delete;
   SessionKeeper& operator=(const SessionKeeper&) = delete;
 
-  // Calls `done` on the keeper's thread when the store has all that is the case now; with OK also
-  // where that failed, as on a full disk, as it is tried again; with UNAVAILABLE where its storage
-  // hangs.
-  using Done = std::function<void(const absl::Status&)>;
+  // How an attempt to save ended. One that failed, as on a full disk, is repeated by the keeper.
+  struct Outcome {
+    absl::Status saved;    // of sessions that are open
+    absl::Status removed;  // of sessions that have ended
+  };
+
+  // Calls `done` on the keeper's thread after the next attempt to save all that is the case now.
+  using Done = std::function<void(const Outcome&)>;
   void SaveThen(Done done);
 
  private:
@@ -61,7 +65,7 @@ class SessionKeeper {
 
   SessionKeeper(SessionStore& store, Sessions& sessions) : store_(store), sessions_(sessions) {}
   absl::Status Restore(const DecodeScene& decode);
-  absl::Status SaveChanges();
+  Outcome SaveChanges();
   void Log(const absl::Status& outcome);
   void Run();
 

@@ -34,7 +34,7 @@ class FakeSessionStore final : public session::SessionStore {
   absl::Status Save(const std::vector<SessionRecord>& records) override {
     saving.Pass();
     const std::lock_guard lock(mutex_);
-    if (!failure_.ok()) return failure_;
+    if (!save_failure_.ok()) return save_failure_;
     last_saved_.clear();
     for (const SessionRecord& record : records) {
       records_[record.id] = record;
@@ -47,6 +47,7 @@ class FakeSessionStore final : public session::SessionStore {
 
   absl::Status Remove(const std::vector<std::string>& ids) override {
     const std::lock_guard lock(mutex_);
+    if (!remove_failure_.ok()) return remove_failure_;
     for (const std::string& id : ids) records_.erase(id);
     changed_.notify_all();
     return absl::OkStatus();
@@ -68,7 +69,12 @@ class FakeSessionStore final : public session::SessionStore {
 
   void FailWith(const absl::Status& failure) {
     const std::lock_guard lock(mutex_);
-    failure_ = failure;
+    save_failure_ = failure;
+    remove_failure_ = failure;
+  }
+  void FailSavesWith(const absl::Status& failure) {
+    const std::lock_guard lock(mutex_);
+    save_failure_ = failure;
   }
 
   int Saves() {
@@ -94,7 +100,8 @@ class FakeSessionStore final : public session::SessionStore {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::string, SessionRecord> records_;
-  absl::Status failure_;
+  absl::Status save_failure_;
+  absl::Status remove_failure_;
   std::set<std::string> last_saved_;
   int saves_ = 0;
 };
@@ -509,6 +516,49 @@ TEST_F(KeptSessionsTest, AStoreThatFailsIsLoggedOnceAndTriedAgain) {
   EXPECT_EQ(std::ranges::count(logged, '\n'), 1) << logged;
   store_->FailWith(absl::OkStatus());
   EXPECT_TRUE(store_->Await([](const auto& records) { return records.size() == 1; }));
+}
+
+TEST_F(KeptSessionsTest, ASessionThatCannotBeSavedSaysSo) {
+  const auto saved = Create();
+  EXPECT_TRUE(saved.has_durable());
+  EXPECT_TRUE(saved.durable());
+  store_->FailWith(absl::UnavailableError("the disk is full"));
+  const auto unsaved = Create();
+  EXPECT_TRUE(unsaved.has_durable());
+  EXPECT_FALSE(unsaved.durable());
+  EXPECT_EQ(CodeOf(unsaved.session_id()), grpc::StatusCode::OK) << "it is open all the same";
+  store_->FailWith(absl::OkStatus());
+  EXPECT_TRUE(Create().durable());
+  EXPECT_EQ(store_->Records().size(), 3U) << "what could not be saved was tried again";
+  options_.session_store = nullptr;
+  Start();
+  EXPECT_FALSE(Create().has_durable()) << "this server saves no sessions";
+}
+
+TEST_F(KeptSessionsTest, AnEndThatCannotBeSavedSaysSo) {
+  const auto closed = Create();
+  const auto other = Create();
+  store_->FailWith(absl::ResourceExhaustedError("the disk is full"));
+  const grpc::Status unsaved = Close(closed.session_id());
+  EXPECT_EQ(unsaved.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(unsaved.error_message(),
+            "the session is closed, but comes back if the server ends before that is saved: the "
+            "disk is full");
+  EXPECT_EQ(ReasonOf(unsaved), "SESSION_END_NOT_SAVED");
+  EXPECT_EQ(CodeOf(closed.session_id()), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(store_->Records().size(), 2U);
+  store_->FailWith(absl::OkStatus());
+  EXPECT_TRUE(Close(other.session_id()).ok());
+  EXPECT_THAT(store_->Records(), IsEmpty()) << "what could not be removed was tried again";
+}
+
+// Each call reports what became of its own session.
+TEST_F(KeptSessionsTest, AnEndIsSavedWhereOnlyOthersCannotBe) {
+  const auto closed = Create();
+  store_->FailSavesWith(absl::UnavailableError("the disk is full"));
+  Create();
+  EXPECT_TRUE(Close(closed.session_id()).ok());
+  EXPECT_THAT(store_->Records(), IsEmpty());
 }
 
 TEST_F(KeptSessionsTest, AStoreThatHangsRefusesWhatItWouldHaveToKeep) {

@@ -29,6 +29,8 @@ export interface OpenedSession {
   // The scene that was sent with the server's defaults filled in, and its revision.
   readonly completed: Scene;
   readonly revision: bigint;
+  // False if the server could not save it; undefined if the server does not say.
+  readonly durable: boolean | undefined;
 }
 
 export interface SessionListener {
@@ -242,6 +244,7 @@ export class SessionClient {
         viewerKey: opened.viewerKey,
         completed: opened.scene ?? asked,
         revision: opened.sceneRevision,
+        durable: opened.durable,
       });
       return opened.sessionId;
     } catch (error) {

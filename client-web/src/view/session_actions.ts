@@ -1,4 +1,5 @@
 // The requests of the session's buttons: control, rules, marks, the name, the end.
+import { ConnectError } from "@connectrpc/connect";
 import type { OwnKeys } from "../core/own_keys";
 import type { PageState } from "../core/state";
 import type { SessionRules } from "../gen/thunderhead/v1/interact_pb";
@@ -62,7 +63,7 @@ export class SessionActions {
     try {
       await this.#calls.closeSession(presenterKey);
     } catch (error) {
-      const text = `The session goes on: ${String(error)}`;
+      const text = `Ending the session: ${ConnectError.from(error).rawMessage}`;
       this.#state.notify({ subject: "session", text, severity: "problem" });
     }
   }

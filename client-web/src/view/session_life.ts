@@ -32,6 +32,11 @@ import type { Screen } from "./screen";
 import type { StormsOnServer } from "./storms_on_server";
 import type { Viewpoint } from "./viewpoint";
 
+// The subject of the notice, and its words.
+const NOT_SAVED = "not-saved";
+const NOT_SAVED_TEXT =
+  "This session is not saved: it ends with the server, unless the server can save it later.";
+
 export interface SessionLifeParts {
   client(): SessionClient;
   screen(): Screen;
@@ -160,6 +165,8 @@ export class SessionLife implements SessionListener {
     this.#parts.state.session.viewerKey.value = opened.viewerKey;
     this.#sync.opened(opened.completed, opened.revision);
     this.#parts.writeAddress();
+    if (opened.durable === false) this.#parts.notes.problem(NOT_SAVED, NOT_SAVED_TEXT);
+    else this.#parts.state.dismiss(NOT_SAVED);
   }
 
   joining(): JoinDetails {
