@@ -15,6 +15,7 @@
 #include "absl/time/time.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
+#include "base/utc_time.h"
 #include "pipeline/sha256.h"
 
 namespace thunderhead::app {
@@ -36,10 +37,8 @@ constexpr seconds kServerPause{1};
 absl::Status RunInterrupted() { return absl::CancelledError("interrupted"); }
 
 absl::StatusOr<absl::Time> ParseIso(const std::string& text) {
-  absl::Time time;
-  std::string error;
-  if (absl::ParseTime(absl::RFC3339_full, text, &time, &error)) return time;
-  return absl::InternalError(absl::StrCat("the server gave '", text, "' as a time: ", error));
+  if (const auto time = base::ParseUtcTime(text); time.has_value()) return *time;
+  return absl::InternalError(absl::StrCat("the server gave '", text, "' as a time"));
 }
 
 bool MayComeBack(const absl::Status& status) {

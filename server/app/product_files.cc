@@ -14,6 +14,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/time/time.h"
 #include "base/status.h"
+#include "base/utc_time.h"
 #include "base/whole_file.h"
 #include "frame/image_codec.h"
 #include "frame/png_text.h"
@@ -36,12 +37,7 @@ std::string TextOr(const Texts& texts, const char* name, const std::string& othe
 }
 
 std::optional<absl::Time> TimeIn(const Texts& texts, const char* name) {
-  absl::Time time;
-  std::string error;
-  if (!absl::ParseTime(absl::RFC3339_full, TextOr(texts, name, ""), &time, &error)) {
-    return std::nullopt;
-  }
-  return time;
+  return base::ParseUtcTime(TextOr(texts, name, ""));
 }
 
 std::string MinuteOf(absl::Time time) {

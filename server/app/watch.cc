@@ -22,6 +22,7 @@
 #include "app/watched_folder.h"
 #include "base/folder_events.h"
 #include "base/status.h"
+#include "base/utc_time.h"
 #include "base/version.h"
 #include "pipeline/manifest.h"
 #include "pipeline/readiness.h"
@@ -53,15 +54,15 @@ absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
   bool unit_may_follow = false;
   for (const std::string& word : until) {
     int files = 0;
-    std::string error;
     const bool unit = word == "files" || word == "file";
     if (unit) {
       good = good && unit_may_follow;
     } else if (!end.files.has_value() && absl::SimpleAtoi(word, &files) && files > 0) {
       end.files = files;
     } else {
-      good = good && end.at == absl::InfiniteFuture() &&
-             absl::ParseTime(absl::RFC3339_full, word, &end.at, &error);
+      const std::optional<absl::Time> at = base::ParseUtcTime(word);
+      good = good && end.at == absl::InfiniteFuture() && at.has_value();
+      if (at.has_value()) end.at = *at;
     }
     unit_may_follow = !unit && files > 0;
   }
@@ -161,13 +162,9 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
     picture.key.storm = entry.storm;
     picture.key.view = entry.view;
     picture.path = records.PathOf(entry);
-    absl::Time run_start;
-    std::string error;
-    if (entry.run.has_value() &&
-        absl::ParseTime(absl::RFC3339_full, *entry.run, &run_start, &error)) {
-      picture.key.run = run_start;
-    }
-    if (absl::ParseTime(absl::RFC3339_full, entry.valid, &picture.key.valid, &error)) {
+    if (entry.run.has_value()) picture.key.run = base::ParseUtcTime(*entry.run);
+    if (const auto valid = base::ParseUtcTime(entry.valid); valid.has_value()) {
+      picture.key.valid = *valid;
       pictures.push_back(std::move(picture));
     }
   }

@@ -205,12 +205,15 @@ TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
 
 TEST(SessionsTest, AClockWithoutADateIsRefused) {
   FakeService service;
-  v1::CreateSessionRequest request;
-  v1::CreateSessionResponse response;
-  request.mutable_scene()->mutable_sun()->mutable_clock()->set_date_time("teatime");
-  const grpc::Status status = Call(service.stub(), &Stub::CreateSession, request, &response);
-  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_THAT(status.error_message(), HasSubstr("scene.sun.clock.date_time is 'teatime'"));
+  for (const std::string text : {"teatime", "2013-13-20T20:00:00Z", "2013-05-20T99:99:99Z",
+                                 "2013-05-20T20:00:00+9999", "infinite-future"}) {
+    v1::CreateSessionRequest request;
+    v1::CreateSessionResponse response;
+    request.mutable_scene()->mutable_sun()->mutable_clock()->set_date_time(text);
+    const grpc::Status status = Call(service.stub(), &Stub::CreateSession, request, &response);
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << text;
+    EXPECT_THAT(status.error_message(), HasSubstr("scene.sun.clock.date_time is '" + text + "'"));
+  }
 }
 
 TEST(SunMessages, ARealStormsSunFollowsItsTimeAndPlace) {

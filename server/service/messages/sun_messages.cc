@@ -1,11 +1,13 @@
 #include "service/messages/sun_messages.h"
 
+#include <optional>
 #include <string>
 
 #include "absl/strings/str_cat.h"
 #include "absl/time/civil_time.h"
 #include "absl/time/time.h"
 #include "base/error_details.h"
+#include "base/utc_time.h"
 #include "physics/sun_position.h"
 
 namespace thunderhead::service {
@@ -19,15 +21,9 @@ constexpr float kOklahomaLongitude_deg = -97.5F;
 // Idealised runs start in year 1.
 constexpr int kFirstRealYear = 100;
 
-bool ParseUtc(const std::string& text, absl::Time* time) {
-  std::string why;
-  return absl::ParseTime(absl::RFC3339_full, text, time, &why);
-}
-
 bool IsReal(const std::string& valid_time) {
-  absl::Time time;
-  return ParseUtc(valid_time, &time) &&
-         absl::ToCivilYear(time, absl::UTCTimeZone()).year() >= kFirstRealYear;
+  const std::optional<absl::Time> time = base::ParseUtcTime(valid_time);
+  return time.has_value() && absl::ToCivilYear(*time, absl::UTCTimeZone()).year() >= kFirstRealYear;
 }
 
 bool HasPlace(const volume::StormInfo& storm) {
@@ -37,9 +33,8 @@ bool HasPlace(const volume::StormInfo& storm) {
 }  // namespace
 
 absl::Status CheckSun(const v1::Sun& sun) {
-  absl::Time time;
   const std::string& text = sun.clock().date_time();
-  if (text.empty() || ParseUtc(text, &time)) return absl::OkStatus();
+  if (text.empty() || base::ParseUtcTime(text).has_value()) return absl::OkStatus();
   return base::InvalidField(
       "scene.sun.clock.date_time",
       absl::StrCat("is '", text, "'; it must be a date and time like 2013-05-20T20:00:00Z"),
@@ -55,9 +50,9 @@ void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_inde
   if (sun.source() != v1::Sun::SOURCE_BY_TIME) return;
   v1::SunClock& clock = *sun.mutable_clock();
   FillClockDefaults(clock, storm);
-  absl::Time first;
-  if (!ParseUtc(clock.date_time(), &first)) return;  // CheckSun reports it
-  const double unix_s = absl::ToDoubleSeconds(first - absl::UnixEpoch()) +
+  const std::optional<absl::Time> first = base::ParseUtcTime(clock.date_time());
+  if (!first.has_value()) return;  // CheckSun reports it
+  const double unix_s = absl::ToDoubleSeconds(*first - absl::UnixEpoch()) +
                         storm.times[static_cast<std::size_t>(time_index)].elapsed_s;
   const physics::SunPosition position =
       physics::SunPositionAt(unix_s, clock.latitude_deg(), clock.longitude_deg());
