@@ -1,3 +1,4 @@
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -138,21 +139,23 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
 
 }  // namespace
 
+// gRPC gets a reactor that has begun. One that throws as it begins is destroyed here, and gives its
+// caller's place back.
 grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
                                       const CallerRef& caller,
                                       const v1::RenderImageRequest* request,
                                       v1::RenderImageResponse* response) {
-  auto* reactor = new PictureReactor(engine, context, caller, *request, *response);
+  auto reactor = std::make_unique<PictureReactor>(engine, context, caller, *request, *response);
   reactor->Begin();
-  return reactor;
+  return reactor.release();
 }
 
 grpc::ServerWriteReactor<v1::RenderImageEvent>* RenderImageWithProgress(
     Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
     const v1::RenderImageRequest* request) {
-  auto* reactor = new PictureStream(engine, context, std::move(caller), *request);
+  auto reactor = std::make_unique<PictureStream>(engine, context, std::move(caller), *request);
   reactor->Begin();
-  return reactor;
+  return reactor.release();
 }
 
 }  // namespace thunderhead::service

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <new>
+#include <stdexcept>
 #include <thread>
 
 #include "accuracy/cost_model.h"
@@ -384,6 +385,7 @@ void FakeStormStore::Become(const std::string& id,
 }
 
 std::vector<volume::StormInfoPtr> FakeStormStore::Storms() const {
+  if (throws) throw std::runtime_error(kThrownByStore);
   const std::lock_guard lock(mutex_);
   std::vector<volume::StormInfoPtr> storms;
   for (const volume::StormInfoPtr& storm : storms_) {

@@ -47,6 +47,8 @@ class Gate {
   int may_pass_ = 0;
 };
 
+inline constexpr char kThrownByStore[] = "/storms/anvil is not what it seemed";
+
 // "anvil" has four times with cloud and rain in part of the domain; "clear" has one time without
 // condensate.
 class FakeStormStore final : public volume::StormStore {
@@ -70,6 +72,7 @@ class FakeStormStore final : public volume::StormStore {
   void Become(const std::string& id, const std::function<void(volume::StormInfo&)>& change);
 
   std::atomic<bool> without_memory{false};  // reads throw bad_alloc
+  std::atomic<bool> throws{false};          // looking for a storm throws kThrownByStore
 
   // Reads of that time fail with `status` from now on.
   void FailAt(int time_index, const absl::Status& status);
