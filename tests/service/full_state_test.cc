@@ -1,0 +1,117 @@
+// `thunderhead serve` whose state folder is on a disk that becomes full: a small file system of the
+// test's own, in a namespace of its own. Where the machine refuses that it is skipped.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/service/interacting.h"
+#include "tests/service/served_program.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/wait_for.h"
+
+namespace thunderhead::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using Stub = v1::ThunderheadService::Stub;
+
+// More than there is room for in what SQLite has already of the disk.
+constexpr int kMaxSessions = 40;
+
+class FullStateTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("unshare -rm true 2>/dev/null") != 0) {
+      GTEST_SKIP() << "no namespaces here: unshare -rm is refused";
+    }
+    fs::create_directory(state_);
+    const std::string starter = folder_.File("start");
+    std::ofstream(starter) << "#!/bin/sh\nexec unshare -rm sh -c 'mount -t tmpfs -o size=8m none "
+                           << state_ << " && exec " << PROGRAM << " \"$@\"' sh \"$@\"\n";
+    fs::permissions(starter, fs::perms::owner_all);
+    program_.emplace(starter, std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc", state_,
+                     std::vector<std::string>{"--max-sessions-each", "64"});
+    ASSERT_NE(program_->stub(), nullptr);
+  }
+
+  // The file that takes the room that is left, as the program's namespace has it.
+  std::string FillerPath() const {
+    return absl::StrCat("/proc/", program_->process(), "/root", state_, "/filler");
+  }
+
+  void FillDisk() const {
+    std::ofstream filler(FillerPath(), std::ios::binary);
+    ASSERT_TRUE(filler.is_open());
+    const std::string page(4096, '\0');
+    while (filler.write(page.data(), static_cast<std::streamsize>(page.size())).flush()) continue;
+  }
+
+  v1::CreateSessionResponse Create() {
+    v1::CreateSessionRequest request;
+    request.mutable_scene()->mutable_output()->set_width_px(64);
+    request.mutable_scene()->mutable_output()->set_height_px(36);
+    v1::CreateSessionResponse created;
+    const grpc::Status status = Call(*program_->stub(), &Stub::CreateSession, request, &created);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return created;
+  }
+
+  grpc::Status Close(const std::string& key) {
+    v1::CloseSessionRequest request;
+    request.set_session_id(key);
+    v1::CloseSessionResponse response;
+    return Call(*program_->stub(), &Stub::CloseSession, request, &response);
+  }
+
+  const TemporaryFolder folder_;
+  const std::string state_ = folder_.File("state");
+  std::optional<ServedProgram> program_;
+};
+
+TEST_F(FullStateTest, SessionsThatAreNotSavedSaySoUntilThereIsRoom) {
+  ASSERT_TRUE(Create().durable());
+  FillDisk();
+  std::vector<std::string> saved;
+  v1::CreateSessionResponse last = Create();
+  for (; last.durable() && saved.size() < kMaxSessions; last = Create()) {
+    saved.push_back(last.session_id());
+  }
+  ASSERT_TRUE(last.has_durable());
+  ASSERT_FALSE(last.durable()) << "the disk never was full";
+  // It is a session like any other.
+  {
+    Interacting presenter(*program_->stub(), last.session_id());
+    EXPECT_TRUE(presenter.AwaitFrame(last.scene_revision()));
+  }
+  fs::remove(FillerPath());
+  EXPECT_TRUE(Create().durable());
+  EXPECT_TRUE(Close(last.session_id()).ok());
+}
+
+TEST_F(FullStateTest, EndsOfSessionsThatAreNotSavedSaySo) {
+  std::vector<std::string> keys;
+  for (int i = 0; i < kMaxSessions; ++i) {
+    const auto created = Create();
+    ASSERT_TRUE(created.durable());
+    keys.push_back(created.session_id());
+  }
+  FillDisk();
+  grpc::Status closed;
+  for (; closed.ok() && !keys.empty(); keys.pop_back()) closed = Close(keys.back());
+  EXPECT_EQ(closed.error_code(), grpc::StatusCode::UNAVAILABLE) << "the disk never was full";
+  EXPECT_THAT(closed.error_message(), HasSubstr("the session is closed, but comes back"));
+  EXPECT_THAT(closed.error_message(), HasSubstr("full"));
+  fs::remove(FillerPath());
+  ASSERT_FALSE(keys.empty());
+  EXPECT_TRUE(Close(keys.back()).ok());
+}
+
+}  // namespace
+}  // namespace thunderhead::testing
