@@ -179,6 +179,7 @@ class ClientTest(unittest.TestCase):
 
     def test_a_session_shows_what_is_set(self) -> None:
         with self.client.session("supercell", {**FAST, "camera": {"orbit": {}}}, SIZE) as session:
+            self.assertIs(session.durable, True)
             first = session.wait(timeout_s=HANG_LIMIT_S)
             before = numpy.asarray(Image.open(io.BytesIO(session._repr_jpeg_())), dtype=float)
             session.set("camera.orbit.azimuth_deg", session.get("camera.orbit.azimuth_deg") + 120)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+import warnings
 from typing import Any, Iterator, Optional, Sequence, Tuple
 
 import grpc
@@ -42,6 +43,10 @@ class Session:
         self.id: str = created.session_id
         #: The viewers' key, for links that only watch.
         self.viewer_key: str = created.viewer_key
+        #: False if the server could not save the session, as on a full disk; None if it saves no sessions.
+        self.durable: Optional[bool] = created.durable if created.HasField("durable") else None
+        if self.durable is False:
+            warnings.warn("this session is not saved: it ends with the server, unless the server can save it later", stacklevel=3)
         self._changed = threading.Condition()
         self._scene: scene_pb2.Scene = created.scene
         self._revision: int = created.scene_revision
