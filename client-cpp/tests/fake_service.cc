@@ -114,6 +114,7 @@ grpc::Status FakeService::CreateSession(grpc::ServerContext* /*context*/,
   response->set_viewer_key(kViewerKey);
   *response->mutable_scene() = request->scene();
   response->set_scene_revision(1);
+  if (durable.has_value()) response->set_durable(*durable);
   return grpc::Status::OK;
 }
 

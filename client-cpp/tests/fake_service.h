@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,7 @@ class FakeService final : public v1::ThunderheadService::Service {
   bool answers_scenes = true;
   // The answer to a scene to open a session with; by default it is taken.
   std::function<grpc::Status(const v1::Scene&)> answer_opening;
+  std::optional<bool> durable;    // of the sessions that are opened
   bool forgets_sessions = false;  // joins end with NOT_FOUND until another session is opened
 
   static constexpr char kPresenterKey[] = "presenter-key";

@@ -314,6 +314,18 @@ TEST_F(SessionTest, OpensANewSessionWhenTheServerHasLostItsOwn) {
   EXPECT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
 }
 
+TEST_F(SessionTest, SaysThatItIsNotSaved) {
+  service.durable = false;
+  Steer();
+  EXPECT_THAT(session->State().notice, ::testing::HasSubstr("is not saved"));
+}
+
+TEST_F(SessionTest, SaysNothingOfASessionThatIsSaved) {
+  service.durable = true;
+  Steer();
+  EXPECT_EQ(session->State().notice, "");
+}
+
 TEST_F(SessionTest, BeginsAnewWhereTheStormIsGoneToo) {
   Steer();
   session->Edit([](v1::Scene& scene) { scene.set_storm_id("gone"); });

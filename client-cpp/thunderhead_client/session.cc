@@ -153,6 +153,9 @@ std::optional<Session::Outcome> Session::Open() {
   state_.presenter_key = key_;
   opened_ = opens_sessions_ = true;
   resumption_.End();
+  if (response.has_durable() && !response.durable()) {
+    Say("This session is not saved: it ends with the server, unless the server can save it later");
+  }
   if (began_anew) Say(refusal + "; this is a new session without that scene");
   return {};
 }
