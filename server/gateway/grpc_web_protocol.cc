@@ -1,5 +1,8 @@
 #include "gateway/grpc_web_protocol.h"
 
+#include <grpc/grpc.h>
+#include <grpc/slice.h>
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -39,17 +42,15 @@ std::string MediaType(std::string_view content_type) {
   return absl::AsciiStrToLower(absl::StripAsciiWhitespace(type));
 }
 
-bool IsBinaryName(std::string_view name) { return name.ends_with("-bin"); }
-
-bool IsLegalName(std::string_view name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-    return absl::ascii_islower(c) || absl::ascii_isdigit(c) || c == '-' || c == '_' || c == '.';
-  });
+// gRPC itself says what it accepts: it aborts the process on metadata that breaks its rules, and
+// has exceptions that its documents do not name, such as that "-bin" alone is no binary name.
+grpc_slice Borrowed(std::string_view text) {
+  return grpc_slice_from_static_buffer(text.data(), text.size());
 }
-
-bool IsPrintable(std::string_view value) {
-  return std::all_of(value.begin(), value.end(),
-                     [](unsigned char c) { return c >= 0x20 && c <= 0x7e; });
+bool IsBinaryName(std::string_view name) { return grpc_is_binary_header(Borrowed(name)) != 0; }
+bool IsLegalName(std::string_view name) { return grpc_header_key_is_legal(Borrowed(name)) != 0; }
+bool IsLegalText(std::string_view value) {
+  return grpc_header_nonbin_value_is_legal(Borrowed(value)) != 0;
 }
 
 // Headers of HTTP itself or of the browser. Cookies are among them because a browser shares them
@@ -212,13 +213,12 @@ absl::StatusOr<absl::Duration> ParseTimeout(std::string_view text) {
 absl::Status AddRequestHeader(std::string_view name, std::string_view value, Metadata& metadata) {
   const std::string key = absl::AsciiStrToLower(Absl(name));
   if (IsNotMetadata(key)) return absl::OkStatus();
-  // gRPC aborts the process on metadata that breaks its rules, so such headers are rejected.
   if (!IsLegalName(key)) {
     return absl::InvalidArgumentError(
         absl::StrCat("header '", key,
                      "' cannot be gRPC metadata; its name may contain a-z, 0-9, '-', '_', '.'"));
   }
-  if (!IsPrintable(value)) {
+  if (!IsLegalText(value)) {
     return absl::InvalidArgumentError(
         absl::StrCat("the value of header '", key,
                      "' has bytes outside printable ASCII; use a name ending in -bin"));

@@ -174,6 +174,8 @@ TEST_F(BridgeTest, MetadataThatGrpcForbidsIsAnErrorNotACrash) {
   EXPECT_THAT(value.Trailer("grpc-message"), HasSubstr("x-name"));
   EXPECT_EQ(MakeCall("Say", "", {{"x!name", "a"}}).Trailer("grpc-status"), "3");
   EXPECT_EQ(MakeCall("Say", "", {{"x-bin", "*"}}).Trailer("grpc-status"), "3");
+  // Base64 of bytes that are not printable, under the one name in -bin that gRPC takes for text.
+  EXPECT_EQ(MakeCall("Say", "", {{"-bin", "gzip"}}).Trailer("grpc-status"), "0");
   EXPECT_EQ(MakeCall("Say", "").Trailer("grpc-status"), "0");
 }
 

@@ -119,7 +119,15 @@ TEST(RequestHeaders, ThatBreakGrpcsRulesAreRefused) {
   EXPECT_EQ(add("x", "caf\xc3\xa9"), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(add("x", "a\tb"), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(add("x-bin", "not base64!"), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(add("", "x"), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(add(":path", "x"), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(metadata, IsEmpty());
+}
+
+// gRPC takes "-bin" alone for a name of text, and aborts the process where its value is not.
+TEST(RequestHeaders, AreBinaryWhereGrpcTakesThemForBinary) {
+  EXPECT_THAT(Added("-bin", "gzip"), ElementsAre(Pair("-bin", "gzip")));
+  EXPECT_THAT(Added("a-bin", "AP8"), ElementsAre(Pair("a-bin", Bytes({0, 255}))));
 }
 
 TEST(ResponseMetadata, IsEncodedAndFiltered) {
