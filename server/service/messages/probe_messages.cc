@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/utf8.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/scene_messages.h"
 #include "volume/field_values.h"
@@ -23,7 +24,7 @@ template <typename Message>
 void Name(const volume::HydrometeorFields& fields, std::size_t index, Message& message) {
   const volume::HydrometeorField& field = fields.fields[index];
   message.set_hydrometeor(ToMessage(field.hydrometeor));
-  message.set_variable(field.variable);
+  message.set_variable(base::Printable(field.variable));
   message.set_units(std::string(volume::UnitOf(volume::QuantityOf(fields, field))));
 }
 

@@ -9,6 +9,7 @@
 #include "base/error_details.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
+#include "base/utf8.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/enum_tables.h"
 #include "service/messages/limits_check.h"
@@ -166,7 +167,8 @@ void SetSizes(const volume::HydrometeorField& field, v1::FieldDescription& messa
   const volume::ParticleSizes& sizes = field.sizes;
   const bool by_scheme = sizes.origin == volume::SizeOrigin::kScheme;
   message.set_size_origin(MessageOf(kSizeOrigins, sizes.origin));
-  *(by_scheme ? message.mutable_size_scheme() : message.mutable_size_variable()) = sizes.name;
+  *(by_scheme ? message.mutable_size_scheme() : message.mutable_size_variable()) =
+      base::Printable(sizes.name);
   message.set_papers_radius_m(physics::PapersRadius_m(field.hydrometeor));
   if (field.concentration_kg_per_m3.empty()) return;
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
@@ -178,7 +180,7 @@ void SetField(const volume::HydrometeorField& field, const volume::RegularGrid& 
               v1::FieldDescription& message) {
   const volume::FieldStatistics& statistics = field.statistics;
   message.set_hydrometeor(ToMessage(field.hydrometeor));
-  message.set_variable(field.variable);
+  message.set_variable(base::Printable(field.variable));
   if (field.quantity == volume::Quantity::kMixingRatio) {
     message.set_minimum_kg_per_kg(statistics.minimum);
     message.set_maximum_kg_per_kg(statistics.maximum);
@@ -340,7 +342,7 @@ void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message) {
 bool ToMessage(const std::string& path, v1::StormFile& message) {
   const std::optional<base::FileStamp> stamp = base::StampOf(path);
   if (!stamp.has_value()) return false;
-  message.set_name(std::filesystem::path(path).filename().string());
+  message.set_name(base::Printable(std::filesystem::path(path).filename().string()));
   message.set_bytes(static_cast<std::uint64_t>(stamp->size_bytes));
   message.set_modified_ns(stamp->modified_ns);
   return true;
@@ -358,7 +360,7 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
     time.set_deleted(storm.times[i].deleted);
     if (v1::StormFile file; ToMessage(storm.times[i].file, file)) *time.mutable_file() = file;
   }
-  if (storm.run_start.has_value()) message.set_run_start(*storm.run_start);
+  if (storm.run_start.has_value()) message.set_run_start(base::Printable(*storm.run_start));
   SetGrid(fields.grid, *message.mutable_grid());
   for (const volume::HydrometeorField& field : fields.fields) {
     SetField(field, fields.grid, *message.add_fields());
@@ -370,7 +372,7 @@ void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& 
   FillClockDefaults(*message.mutable_sun_clock(), storm);
   message.set_bytes_per_time(fields.Bytes());
   message.set_turbulence_source(MessageOf(kTurbulenceSources, fields.motion.source));
-  message.set_turbulence_variable(fields.motion.variable);
+  message.set_turbulence_variable(base::Printable(fields.motion.variable));
   if (const glm::dvec2& steering = fields.motion.steering_m_per_s; steering != glm::dvec2(0.0)) {
     message.set_steering_east_m_per_s(static_cast<float>(steering.x));
     message.set_steering_north_m_per_s(static_cast<float>(steering.y));
