@@ -3,6 +3,7 @@
 
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
+#include "tests/service/interacting.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -43,6 +44,34 @@ TEST_F(UpdateMaskTest, APathThatNamesAFieldIsAccepted) {
     const grpc::Status status = Update(path);
     EXPECT_TRUE(status.ok()) << path << ": " << status.error_message();
   }
+}
+
+// The presenter may give control to any viewer, whose messages are then as trusted as its own.
+TEST_F(UpdateMaskTest, AViewerInControlIsRefusedAndTheSessionGoesOn) {
+  v1::CreateSessionRequest request;
+  *request.mutable_scene() = SmallScene();
+  v1::CreateSessionResponse session;
+  ASSERT_TRUE(Call(service_.stub(), &Stub::CreateSession, request, &session).ok());
+  Interacting presenter(service_.stub(), session.session_id());
+  Interacting viewer(service_.stub(), session.viewer_key());
+  viewer.AwaitNewest(v1::InteractResponse::kJoined);
+  v1::InteractRequest gives;
+  gives.mutable_give_control()->set_viewer_id(viewer.viewer_id());
+  presenter.Send(gives);
+  ASSERT_TRUE(viewer.AwaitPresence([&](const v1::Presence& presence) {
+    return presence.steering_viewer_id() == viewer.viewer_id();
+  }));
+  for (const std::string path :
+       {".", "..", "camera..orbit", "fields.", "rendering.other.numbers.x"}) {
+    v1::InteractRequest update;
+    *update.mutable_update_scene()->mutable_scene() = SmallScene();
+    update.mutable_update_scene()->mutable_update_mask()->add_paths(path);
+    EXPECT_EQ(viewer.AnswerCode(viewer.Send(update)), grpc::StatusCode::INVALID_ARGUMENT) << path;
+    update.mutable_update_scene()->mutable_update_mask()->set_paths(0, "camera");
+    EXPECT_EQ(viewer.AnswerCode(viewer.Send(update)), grpc::StatusCode::OK) << path;
+  }
+  viewer.Leave();
+  EXPECT_TRUE(viewer.End().ok());
 }
 
 TEST_F(UpdateMaskTest, ControlCharactersOfAPathAreNotRepeated) {
