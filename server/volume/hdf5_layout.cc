@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <cstring>
+#include <set>
 
 #include "absl/strings/str_cat.h"
 #include "base/utf8.h"
@@ -35,6 +36,7 @@ class Handle {
 // The state of a walk through a file.
 struct Walk {
   int objects = 0;
+  std::set<haddr_t> groups;  // where they are in the file
   std::string complaint;
 };
 
@@ -43,11 +45,21 @@ herr_t Refuse(Walk& walk, const char* name, const char* what) {
   return 1;  // ends the walk
 }
 
-herr_t LookAtLink(hid_t /*group*/, const char* name, const H5L_info_t* info, void* data) {
+herr_t LookAtLink(hid_t root, const char* name, const H5L_info_t* info, void* data) {
   Walk& walk = *static_cast<Walk*>(data);
   if (++walk.objects > kMostObjects) return Refuse(walk, name, "is one object too many");
-  const bool is_own = info->type == H5L_TYPE_HARD || info->type == H5L_TYPE_SOFT;
-  return is_own ? 0 : Refuse(walk, name, "is a link to another file");
+  if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT) {
+    return Refuse(walk, name, "is a link to another file");
+  }
+  H5O_info_t target;
+  const bool is_group =
+      H5Oget_info_by_name2(root, name, &target, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
+      target.type == H5O_TYPE_GROUP;
+  // NetCDF-C follows every link, and never ends in a circle of groups.
+  if (is_group && !walk.groups.insert(target.addr).second) {
+    return Refuse(walk, name, "is a second link to a group");
+  }
+  return 0;
 }
 
 herr_t LookAtObject(hid_t root, const char* name, const H5O_info_t* info, void* data) {
@@ -75,6 +87,8 @@ absl::Status Look(const std::string& path, hid_t opened) {
                      "written: wait for the model to finish, or copy the file again"));
   }
   Walk walk;
+  H5O_info_t root;
+  if (H5Oget_info2(file.get(), &root, H5O_INFO_BASIC) >= 0) walk.groups.insert(root.addr);
   herr_t status = H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, &LookAtLink, &walk);
   if (status == 0) {
     status =
@@ -87,7 +101,8 @@ absl::Status Look(const std::string& path, hid_t opened) {
   if (status == 0) return absl::OkStatus();
   return absl::DataLossError(
       absl::StrCat(path, ": ", walk.complaint,
-                   "; write all values into one file, for example with nccopy, and give that"));
+                   "; write all values into one file without such links, for example with "
+                   "nccopy, and give that"));
 }
 
 // Returns callbacks by which HDF5 uses the bytes of a file where they are, and neither copies nor

@@ -17,8 +17,9 @@ inline constexpr std::size_t kFirstHdf5Offset = 512;
 bool IsHdf5Signature(std::span<const std::byte> bytes);
 
 // Return DATA_LOSS if a dataset keeps its values in other files (external storage, virtual
-// datasets) or a link leads to another file, or if the structure cannot be read, and OK for
-// a file that is not HDF5. The caller holds NetcdfLock. The bytes are not copied.
+// datasets), if a link leads to another file or to a group that another link leads to, or if the
+// structure cannot be read, and OK for a file that is not HDF5. The caller holds NetcdfLock. The
+// bytes are not copied.
 absl::Status CheckHdf5File(const std::string& path);
 absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes);
 

@@ -110,13 +110,25 @@ TEST_F(ForeignLayoutsTest, LinksToOtherFilesAreRefused) {
   ExpectRefused("link to another file");
 }
 
-TEST_F(ForeignLayoutsTest, ALinkInACircleOfGroupsIsFound) {
+TEST_F(ForeignLayoutsTest, ALinkToAnotherFileIsFoundInAGroup) {
   const hid_t group = H5Gcreate2(file_, "g", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  H5Lcreate_hard(file_, "/", group, "root", H5P_DEFAULT, H5P_DEFAULT);
   H5Lcreate_soft("/g/self", group, "self", H5P_DEFAULT, H5P_DEFAULT);
   ASSERT_GE(H5Lcreate_external(secret_.c_str(), "/", group, "out", H5P_DEFAULT, H5P_DEFAULT), 0);
   H5Gclose(group);
   ExpectRefused("link to another file");
+}
+
+// NetCDF-C would follow such links without end.
+TEST_F(ForeignLayoutsTest, CirclesOfGroupsAreRefused) {
+  ASSERT_GE(H5Lcreate_hard(file_, "/", file_, "root", H5P_DEFAULT, H5P_DEFAULT), 0);
+  ExpectRefused("second link to a group");
+}
+
+TEST_F(ForeignLayoutsTest, CirclesBySoftLinksAreRefused) {
+  const hid_t group = H5Gcreate2(file_, "g", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  ASSERT_GE(H5Lcreate_soft("/g", group, "g", H5P_DEFAULT, H5P_DEFAULT), 0);
+  H5Gclose(group);
+  ExpectRefused("second link to a group");
 }
 
 TEST_F(ForeignLayoutsTest, NumbersOfAnotherTypeAreRefused) {
