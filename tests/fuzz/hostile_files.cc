@@ -1,7 +1,8 @@
 // Reads mutated storm files of three formats, each in a confined process of its own, as the server
-// reads what it does not trust; and sparse files of enormous dimensions. Every file must give a
-// storm or one clear error that names it. Only netCDF-C and HDF5 may crash or take too long, which
-// ends their process alone; our own code that does is a failure.
+// reads what it does not trust; netCDF-4 files whose variables have types, storage layouts and
+// filters that netCDF-C never writes; and sparse files of enormous dimensions. Every file must give
+// a storm or one clear error that names it. Only netCDF-C and HDF5 may crash or take too long,
+// which ends their process alone; our own code that does is a failure.
 //   hostile_files [NUMBER] [SEED] [FILE, the only one to be read; exits with its outcome]
 #include <dlfcn.h>
 #include <execinfo.h>
@@ -17,7 +18,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <random>
 #include <span>
 #include <string>
 
@@ -26,6 +26,8 @@
 #include "base/status.h"
 #include "sandbox/confinement.h"
 #include "spdlog/spdlog.h"
+#include "tests/fuzz/dice.h"
+#include "tests/fuzz/foreign_storage.h"
 #include "tests/support/synthetic_cf.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
@@ -35,25 +37,12 @@
 namespace {
 
 using namespace thunderhead;
+using testing::Dice;
 using testing::SyntheticWrf;
 using testing::WrfCell;
 using testing::WrfFormat;
 
 constexpr std::uint64_t kMemory = std::uint64_t{512} << 20;
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random_(seed) {}
-  std::size_t Below(std::size_t end) { return end == 0 ? 0 : random_() % end; }
-  bool OneIn(std::size_t many) { return Below(many) == 0; }
-  template <typename Value, std::size_t kCount>
-  Value Of(const std::array<Value, kCount>& values) {
-    return values[Below(kCount)];
-  }
-
- private:
-  std::mt19937_64 random_;
-};
 
 // Numbers that break arithmetic.
 constexpr std::array kOddNumbers = {0.0,  -1.0,  1e-30, 1e30,  1e300, -1e300, 9.96921e36,
@@ -361,6 +350,19 @@ void WriteSparse(const std::string& path, bool cf) {
   must(nc_close(id));
 }
 
+// What is mutated.
+struct Kind {
+  const char* name;
+  bool cf = false;
+  bool classic = false;
+  bool foreign = false;  // stored in ways of HDF5 that netCDF-C never writes
+};
+
+constexpr std::array kKinds = {
+    Kind{.name = "WRF netCDF-4"}, Kind{.name = "WRF classic", .classic = true},
+    Kind{.name = "CF netCDF-4", .cf = true}, Kind{.name = "WRF foreign storage", .foreign = true},
+    Kind{.name = "CF foreign storage", .cf = true, .foreign = true}};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -371,47 +373,51 @@ int main(int argc, char** argv) {
   std::map<std::string, std::map<int, std::size_t>> outcomes;
   bool failed = false;
   if (argc > 3) return OutcomeOf(argv[3], BytesOf(argv[3]));
+  const auto count = [&](const std::string& name, std::size_t kind, const std::string& bytes) {
+    const int outcome = OutcomeOf(path, bytes);
+    ++outcomes[name][outcome];
+    if (outcome == kRead || outcome == kClearError) return;
+    std::ofstream("hostile-" + std::to_string(outcome) + "-" + std::to_string(kind),
+                  std::ios::binary)
+        << bytes;
+  };
   for (const bool cf : {false, true}) {
     WriteSparse(path, cf);
     const int outcome = OutcomeOf(path, BytesOf(path));
     ++outcomes[cf ? "sparse CF" : "sparse WRF"][outcome];
     failed = failed || outcome != kClearError;
   }
+  static std::array<std::string, kKinds.size()> sound;
   for (std::size_t i = 0; i < number; ++i) {
-    static std::array<std::string, 3> sound;
-    const std::size_t kind = i % 3;
+    const std::size_t at = i % kKinds.size();
+    const Kind& kind = kKinds[at];
     // A new description now and then: writing one costs more than reading it.
-    if (sound[kind].empty() || dice.OneIn(8)) {
+    if (sound[at].empty() || dice.OneIn(kind.foreign ? 2 : 8)) {
       constexpr std::array kClassic = {WrfFormat::kClassic, WrfFormat::kOffset64, WrfFormat::kCdf5};
-      const WrfFormat format = kind == 0 ? WrfFormat::kNetcdf4 : dice.Of(kClassic);
+      const WrfFormat format = kind.classic ? dice.Of(kClassic) : WrfFormat::kNetcdf4;
       const SyntheticWrf wrf = OddWrf(dice, format);
       const testing::SyntheticCf cf = OddCf(dice);
+      Dice changes(dice.Below(std::size_t{1} << 62));
       const bool written = Writes([&] {
-        if (kind == 2) testing::WriteCf(cf, path);
-        if (kind != 2) testing::WriteWrf(wrf, path);
+        if (kind.cf) testing::WriteCf(cf, path);
+        if (!kind.cf) testing::WriteWrf(wrf, path);
+        if (kind.foreign) testing::ChangeStorage(changes, path);
       });
       if (!written) {
         --i;
         continue;
       }
-      sound[kind] = BytesOf(path);
-      ++outcomes[kind == 2 ? "CF, odd" : "WRF, odd"][OutcomeOf(path, sound[kind])];
+      sound[at] = BytesOf(path);
+      count(std::string(kind.name) + ", as written", at, sound[at]);
     }
-    std::string bytes = sound[kind];
+    std::string bytes = sound[at];
     Damage(dice, bytes);
-    constexpr std::array kNames = {"WRF netCDF-4", "WRF classic", "CF netCDF-4"};
-    const int outcome = OutcomeOf(path, bytes);
-    ++outcomes[kNames[kind]][outcome];
-    if (outcome != kRead && outcome != kClearError) {
-      std::ofstream("hostile-" + std::to_string(outcome) + "-" + std::to_string(kind),
-                    std::ios::binary)
-          << bytes;
-    }
+    count(std::string(kind.name) + ", damaged", at, bytes);
   }
   for (const auto& [name, counts] : outcomes) {
-    std::printf("%-13s", name.c_str());
-    for (const auto& [outcome, count] : counts) {
-      std::printf("  %s %zu", NameOf(outcome), count);
+    std::printf("%-32s", name.c_str());
+    for (const auto& [outcome, times] : counts) {
+      std::printf("  %s %zu", NameOf(outcome), times);
       failed = failed || outcome < 0 || outcome > kLibraryHung;
     }
     std::printf("\n");
