@@ -405,7 +405,7 @@ std::string NetcdfFile::TextOrEmpty(const std::string& variable,
   if (std::optional<std::string> text = TextAttribute(variable, attribute); text.has_value()) {
     return *std::move(text);
   }
-  const NetcdfLock lock(path_);
+  const NetcdfLock lock;
   int id = NC_GLOBAL;
   if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return "";
   const bool absent = nc_inq_att(handle_, id, attribute.c_str(), nullptr, nullptr) != NC_NOERR;
