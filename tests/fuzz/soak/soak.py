@@ -86,6 +86,7 @@ class Caller:
         self.chance = random.Random(seed)
         self.messages = Messages(self.chance)
         self.rpcs = rpcs
+        self.intact = True  # whether the messages of the last call are as they were made
         self.weights = [SELDOM.get(rpc.name, 1.0) for rpc in rpcs]
         self.transports = {"grpc": Grpc(ports["grpc"]), "web": GrpcWeb(ports["http"]), "websocket": WebSocket(ports["http"])}
 
@@ -99,6 +100,7 @@ class Caller:
         if self.odd(0.01):
             number = chance.choice([0, 2])
         damage = chance.choice([0, 0, 0, 0, 0.3, 0.6])
+        self.intact = damage == 0
         made = [self.messages.make(rpc.input_type, damage, rpc.client_streaming and i == 0 and not self.odd(0.05)) for i in range(number)]
         headers = []
         if transport != "websocket":
@@ -179,7 +181,8 @@ class Caller:
                 self.messages.learn(rpc.output_type._concrete_class.FromString(message))
             except Exception as error:
                 wrong = wrong or f"the answer cannot be parsed: {error}"
-        if "no session" in answer.text or (answer.status == 0 and rpc.name in ("CloseSession", "DeleteCloud")):
+        # A key that was damaged on its way is no reason to forget the session.
+        if (self.intact and "no session" in answer.text) or (answer.status == 0 and rpc.name in ("CloseSession", "DeleteCloud")):
             self.messages.forget()
         return rpc.name, call, answer, wrong
 
