@@ -1,6 +1,4 @@
 // thunderhead: storms from weather models as they would look in the sky. Exit codes: exit_codes.h.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -8,7 +6,6 @@
 #include <exception>
 #include <iostream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -19,7 +16,6 @@
 #include "app/log_format.h"
 #include "base/loose_thread.h"
 #include "base/version.h"
-#include "sandbox/reader_main.h"
 #include "spdlog/sinks/stdout_color_sinks.h"
 #include "spdlog/spdlog.h"
 
@@ -77,10 +73,6 @@ int Main(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    // Not a subcommand: the server starts it, and nothing of the rest is to run before it.
-    if (argc == 2 && std::string_view(argv[1]) == thunderhead::sandbox::kReaderCommand) {
-      _exit(thunderhead::sandbox::ReadStormFile(thunderhead::volume::StormFormats::BuiltIn()));
-    }
     const int code = thunderhead::app::Main(argc, argv);
     if (thunderhead::base::LooseThread::AnyLeftBehind()) {
       spdlog::default_logger()->flush();

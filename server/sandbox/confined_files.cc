@@ -48,7 +48,7 @@ Request RequestFor(Wanted wanted, const std::string& path, std::size_t record = 
 ConfinedFiles::ConfinedFiles(const ConfinedOptions& options) : options_(options) {}
 
 absl::Status ConfinedFiles::Probe() const {
-  return ReaderProcess(options_.limits, *options_.time)
+  return ReaderProcess(options_.limits, *options_.time, options_.program)
       .Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, {}, [](Receiver& from_reader) {
         Note nothing;
         Visit(from_reader, nothing);
@@ -69,8 +69,8 @@ absl::Status ConfinedFiles::Run(Request request, Reply wanted, const ReaderLimit
       return known->second.failure;
     }
   }
-  absl::Status status =
-      ReaderProcess(limits, *options_.time).Run(std::move(request), wanted, checkpoint, take);
+  absl::Status status = ReaderProcess(limits, *options_.time, options_.program)
+                            .Run(std::move(request), wanted, checkpoint, take);
   const std::lock_guard lock(mutex_);
   offenders_.erase(path);
   if (stamp.has_value() && IsReaderFailure(status)) {

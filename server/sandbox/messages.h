@@ -18,7 +18,8 @@ enum class Wanted : std::uint8_t { kProbe, kDescription, kVerticalGrid, kFields 
 
 struct Request {
   Wanted wanted = Wanted::kProbe;
-  std::string path;  // for messages: the file itself is an open descriptor
+  std::string version;  // of the program that asks
+  std::string path;     // for messages: the file itself is an open descriptor
   std::uint64_t record = 0;
   std::optional<volume::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // that reading may take, the file itself left out
@@ -47,6 +48,7 @@ void VisitOptional(Archive& archive, std::optional<Value>& value) {
 template <typename Archive>
 void Visit(Archive& archive, Request& request) {
   archive(request.wanted);
+  archive(request.version);
   archive(request.path);
   archive(request.record);
   VisitOptional(archive, request.grid);

@@ -19,6 +19,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/guarded.h"
 #include "base/status.h"
+#include "base/version.h"
 #include "sandbox/archive.h"
 #include "sandbox/confinement.h"
 #include "sandbox/messages.h"
@@ -174,7 +175,8 @@ int ReadStormFile(const volume::StormFormats& formats) {
   Request request;
   Receiver from_server(STDIN_FILENO, std::chrono::seconds(10), 1 << 10);
   Visit(from_server, request);
-  if (!from_server.Ok()) return 1;
+  // What another version sends would be misunderstood.
+  if (!from_server.Ok() || request.version != base::Version()) return 1;
   const std::span<std::byte> shared = MapShared(request.shared_bytes);
   // The other end puts arrays there without asking.
   if (shared.size() != request.shared_bytes) return 1;

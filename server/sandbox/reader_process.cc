@@ -12,11 +12,13 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -24,9 +26,11 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/file_descriptor.h"
+#include "base/file_stamp.h"
 #include "base/guarded.h"
 #include "base/status.h"
 #include "base/utf8.h"
+#include "base/version.h"
 #include "sandbox/reader_main.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/metrics.h"
@@ -198,9 +202,8 @@ int Spawn(const std::string& program, const Descriptors& given, pid_t& process) 
   posix_spawnattr_setflags(
       &attributes,
       static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
-  std::string name = "thunderhead";
-  std::string command = kReaderCommand;
-  const std::array<char*, 3> arguments = {name.data(), command.data(), nullptr};
+  std::string name = kReaderName;
+  const std::array<char*, 2> arguments = {name.data(), nullptr};
   const int error = posix_spawn(&process, program.c_str(), &actions, &attributes, arguments.data(),
                                 Environment().data());
   posix_spawn_file_actions_destroy(&actions);
@@ -321,6 +324,11 @@ absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted
 
 absl::Status ReaderProcess::Run(Request request, Reply wanted,
                                 const volume::ReadCheckpoint& checkpoint, const Take& take) const {
+  std::string program = program_;
+  if (program.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(program, ReaderProgram());
+  }
+  request.version = base::Version();
   request.memory_bytes = limits_.memory_bytes;
   request.processor_s = static_cast<std::uint32_t>(
       std::max<std::int64_t>(1, std::chrono::ceil<std::chrono::seconds>(limits_.time).count()));
@@ -348,7 +356,7 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
   fcntl(reply_to.Get(), F_SETPIPE_SZ, 1 << 20);
   pid_t process = 0;
   const int error =
-      Spawn(program_, {request_from.Get(), reply_to.Get(), file.Get(), shared.File()}, process);
+      Spawn(program, {request_from.Get(), reply_to.Get(), file.Get(), shared.File()}, process);
   if (error != 0) return NoReader(request.path, error);
   Child child(process, time_);
   request_from = {};
@@ -358,6 +366,21 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
       [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits_); });
   if (!from_reader.Ok()) return Judge(request.path, from_reader, child, limits_);
   return status;
+}
+
+absl::StatusOr<std::string> ReaderProgram() {
+  constexpr char kRemedy[] = "; install Thunderhead whole, and start this program again";
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  static const std::string path = (self.parent_path() / kReaderName).string();
+  static const std::optional<base::FileStamp> first = base::StampOf(path);
+  if (!first.has_value()) {
+    return absl::UnavailableError(
+        absl::StrCat(path, ", which reads storm files, is not there", kRemedy));
+  }
+  if (base::StampOf(path) == first) return path;
+  return absl::UnavailableError(
+      absl::StrCat(path, ", which reads storm files, was replaced", kRemedy));
 }
 
 std::uint64_t MachineMemory() {

@@ -26,7 +26,11 @@ struct ReaderLimits {
   std::chrono::milliseconds time{3'600'000};     // that this process waits, and processor time
 };
 
-// Starts `program`, this one by default, as the reader, and waits for it by `time`.
+// The path of thunderhead-reader, which lies beside this program. UNAVAILABLE if it is not the file
+// any more that it was at the first call: a reader of another version would be misunderstood.
+absl::StatusOr<std::string> ReaderProgram();
+
+// Starts `program`, ReaderProgram() if it is empty, and waits for it by `time`.
 class ReaderProcess {
  public:
   // Takes the result after its kind; nothing received fails until the Receiver is asked.
@@ -34,7 +38,7 @@ class ReaderProcess {
 
   explicit ReaderProcess(const ReaderLimits& limits,
                          const base::TimeSource& time = base::SteadyTime(),
-                         std::string program = "/proc/self/exe")
+                         std::string program = "")
       : limits_(limits), time_(time), program_(std::move(program)) {}
 
   // Has the file read. `wanted` is the reply that `take` understands; errors of the file come as

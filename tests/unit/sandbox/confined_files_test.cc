@@ -85,6 +85,7 @@ class ConfinedFilesTest : public ::testing::Test {
     ConfinedOptions options;
     options.limits = {memory, time};
     options.time = &time_;
+    options.program = "/proc/self/exe";
     return std::make_shared<ConfinedFiles>(options);
   }
 

@@ -1,5 +1,5 @@
-// The tests' program is the reader that they start, as the server's is: with formats that misbehave
-// besides the program's own.
+// The tests' program is also the reader that they start, with formats that misbehave besides the
+// program's own.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -12,7 +12,7 @@
 
 int main(int argc, char** argv) {
   using thunderhead::sandbox::FormatsWithMisbehaving;
-  if (argc == 2 && std::string_view(argv[1]) == thunderhead::sandbox::kReaderCommand) {
+  if (std::string_view(argv[0]) == thunderhead::sandbox::kReaderName) {
     _exit(thunderhead::sandbox::ReadStormFile(FormatsWithMisbehaving()));
   }
 #ifdef __SANITIZE_ADDRESS__

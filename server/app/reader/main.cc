@@ -1,0 +1,10 @@
+// thunderhead-reader: the confined process that reads one storm file. A program of its own, because
+// it starts for every read and needs none of the libraries that the server loads.
+#include <unistd.h>
+
+#include "sandbox/reader_main.h"
+#include "volume/storm_format.h"
+
+int main() {
+  _exit(thunderhead::sandbox::ReadStormFile(thunderhead::volume::StormFormats::BuiltIn()));
+}
