@@ -1,6 +1,7 @@
 #include "sandbox/archive.h"
 
 #include <poll.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +16,15 @@ std::optional<std::size_t> SharedPlaces::Next(std::size_t bytes) {
   const std::size_t place = used_;
   used_ = std::min(size_, place + (bytes + kAlignment - 1) / kAlignment * kAlignment);
   return place;
+}
+
+void Populate(std::span<const std::byte> memory, Use use) {
+  static const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
+  const std::uintptr_t first = address / page * page;
+  const std::uintptr_t end = address + memory.size();
+  madvise(reinterpret_cast<void*>(first), end - first,
+          use == Use::kWriting ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
 }
 
 void Sender::Write(const void* bytes, std::size_t count) {

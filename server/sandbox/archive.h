@@ -36,6 +36,11 @@ class SharedPlaces {
   std::size_t used_ = 0;
 };
 
+// Has the kernel provide the pages of that memory at once, which takes less time than one by one at
+// their first use. Where it cannot, they come one by one.
+enum class Use { kReading, kWriting };
+void Populate(std::span<const std::byte> memory, Use use);
+
 // The end that writes; what cannot be written, as nobody reads any more, is dropped.
 class Sender {
  public:
@@ -58,7 +63,11 @@ class Sender {
     const std::size_t bytes = values.size() * sizeof(values[0]);
     // The array before its size: whoever gets the size may read the array.
     const std::optional<std::size_t> place = places_.Next(bytes);
-    if (place.has_value()) std::memcpy(shared_.data() + *place, values.data(), bytes);
+    if (place.has_value()) {
+      const std::span<std::byte> to = shared_.subspan(*place, bytes);
+      Populate(to, Use::kWriting);
+      std::memcpy(to.data(), values.data(), bytes);
+    }
     (*this)(static_cast<std::uint64_t>(values.size()));
     if (!place.has_value()) Write(values.data(), bytes);
   }
@@ -119,6 +128,7 @@ class Receiver {
     using Value = typename Values::value_type;
     if (const auto place = places_.Next(count * each); place.has_value()) {
       // Copied before it is looked at, as the reader could still change it.
+      Populate(shared_.subspan(*place, count * each), Use::kReading);
       const auto* const first = reinterpret_cast<const Value*>(shared_.data() + *place);
       values.assign(first, first + count);
       return;

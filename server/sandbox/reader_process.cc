@@ -72,8 +72,8 @@ absl::StatusOr<base::FileDescriptor> OpenFile(const std::string& path) {
       absl::StrCat(path, ": is no regular file; give the model's output file"));
 }
 
-// Processes that did not end when they were killed, as those that wait for a dead network file
-// system: asked again whenever another one ends.
+// Processes that did not end at once when they were killed: those that give back much memory, and
+// those that wait for a dead network file system. Asked again whenever another one ends.
 void ReapLater(pid_t process) {
   static std::mutex mutex;
   static std::vector<pid_t> left;
@@ -93,7 +93,7 @@ class Child {
   void Kill() {
     if (process_ <= 0) return;
     kill(process_, SIGKILL);
-    if (!End(milliseconds(200)).has_value()) ReapLater(std::exchange(process_, 0));
+    if (!End(milliseconds(2)).has_value()) ReapLater(std::exchange(process_, 0));
   }
 
   // The signal that ended it, 0 if it ended by itself, nothing if it still runs after `patience`.
@@ -375,7 +375,7 @@ absl::StatusOr<std::string> ReaderProgram() {
   static const std::string path = (self.parent_path() / kReaderName).string();
   static const std::optional<base::FileStamp> first = base::StampOf(path);
   if (!first.has_value()) {
-    return absl::UnavailableError(
+    return absl::InternalError(
         absl::StrCat(path, ", which reads storm files, is not there", kRemedy));
   }
   if (base::StampOf(path) == first) return path;

@@ -26,8 +26,9 @@ struct ReaderLimits {
   std::chrono::milliseconds time{3'600'000};     // that this process waits, and processor time
 };
 
-// The path of thunderhead-reader, which lies beside this program. UNAVAILABLE if it is not the file
-// any more that it was at the first call: a reader of another version would be misunderstood.
+// The path of thunderhead-reader, which lies beside this program. INTERNAL if it is not there,
+// UNAVAILABLE if it is not the file any more that it was at the first call: a reader of another
+// version would be misunderstood.
 absl::StatusOr<std::string> ReaderProgram();
 
 // Starts `program`, ReaderProgram() if it is empty, and waits for it by `time`.
