@@ -20,10 +20,8 @@ std::optional<std::size_t> SharedPlaces::Next(std::size_t bytes) {
 
 void Populate(std::span<const std::byte> memory, Use use) {
   static const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto address = reinterpret_cast<std::uintptr_t>(memory.data());
-  const std::uintptr_t first = address / page * page;
-  const std::uintptr_t end = address + memory.size();
-  madvise(reinterpret_cast<void*>(first), end - first,
+  const std::uintptr_t before = reinterpret_cast<std::uintptr_t>(memory.data()) % page;
+  madvise(const_cast<std::byte*>(memory.data()) - before, memory.size() + before,
           use == Use::kWriting ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
 }
 

@@ -47,6 +47,8 @@ absl::Status Limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
 // Allocation, threads, waiting, the pipes that are open, the clock, and to end. With conditions:
 // memory that is never code, clone for threads, signals to itself, limits only to be read.
 int AllowReading(scmp_filter_ctx filter) {
+  // Of a call: its place, and how it compares with what.
+  using Argument = scmp_arg_cmp;
   const auto allow = [filter](int call, auto... conditions) {
     return seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, sizeof...(conditions), conditions...);
   };
@@ -83,13 +85,13 @@ int AllowReading(scmp_filter_ctx filter) {
                          SCMP_SYS(restart_syscall)}) {
     if (error == 0) error = allow(call);
   }
-  if (error == 0) error = allow(SCMP_SYS(mmap), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
-  if (error == 0) error = allow(SCMP_SYS(mprotect), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
+  if (error == 0) error = allow(SCMP_SYS(mmap), Argument{2, SCMP_CMP_MASKED_EQ, PROT_EXEC, 0});
+  if (error == 0) error = allow(SCMP_SYS(mprotect), Argument{2, SCMP_CMP_MASKED_EQ, PROT_EXEC, 0});
   if (error == 0) {
-    error = allow(SCMP_SYS(clone), SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD));
+    error = allow(SCMP_SYS(clone), Argument{0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD});
   }
-  if (error == 0) error = allow(SCMP_SYS(tgkill), SCMP_A0(SCMP_CMP_EQ, self));
-  if (error == 0) error = allow(SCMP_SYS(prlimit64), SCMP_A2(SCMP_CMP_EQ, 0));
+  if (error == 0) error = allow(SCMP_SYS(tgkill), Argument{0, SCMP_CMP_EQ, self});
+  if (error == 0) error = allow(SCMP_SYS(prlimit64), Argument{2, SCMP_CMP_EQ, 0});
   // The C library then takes clone, whose flags can be looked at.
   if (error == 0) {
     error = seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);

@@ -35,7 +35,7 @@ absl::Status CheckPaths(const std::vector<std::string>& paths, const StormFormat
     const auto is_folder = [&] {
       const base::SlowCall call(path);
       if (!std::filesystem::is_directory(path, error)) return false;
-      std::filesystem::directory_iterator(path, error);
+      const std::filesystem::directory_iterator listed(path, error);
       return true;
     };
     if (!is_folder()) THUNDERHEAD_RETURN_IF_ERROR(DescribeFile(path, formats).status());
