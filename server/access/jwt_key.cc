@@ -78,11 +78,27 @@ bool IsFor(jwt_t* token, const std::string& audience) {
          std::ranges::any_of(list, [&](const nlohmann::json& each) { return each == audience; });
 }
 
+// False if the token has a time before which it is not valid (nbf, RFC 7519, 4.1.5), which may have
+// fractions, and `now` is before it, or if that is no number. libjwt takes what is no whole number
+// for 0.
+bool HasBegun(jwt_t* token, Time now) {
+  const std::unique_ptr<char, decltype(&std::free)> json(jwt_get_grants_json(token, nullptr),
+                                                         &std::free);
+  if (json == nullptr) return true;
+  constexpr bool kThrows = false;
+  const auto claims = nlohmann::json::parse(json.get(), nullptr, kThrows);
+  if (!claims.is_object()) return false;
+  const auto begins = claims.find("nbf");
+  if (begins == claims.end()) return true;
+  const std::chrono::duration<double> latest = (now + kClockSkew).time_since_epoch();
+  return begins->is_number() && begins->get<double>() <= latest.count();
+}
+
 absl::Status CheckTimes(jwt_t* token, Time now) {
   const Time expires = TimeClaim(token, "exp");
   if (expires == Time()) return Wrong("has no time at which it expires (exp)");
   if (expires + kClockSkew <= now) return Wrong("has expired");
-  if (TimeClaim(token, "nbf") > now + kClockSkew) return Wrong("is not valid yet");
+  if (!HasBegun(token, now)) return Wrong("is not valid yet");
   return absl::OkStatus();
 }
 

@@ -4,14 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "sandbox/confined_files.h"
-
 namespace thunderhead::app {
 
-volume::StormFormats ConfinedFormats(const sandbox::ReaderLimits& limits) {
-  return sandbox::Confined(
-      volume::StormFormats::BuiltIn(),
-      std::make_shared<sandbox::ConfinedFiles>(sandbox::ConfinedOptions{.limits = limits}));
+volume::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options) {
+  return sandbox::Confined(volume::StormFormats::BuiltIn(),
+                           std::make_shared<sandbox::ConfinedFiles>(options));
 }
 
 void AddReaderFlags(CLI::App& command, ReaderFlags& flags) {

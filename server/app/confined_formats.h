@@ -3,12 +3,12 @@
 #pragma once
 
 #include "CLI/CLI.hpp"
-#include "sandbox/reader_process.h"
+#include "sandbox/confined_files.h"
 #include "volume/storm_format.h"
 
 namespace thunderhead::app {
 
-volume::StormFormats ConfinedFormats(const sandbox::ReaderLimits& limits = {});
+volume::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options = {});
 
 struct ReaderFlags {
   double memory_mib = static_cast<double>(sandbox::MachineMemory() >> 20);

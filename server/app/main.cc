@@ -14,6 +14,7 @@
 #include "app/exit_codes.h"
 #include "app/library_log.h"
 #include "app/log_format.h"
+#include "app/tell_user.h"
 #include "base/loose_thread.h"
 #include "base/version.h"
 #include "spdlog/sinks/stdout_color_sinks.h"
@@ -23,7 +24,7 @@ namespace thunderhead::app {
 namespace {
 
 int Report(const absl::Status& status) {
-  if (!status.ok()) std::cerr << "thunderhead: " << status.message() << "\n";
+  if (!status.ok()) TellUser({status.message().data(), status.message().size()});
   return static_cast<int>(ExitCodeOf(status));
 }
 

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/utf8.h"
+
 namespace thunderhead::app {
 namespace {
 
@@ -29,7 +31,7 @@ std::string Bar(double share, int tick) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string label) : label_(std::move(label)) {
+ProgressBar::ProgressBar(std::string label) : label_(base::Printable(label)) {
   if (isatty(STDERR_FILENO) == 1) thread_ = std::thread([this] { Draw(); });
 }
 

@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "base/utf8.h"
+
 namespace thunderhead::app {
 
 class ProgressBar {
@@ -24,9 +26,9 @@ class ProgressBar {
   void Set(double share) { share_ = share; }
 
   // Sets the text after the share, e.g. the current error. From any thread.
-  void Note(std::string note) {
+  void Note(const std::string& note) {
     const std::lock_guard lock(mutex_);
-    note_ = std::move(note);
+    note_ = base::Printable(note);
   }
 
  private:

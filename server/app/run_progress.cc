@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "app/tell_user.h"
 #include "nlohmann/json.hpp"
 
 namespace thunderhead::app {
@@ -41,7 +42,7 @@ void RunProgress::Kept(const std::string& path) {
 
 void RunProgress::Failed(const std::string& path, const absl::Status& why) {
   const std::lock_guard lock(mutex_);
-  std::cerr << "thunderhead: " << why.message() << std::endl;
+  TellUser({why.message().data(), why.message().size()});
   if (style_ == ProgressStyle::kJson) Tell("failed", path, std::string(why.message()), 0.0);
 }
 
@@ -49,7 +50,7 @@ void RunProgress::Note(const std::string& path, const std::string& what) {
   const std::lock_guard lock(mutex_);
   if (bar_ != nullptr) return bar_->Note(what);
   if (style_ == ProgressStyle::kJson) Tell("waiting", path, what, 0.0);
-  if (style_ == ProgressStyle::kLines) std::cerr << "thunderhead: " << what << std::endl;
+  if (style_ == ProgressStyle::kLines) TellUser(what);
 }
 
 int RunProgress::DrawnCount() const {

@@ -33,6 +33,7 @@
 #include "telemetry/metrics.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 #include "volume/border_data.h"
+#include "volume/storm_catalogue.h"
 
 namespace thunderhead::app {
 namespace {
@@ -169,10 +170,17 @@ absl::Status Serve(ServeFlags flags) {
   store_options.read_deadline = std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(LimitsOf(flags.reader)));
-  store_options.formats = ConfinedFormats(LimitsOf(flags.reader));
-  store_options.links = LinksOf(flags.catalogue);
   store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
+  store_options.links = LinksOf(flags.catalogue);
+  std::vector<std::string> folders = flags.data;
+  folders.push_back(clouds.Path());
+  store_options.formats =
+      ConfinedFormats({.limits = LimitsOf(flags.reader),
+                       .check_opened = [folders, links = store_options.links](
+                                           const std::string& path, const std::string& place) {
+                         return volume::CheckPlace(folders, links, path, place);
+                       }});
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
                                volume::StormStore::Open(flags.data, store_options));
   for (const std::string& file : clouds.Files()) {

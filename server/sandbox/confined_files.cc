@@ -69,8 +69,9 @@ absl::Status ConfinedFiles::Run(Request request, Reply wanted, const ReaderLimit
       return known->second.failure;
     }
   }
-  absl::Status status = ReaderProcess(limits, *options_.time, options_.program)
-                            .Run(std::move(request), wanted, checkpoint, take);
+  absl::Status status =
+      ReaderProcess(limits, *options_.time, options_.program, options_.check_opened)
+          .Run(std::move(request), wanted, checkpoint, take);
   const std::lock_guard lock(mutex_);
   offenders_.erase(path);
   if (stamp.has_value() && IsReaderFailure(status)) {

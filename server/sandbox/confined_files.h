@@ -21,6 +21,7 @@ namespace thunderhead::sandbox {
 
 struct ConfinedOptions {
   ReaderLimits limits = {};
+  ReaderProcess::CheckOpened check_opened = {};
   std::string program = {};                            // the reader; empty: ReaderProgram()
   const base::TimeSource* time = &base::SteadyTime();  // must outlive the files
 };

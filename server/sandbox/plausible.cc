@@ -16,7 +16,6 @@ namespace {
 // Far beyond any storm, and near enough for arithmetic in single precision.
 constexpr int kMaxCells = 2'000'000;  // along one axis
 constexpr double kFarthest_m = 1e9;
-constexpr std::size_t kMaxTimes = 1'000'000;
 
 absl::Status Require(bool condition, const std::string& what) {
   if (condition) return absl::OkStatus();
@@ -136,8 +135,8 @@ absl::Status CheckPlausible(const volume::StormFile& file) {
   THUNDERHEAD_RETURN_IF_ERROR(
       Require(Within(file.dx_m, 1e-6, kFarthest_m) && Within(file.dy_m, 1e-6, kFarthest_m),
               "the size of its cells"));
-  THUNDERHEAD_RETURN_IF_ERROR(
-      Require(!file.times.empty() && file.times.size() <= kMaxTimes, "the number of its times"));
+  THUNDERHEAD_RETURN_IF_ERROR(Require(!file.times.empty() && file.times.size() <= volume::kMaxTimes,
+                                      "the number of its times"));
   static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
   static const absl::Time kLast = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
   const bool in_time = std::ranges::all_of(

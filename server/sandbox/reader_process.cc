@@ -133,6 +133,14 @@ std::vector<char*> Environment() {
   return kept;
 }
 
+// The descriptor with a number beyond those that the reader gets, which Spawn must not overwrite
+// before it has copied them. A program whose standard streams are closed has it among those.
+base::FileDescriptor MovedUp(base::FileDescriptor file) {
+  constexpr int kBeyond = kSharedDescriptor + 1;
+  if (!file.IsOpen() || file.Get() >= kBeyond) return file;
+  return base::FileDescriptor(fcntl(file.Get(), F_DUPFD_CLOEXEC, kBeyond));
+}
+
 struct Unmap {
   std::size_t size = 0;
 
@@ -160,7 +168,7 @@ class SharedArrays {
     void* const bytes = mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_NORESERVE, file.Get(), 0);
     if (bytes == MAP_FAILED) return arrays;
     arrays.bytes_ = {static_cast<const std::byte*>(bytes), Unmap{size}};
-    arrays.file_ = std::move(file);
+    arrays.file_ = MovedUp(std::move(file));
     return arrays;
   }
 
@@ -168,6 +176,12 @@ class SharedArrays {
   base::FileDescriptor file_;
   std::unique_ptr<const std::byte, Unmap> bytes_;
 };
+
+// Where the file of an open descriptor lies.
+std::string PlaceOf(const base::FileDescriptor& file) {
+  std::error_code error;
+  return std::filesystem::read_symlink(absl::StrCat("/proc/self/fd/", file.Get()), error).string();
+}
 
 // What a reader gets.
 struct Descriptors {
@@ -229,12 +243,15 @@ absl::Status TookTooLong(const std::string& path, milliseconds time) {
 // Why a reader ended without a result.
 absl::Status EndedEarly(const std::string& path, int signal, milliseconds time) {
   if (signal == SIGXCPU) return TookTooLong(path, time);
-  const std::string how = signal == 0
-                              ? "ended without a result"
-                              : absl::StrCat(signal == SIGKILL ? "was killed" : "crashed",
-                                             " (signal ", signal, ", ", strsignal(signal), ")");
-  return Failed(path, signal == SIGKILL ? "killed" : "crashed",
-                absl::DataLossError(absl::StrCat(how, kWhatToDo)));
+  if (signal == SIGKILL) {
+    return Failed(path, "killed",
+                  absl::UnavailableError("was killed, probably because the machine's memory is "
+                                         "full; free some, and try again"));
+  }
+  const std::string how =
+      signal == 0 ? "ended without a result"
+                  : absl::StrCat("crashed (signal ", signal, ", ", strsignal(signal), ")");
+  return Failed(path, "crashed", absl::DataLossError(absl::StrCat(how, kWhatToDo)));
 }
 
 absl::Status Nonsense(const std::string& path, const std::string& what) {
@@ -334,7 +351,9 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
       std::max<std::int64_t>(1, std::chrono::ceil<std::chrono::seconds>(limits_.time).count()));
   base::FileDescriptor file;
   if (request.wanted != Wanted::kProbe) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(file, OpenFile(request.path));
+    THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor opened, OpenFile(request.path));
+    file = MovedUp(std::move(opened));
+    if (check_opened_) THUNDERHEAD_RETURN_IF_ERROR(check_opened_(request.path, PlaceOf(file)));
   }
   SharedArrays shared;
   if (request.wanted == Wanted::kFields) shared = SharedArrays::Make(limits_.memory_bytes);
@@ -342,7 +361,7 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
   std::array<int, 2> asking{};
   std::array<int, 2> answering{};
   if (pipe2(asking.data(), O_CLOEXEC) != 0) return NoReader(request.path, errno);
-  base::FileDescriptor request_from(asking[0]);
+  base::FileDescriptor request_from = MovedUp(base::FileDescriptor(asking[0]));
   {
     // Before anybody reads: it fits into the pipe, and the end of a reader is then no SIGPIPE.
     const base::FileDescriptor request_to(asking[1]);
@@ -351,7 +370,7 @@ absl::Status ReaderProcess::Run(Request request, Reply wanted,
   }
   if (pipe2(answering.data(), O_CLOEXEC) != 0) return NoReader(request.path, errno);
   const base::FileDescriptor reply_from(answering[0]);
-  base::FileDescriptor reply_to(answering[1]);
+  base::FileDescriptor reply_to = MovedUp(base::FileDescriptor(answering[1]));
   // Fewer switches between the processes; where it is not allowed, the pipe stays small.
   fcntl(reply_to.Get(), F_SETPIPE_SZ, 1 << 20);
   pid_t process = 0;
@@ -389,7 +408,8 @@ std::uint64_t MachineMemory() {
 }
 
 bool IsReaderFailure(const absl::Status& status) {
-  return base::DetailsOf(status).reason == kReaderFailed;
+  // One that was killed may well read the file the next time.
+  return base::DetailsOf(status).reason == kReaderFailed && !absl::IsUnavailable(status);
 }
 
 }  // namespace thunderhead::sandbox

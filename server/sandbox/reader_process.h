@@ -37,10 +37,18 @@ class ReaderProcess {
   // Takes the result after its kind; nothing received fails until the Receiver is asked.
   using Take = std::function<absl::Status(Receiver& from_reader)>;
 
+  // Asked about each file that was opened by `path`, with the place where it really lies: a link
+  // may have taken a folder's place since the path was checked. Empty: every place is allowed.
+  using CheckOpened =
+      std::function<absl::Status(const std::string& path, const std::string& place)>;
+
   explicit ReaderProcess(const ReaderLimits& limits,
                          const base::TimeSource& time = base::SteadyTime(),
-                         std::string program = "")
-      : limits_(limits), time_(time), program_(std::move(program)) {}
+                         std::string program = "", CheckOpened check_opened = {})
+      : limits_(limits),
+        time_(time),
+        program_(std::move(program)),
+        check_opened_(std::move(check_opened)) {}
 
   // Has the file read. `wanted` is the reply that `take` understands; errors of the file come as
   // they are. `checkpoint` may be empty.
@@ -51,6 +59,7 @@ class ReaderProcess {
   const ReaderLimits limits_;
   const base::TimeSource& time_;
   const std::string program_;
+  const CheckOpened check_opened_;
 };
 
 // True for errors that say that the reader failed and not that the file is none: the file may be

@@ -59,7 +59,9 @@ CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, c
                access::CallKind kind) {
   access::Credentials credentials{"", PeerOf(door, context)};
   const std::string header = Metadata(context, "authorization").value_or("");
-  if (absl::StartsWithIgnoreCase(header, kScheme)) {
+  // With several tokens a proxy in front may have looked at another one: none of them counts.
+  const bool is_one = context.client_metadata().count("authorization") == 1;
+  if (is_one && absl::StartsWithIgnoreCase(header, kScheme)) {
     credentials.token = header.substr(sizeof(kScheme) - 1);
   }
   return door.Admit(method, kind, std::move(credentials));

@@ -12,6 +12,7 @@
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 #include "volume/date_time.h"
+#include "volume/storm_file.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -284,6 +285,7 @@ absl::Status ReadCfTimes(const NetcdfFile& file, CfMetadata* metadata) {
     return absl::InvalidArgumentError(absl::StrCat(
         file.Path(), ": holds no times yet; the model may still be writing it: try again later"));
   }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(file.Path(), records));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<TimeUnits> units,
                                ReadTimeUnits(file, name, records));
   if (!units.has_value()) {

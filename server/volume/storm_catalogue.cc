@@ -247,11 +247,11 @@ void AppendCanonical(const std::vector<std::string>& paths, std::vector<fs::path
   }
 }
 
-LinkRules LinkRulesOf(const std::vector<std::string>& paths, const StormSearch& search) {
+LinkRules LinkRulesOf(const std::vector<std::string>& paths, const LinkPolicy& links) {
   LinkRules rules;
   AppendCanonical(paths, &rules.targets);
-  AppendCanonical(search.links.allowed, &rules.targets);
-  AppendCanonical(search.links.untrusted, &rules.untrusted);
+  AppendCanonical(links.allowed, &rules.targets);
+  AppendCanonical(links.untrusted, &rules.untrusted);
   return rules;
 }
 
@@ -298,6 +298,31 @@ void DropRepeated(std::vector<NamedStorm>& storms) {
 }
 
 }  // namespace
+
+absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy& links,
+                        const std::string& path, const std::string& place) {
+  const LinkRules rules = LinkRulesOf(paths, links);
+  const auto refused = [&] {
+    return absl::PermissionDeniedError(
+        absl::StrCat(path, ": lies at ", place, ", where no link may lead; put the file itself ",
+                     "into the data folder, or see --allow-links-to"));
+  };
+  if (!IsWithinAny(place, rules.targets)) return refused();
+  const auto written = [](const fs::path& each) {
+    const fs::path normal = fs::absolute(each).lexically_normal();
+    return normal.has_filename() ? normal : normal.parent_path();
+  };
+  // No link is followed in an untrusted folder, so what is found there lies there.
+  for (const std::string& untrusted : links.untrusted) {
+    std::error_code error;
+    const fs::path folder = fs::canonical(untrusted, error);
+    if (error) continue;
+    const bool is_below =
+        IsWithin(written(path), written(untrusted)) || IsWithin(written(path), folder);
+    if (is_below && !IsWithin(place, folder)) return refused();
+  }
+  return absl::OkStatus();
+}
 
 absl::Status CannotBeListed(const std::string& folder, const std::error_code& error) {
   return absl::PermissionDeniedError(
@@ -392,7 +417,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormSearch& search) {
   std::vector<NamedStorm> named;
-  const LinkRules links = LinkRulesOf(paths, search);
+  const LinkRules links = LinkRulesOf(paths, search.links);
   for (std::size_t path = 0; path < paths.size(); ++path) {
     const std::size_t before = named.size();
     if (search.answers && !search.answers(paths[path])) {

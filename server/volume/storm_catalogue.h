@@ -59,6 +59,11 @@ struct StormSearch {
 // PERMISSION_DENIED: the folder is there, but cannot be listed.
 absl::Status CannotBeListed(const std::string& folder, const std::error_code& error);
 
+// PERMISSION_DENIED if a file that was opened by `path` lies at a `place` that the rules for links
+// do not allow for a search of `paths`. `place` has no links in it.
+absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy& links,
+                        const std::string& path, const std::string& place);
+
 // Describes files by the formats; a file whose metadata exhausts the memory is an error.
 absl::StatusOr<StormFile> DescribeFile(const std::string& path, const StormFormats& formats);
 

@@ -38,6 +38,12 @@ class RecordReader {
   virtual absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t record) const = 0;
 };
 
+// The most times that a file may have.
+inline constexpr std::size_t kMaxTimes = 1'000'000;
+
+// INVALID_ARGUMENT if the file at `path` has more records than that. Called before they are read.
+absl::Status CheckRecords(const std::string& path, std::size_t records);
+
 struct StormFile {
   std::string path;
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top

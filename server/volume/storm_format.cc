@@ -41,6 +41,12 @@ absl::Status CheckDescribed(StormFile& file) {
 
 }  // namespace
 
+absl::Status CheckRecords(const std::string& path, std::size_t records) {
+  if (records <= kMaxTimes) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(path, ": has ", records, " times, and ", kMaxTimes,
+                                                 " are the most; split it, or correct its size"));
+}
+
 absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const {
   if (elsewhere_) return elsewhere_(path);
   const UnknownFile file{path, NetcdfFile::Open(path)};

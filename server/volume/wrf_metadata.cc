@@ -15,6 +15,7 @@
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 #include "volume/date_time.h"
+#include "volume/storm_file.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -209,6 +210,7 @@ absl::StatusOr<std::vector<absl::Time>> TimesFromXtime(const NetcdfFile& file) {
 absl::StatusOr<std::vector<absl::Time>> ReadWrfTimes(const NetcdfFile& file) {
   const std::size_t records = file.DimensionLength("Time").value_or(0);
   if (records == 0) return NoTimes(file);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(file.Path(), records));
   std::vector<absl::Time> times;
   if (!file.HasVariable("Times")) {
     THUNDERHEAD_ASSIGN_OR_RETURN(times, TimesFromXtime(file));

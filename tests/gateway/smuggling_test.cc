@@ -62,6 +62,7 @@ TEST_F(SmugglingTest, RepeatedHostAndOriginAreRefused) {
   ExpectRefused(get + kHost + "Host: evil.example\r\n\r\n");
   ExpectRefused(get + kHost + kHost + "\r\n");
   ExpectRefused(get + kHost + "Origin: http://localhost\r\nOrigin: http://evil.example\r\n\r\n");
+  ExpectRefused(get + kHost + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n");
 }
 
 TEST_F(SmugglingTest, APortThatIsNoNumberIsRefused) {

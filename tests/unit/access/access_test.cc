@@ -199,6 +199,16 @@ TEST_F(JwtTest, TimesAndClaimsAreChecked) {
   EXPECT_EQ(Complaint(Sign({.expires_in_s = 253'402'300'799})), "") << "beyond the year 9999";
   EXPECT_THAT(Complaint(Sign({.begins_in_s = 120})), HasSubstr("not valid yet"));
   EXPECT_THAT(Complaint(Sign({.begins_in_s = 253'402'300'799})), HasSubstr("not valid yet"));
+  // kNow and an hour, in forms that are no whole number.
+  const auto later = std::chrono::system_clock::to_time_t(kNow) + 3600;
+  for (const std::string& nbf :
+       {absl::StrCat(later, ".5"), std::string("1e300"), absl::StrCat("\"", later, "\""),
+        std::string("null"), std::string("[]")}) {
+    EXPECT_THAT(Complaint(Sign({.json = absl::StrCat("{\"nbf\": ", nbf, "}")})),
+                HasSubstr("not valid yet"))
+        << nbf;
+  }
+  EXPECT_EQ(Complaint(Sign({.json = "{\"nbf\": 1.5}"})), "");
   EXPECT_THAT(Complaint(Sign({.subject = ""})), HasSubstr("(sub)"));
   EXPECT_THAT(Complaint(Sign({.role = ""})), HasSubstr("no role"));
   EXPECT_THAT(Complaint(Sign({.role = "king"})), HasSubstr("no role"));

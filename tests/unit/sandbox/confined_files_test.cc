@@ -245,6 +245,37 @@ TEST_F(ConfinedFilesTest, AReaderThatCrashesIsOneError) {
   EXPECT_EQ(Failures("crashed"), before + 4);
 }
 
+// As by the kernel when memory is full: the file is not to blame, and is tried again.
+TEST_F(ConfinedFilesTest, AReaderThatIsKilledIsTriedAgain) {
+  const std::uint64_t before = Failures("killed");
+  const auto files = Files();
+  const std::string path = Bad("killed");
+  for (int i = 1; i <= 2; ++i) {
+    const absl::Status status = files->Describe(path).status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable) << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("memory is full"));
+    EXPECT_EQ(Failures("killed"), before + i);
+  }
+}
+
+// A link may take the place of a folder after the path was checked.
+TEST_F(ConfinedFilesTest, WhereAnOpenedFileReallyLiesIsChecked) {
+  const std::string path = folder_.File("wrfout_d01");
+  testing::WriteWrf(Storm(), folder_.File("elsewhere"));
+  std::filesystem::create_symlink(folder_.File("elsewhere"), path);
+  ConfinedOptions options;
+  options.program = "/proc/self/exe";
+  std::string place;
+  options.check_opened = [&](const std::string& asked, const std::string& lies_at) {
+    EXPECT_EQ(asked, path);
+    place = lies_at;
+    return absl::PermissionDeniedError("not there");
+  };
+  const auto files = std::make_shared<ConfinedFiles>(options);
+  EXPECT_EQ(files->Describe(path).status().code(), absl::StatusCode::kPermissionDenied);
+  EXPECT_EQ(place, std::filesystem::canonical(path).string());
+}
+
 // A header that a fuzzer found: netCDF-C 4.9.0 crashes on it (nc_get_NC, free_NC_vararrayV). A
 // later one may refuse it.
 TEST_F(ConfinedFilesTest, AFileThatCrashesNetcdfItselfIsOneError) {

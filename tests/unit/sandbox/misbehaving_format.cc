@@ -62,6 +62,7 @@ absl::Status MisbehaveWhenDescribed(const std::string& name) {
   if (name == "hang") std::this_thread::sleep_for(std::chrono::hours(1));
   if (name == "spin") Spin();
   if (name == "leave") _exit(0);
+  if (name == "killed") std::raise(SIGKILL);
   if (name == "chatter") {
     Sender server(STDOUT_FILENO);
     for (;;) {

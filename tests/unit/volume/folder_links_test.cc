@@ -87,6 +87,28 @@ TEST_F(FolderLinks, AllowedFoldersMayBeLinkedTo) {
               ElementsAre("own"));
 }
 
+TEST_F(FolderLinks, WhereAFileReallyLiesDecides) {
+  const std::string data = data_.string();
+  const std::string own = (data_ / "own.nc").string();
+  const std::string secret = (outside_ / "secret.nc").string();
+  const LinkPolicy trusted;
+  EXPECT_TRUE(CheckPlace({data}, trusted, own, own).ok());
+  EXPECT_FALSE(CheckPlace({data}, trusted, own, secret).ok());
+  EXPECT_TRUE(
+      CheckPlace({data}, {.allowed = {outside_.string()}, .untrusted = {}}, own, secret).ok());
+  // What is found in an untrusted folder lies there, whatever else may be linked to.
+  const LinkPolicy untrusted{.allowed = {outside_.string()}, .untrusted = {data + "/sub/"}};
+  EXPECT_TRUE(CheckPlace({data}, untrusted, data + "/sub/a.nc", data + "/sub/a.nc").ok());
+  EXPECT_FALSE(CheckPlace({data}, untrusted, data + "/sub/a.nc", secret).ok());
+  EXPECT_FALSE(CheckPlace({data}, untrusted, data + "/sub/a.nc", own).ok());
+  EXPECT_TRUE(CheckPlace({data}, untrusted, own, secret).ok());
+}
+
+TEST_F(FolderLinks, AFileOfTooManyTimesIsRefused) {
+  EXPECT_TRUE(CheckRecords("a.nc", kMaxTimes).ok());
+  EXPECT_FALSE(CheckRecords("a.nc", kMaxTimes + 1).ok());
+}
+
 TEST_F(FolderLinks, LinksWithinTheDataFoldersAreFollowed) {
   fs::create_symlink(data_ / "own.nc", data_ / "sub" / "same.nc");
   EXPECT_THAT(Find(), ElementsAre("own"));

@@ -1,0 +1,16 @@
+// What a command says to its user, beside the log.
+#pragma once
+
+#include <iostream>
+#include <string_view>
+
+#include "base/utf8.h"
+
+namespace thunderhead::app {
+
+// Writes one printable line to standard error: the names of files are among what is said.
+inline void TellUser(std::string_view what) {
+  std::cerr << "thunderhead: " << base::Printable(what) << std::endl;
+}
+
+}  // namespace thunderhead::app
