@@ -103,8 +103,8 @@ void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& d
   }
 }
 
-// Waits for the first search of the folders, so that whoever comes finds their storms. A search of
-// many files does not hold up the server for longer than a while. False if it is told to stop.
+// Waits for the first search of the folders, so that clients find the storms, but not longer than
+// 30 s. Returns false if it is told to stop.
 bool AwaitStorms(const volume::StormStore& store, const std::stop_token& stop) {
   constexpr std::chrono::seconds kWhile{30};
   constexpr std::chrono::milliseconds kPause{20};

@@ -1,4 +1,4 @@
-// What a command says to its user, beside the log.
+// Messages of a command to its user, which are not log lines.
 #pragma once
 
 #include <iostream>

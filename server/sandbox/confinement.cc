@@ -47,7 +47,7 @@ absl::Status Limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
 // Allocation, threads, waiting, the pipes that are open, the clock, and to end. With conditions:
 // memory that is never code, clone for threads, signals to itself, limits only to be read.
 int AllowReading(scmp_filter_ctx filter) {
-  // Of a call: its place, and how it compares with what.
+  // A condition on one argument of a call: its index, the comparison, and the values.
   using Argument = scmp_arg_cmp;
   const auto allow = [filter](int call, auto... conditions) {
     return seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, sizeof...(conditions), conditions...);

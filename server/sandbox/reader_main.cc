@@ -175,7 +175,7 @@ int ReadStormFile(const volume::StormFormats& formats) {
   Request request;
   Receiver from_server(STDIN_FILENO, std::chrono::seconds(10), 1 << 10);
   Visit(from_server, request);
-  // What another version sends would be misunderstood.
+  // A request of another version has another layout.
   if (!from_server.Ok() || request.version != base::Version()) return 1;
   const std::span<std::byte> shared = MapShared(request.shared_bytes);
   // The other end puts arrays there without asking.

@@ -177,13 +177,13 @@ class SharedArrays {
   std::unique_ptr<const std::byte, Unmap> bytes_;
 };
 
-// Where the file of an open descriptor lies.
+// Returns the path of an open file, with no link in it.
 std::string PlaceOf(const base::FileDescriptor& file) {
   std::error_code error;
   return std::filesystem::read_symlink(absl::StrCat("/proc/self/fd/", file.Get()), error).string();
 }
 
-// What a reader gets.
+// The descriptors that a reader inherits.
 struct Descriptors {
   int request = -1;
   int reply = -1;
