@@ -12,7 +12,7 @@ volume::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options = {
 
 struct ReaderFlags {
   double memory_mib = static_cast<double>(sandbox::MachineMemory() >> 20);
-  double seconds = 3600.0;
+  double seconds = 600.0;
 };
 
 void AddReaderFlags(CLI::App& command, ReaderFlags& flags);

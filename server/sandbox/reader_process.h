@@ -23,7 +23,7 @@ std::uint64_t MachineMemory();
 
 struct ReaderLimits {
   std::uint64_t memory_bytes = MachineMemory();  // of reading, and of what comes of it
-  std::chrono::milliseconds time{3'600'000};     // that this process waits, and processor time
+  std::chrono::milliseconds time{600'000};       // that this process waits, and processor time
 };
 
 // The path of thunderhead-reader, which lies beside this program. INTERNAL if it is not there,
