@@ -1,4 +1,4 @@
-// Plain values over a pipe, in the layout of this machine: both ends are the same program. Large
+// Plain values over a pipe, in the layout of this machine: both ends are of the same build. Large
 // arrays go through memory that both ends share, one after another, and only their sizes through
 // the pipe. What is received is never believed: no array is larger than its allowance, and no wait
 // longer than its time.

@@ -27,8 +27,8 @@ struct ReaderLimits {
 };
 
 // The path of thunderhead-reader, which lies beside this program. INTERNAL if it is not there,
-// UNAVAILABLE if it is not the file any more that it was at the first call: a reader of another
-// version would be misunderstood.
+// UNAVAILABLE if another file has replaced it since the first call, because a reader of another
+// version may have another layout of messages.
 absl::StatusOr<std::string> ReaderProgram();
 
 // Starts `program`, ReaderProgram() if it is empty, and waits for it by `time`.

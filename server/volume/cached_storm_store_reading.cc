@@ -255,7 +255,7 @@ void CachedStormStore::ReadAhead() {
       changed_.wait(lock);
       continue;
     }
-    // What is wanted next is mostly on the storage that hangs.
+    // The next times are mostly on the storage that hangs.
     if (HungIn(reading_asked_).has_value()) {
       changed_.wait_until(lock, options_.time->LookAgainAt(Now() + kLookAgain));
       continue;

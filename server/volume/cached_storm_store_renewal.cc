@@ -49,7 +49,7 @@ void CachedStormStore::TakeFound(const CatalogueScan::Result& found) {
     const std::lock_guard lock(listening_);
     following_ = true;
   }
-  // What is still being written may be the only storm.
+  // The only storm may be a file that is still being written.
   if (found.storms.empty() && found.look_again_at.has_value()) return;
   {
     const Lock lock(mutex_);
