@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kAllowance = 1 << 20;
 
 // Reads what the fields' arrays say of each other.
-void Use(const volume::HydrometeorFields& fields) {
+void ReadArrays(const volume::HydrometeorFields& fields) {
   const std::size_t cells = fields.grid.CellCount();
   for (const volume::HydrometeorField& field : fields.fields) {
     if (field.concentration_kg_per_m3.empty()) continue;
@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     volume::HydrometeorFields fields;
     Visit(reply, fields);
     file.cells = fields.grid.cells;
-    if (reply.Ok() && CheckPlausible(fields, file).ok()) Use(fields);
+    if (reply.Ok() && CheckPlausible(fields, file).ok()) ReadArrays(fields);
   }
   close(ends[0]);
   return 0;
