@@ -8,10 +8,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <string_view>
 #include <vector>
 
+#include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
 #include "base/status.h"
 #include "nlohmann/json.hpp"
 
@@ -78,6 +81,29 @@ bool IsFor(jwt_t* token, const std::string& audience) {
          std::ranges::any_of(list, [&](const nlohmann::json& each) { return each == audience; });
 }
 
+// Checks what libjwt overlooks: it takes a signature with characters behind it that are of no
+// alphabet, and a header that names extensions which every reader must understand (crit, RFC 7515,
+// 4.1.11). This reader understands none.
+absl::Status CheckForm(const std::string& token) {
+  constexpr std::string_view kBase64Url =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  const std::vector<std::string> parts = absl::StrSplit(token, '.');
+  const bool is_base64 = std::ranges::all_of(parts, [&](const std::string& part) {
+    return !part.empty() && part.find_first_not_of(kBase64Url) == std::string::npos;
+  });
+  std::string header;
+  if (parts.size() != 3 || !is_base64 || !absl::WebSafeBase64Unescape(parts[0], &header)) {
+    return Wrong("does not have the form of a signed token: three parts in base64url (RFC 7515)");
+  }
+  constexpr bool kThrows = false;
+  const auto fields = nlohmann::json::parse(header, nullptr, kThrows);
+  if (!fields.is_object()) return Wrong("has a header that is no JSON object");
+  if (fields.contains("crit")) {
+    return Wrong("demands extensions (crit) that this server does not have");
+  }
+  return absl::OkStatus();
+}
+
 // False if the token has a time before which it is not valid (nbf, RFC 7519, 4.1.5), which may have
 // fractions, and `now` is before it, or if that is no number. libjwt takes what is no whole number
 // for 0.
@@ -126,6 +152,7 @@ absl::StatusOr<JwtKey> JwtKey::Parse(const std::string& text) {
 absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaims& wanted,
                                         Time now) const {
   if (token.size() > kMaxTokenBytes) return Wrong("is too long");
+  THUNDERHEAD_RETURN_IF_ERROR(CheckForm(token));
   jwt_t* decoded = nullptr;
   const int error =
       jwt_decode(&decoded, token.c_str(), reinterpret_cast<const unsigned char*>(key_.data()),

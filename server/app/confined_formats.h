@@ -3,6 +3,7 @@
 #pragma once
 
 #include "CLI/CLI.hpp"
+#include "base/machine_memory.h"
 #include "sandbox/confined_files.h"
 #include "volume/storm_format.h"
 
@@ -11,7 +12,7 @@ namespace thunderhead::app {
 volume::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options = {});
 
 struct ReaderFlags {
-  double memory_mib = static_cast<double>(sandbox::MachineMemory() >> 20);
+  double memory_mib = static_cast<double>(base::MachineMemoryBytes() >> 20);
   double seconds = 600.0;
 };
 

@@ -167,16 +167,20 @@ absl::Status Serve(ServeFlags flags) {
   const Budgets budgets = BudgetsOf(flags);
   store_options.memory = budgets.memory;
   store_options.byte_budget = budgets.memory->Bytes();
-  store_options.read_deadline = std::chrono::milliseconds(std::lround(1e3 * flags.read_deadline_s));
+  const std::chrono::milliseconds read_deadline(std::lround(1e3 * flags.read_deadline_s));
+  sandbox::ReaderLimits reader_limits = LimitsOf(flags.reader);
+  reader_limits.silence = read_deadline;
+  // A silent reader is ended first, as only then it is known that its storage does not answer.
+  store_options.read_deadline = read_deadline + std::chrono::seconds(5);
   store_options.live = LiveCatalogueOf(flags.catalogue);
-  THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(LimitsOf(flags.reader)));
+  THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(reader_limits));
   store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   store_options.links = LinksOf(flags.catalogue);
   std::vector<std::string> folders = flags.data;
   folders.push_back(clouds.Path());
   store_options.formats =
-      ConfinedFormats({.limits = LimitsOf(flags.reader),
+      ConfinedFormats({.limits = reader_limits,
                        .check_opened = [folders, links = store_options.links](
                                            const std::string& path, const std::string& place) {
                          return volume::CheckPlace(folders, links, path, place);

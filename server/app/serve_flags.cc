@@ -148,7 +148,8 @@ void AddMemoryFlags(CLI::App& serve, ServeFlags& flags) {
   AddMemoryFlag(serve, "--gpu-memory-budget", flags.gpu_memory_bytes,
                 "The GPU's memory for drawing; by default 4GiB");
   AddLimit(serve, "--read-deadline", flags.read_deadline_s, 0.1, 86400,
-           "Seconds for which a storage may give nothing of a storm before it is taken to hang");
+           "Seconds for which nothing may come of a storm that is read before its storage is taken "
+           "to hang, or its file to be damaged");
 }
 
 absl::Status CheckReachOfMetrics(const std::string& metrics) {

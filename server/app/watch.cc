@@ -171,11 +171,23 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
   return pictures;
 }
 
+// Says what was assumed of the storms, such as which of two files with one time is drawn; each note
+// once, after which it is in `told`.
+void TellNotes(const std::vector<FolderStorm>& storms, std::set<std::string>& told) {
+  for (const FolderStorm& storm : storms) {
+    for (const std::string& note : storm.storm.notes) {
+      if (told.insert(note).second) spdlog::warn("{}", note);
+    }
+  }
+}
+
 // Draws what has become ready.
 absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, PictureRun& run,
-                       RunProgress& progress, const std::stop_token& stop) {
+                       RunProgress& progress, std::set<std::string>& told,
+                       const std::stop_token& stop) {
   if (folder.Unsettled().empty()) return absl::OkStatus();
   const std::vector<FolderStorm> storms = folder.Storms();
+  TellNotes(storms, told);
   std::vector<volume::CataloguedStorm> catalogue;
   catalogue.reserve(storms.size());
   for (const FolderStorm& storm : storms) catalogue.push_back(storm.storm);
@@ -258,9 +270,10 @@ absl::Status Watch(const WatchFlags& flags) {
   RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
   WatchedFolder folder(flags.folder, flags.files, policy);
   RememberDone(*run, folder);
+  std::set<std::string> told;
   while (!stop.stop_requested()) {
     THUNDERHEAD_RETURN_IF_ERROR(folder.Look(progress));
-    absl::Status drawn = DrawReady(movie, folder, *run, progress, stop);
+    absl::Status drawn = DrawReady(movie, folder, *run, progress, told, stop);
     if (!drawn.ok() && !absl::IsCancelled(drawn)) return drawn;
     if (stop.stop_requested()) break;
     if (end.files.has_value() && folder.DoneCount() + folder.BadCount() >= *end.files) {

@@ -9,7 +9,6 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "app/confined_formats.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
 
@@ -104,7 +103,7 @@ void WatchedFolder::ForgetGone(const std::set<std::string>& there) {
 }
 
 void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progress) const {
-  absl::StatusOr<volume::StormFile> storm = ConfinedFormats().Describe(path);
+  absl::StatusOr<volume::StormFile> storm = formats_.Describe(path);
   if (storm.ok()) {
     file.storm = *std::move(storm);
     file.state = State::kReady;

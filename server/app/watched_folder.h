@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "app/confined_formats.h"
 #include "app/run_progress.h"
 #include "pipeline/manifest.h"
 #include "pipeline/readiness.h"
@@ -80,6 +81,7 @@ class WatchedFolder {
   const std::string folder_;
   const std::string files_;
   const pipeline::ReadinessPolicy policy_;
+  const volume::StormFormats formats_ = ConfinedFormats();
   Time looked_ = Time::min();          // of the last look
   std::map<std::string, File> known_;  // by path
 };

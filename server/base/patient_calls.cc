@@ -1,10 +1,13 @@
 #include "base/patient_calls.h"
 
 #include <algorithm>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/guarded.h"
 
 namespace thunderhead::base {
 namespace {
@@ -30,13 +33,19 @@ absl::Status PatientCalls::Run(const std::string& storage, const std::function<v
   }
   // From before the call begins.
   const auto since = time_.Now();
-  LooseThread thread(absl::StrCat("a call to ", storage), call, time_);
-  if (thread.EndsBy(since + patience_)) {
-    thread.Rethrow();
+  std::optional<LooseThread> thread;
+  try {
+    thread.emplace(absl::StrCat("a call to ", storage), call, time_);
+  } catch (const std::system_error&) {
+    // The system has no room for another thread.
+    return OutOfMemory();
+  }
+  if (thread->EndsBy(since + patience_)) {
+    thread->Rethrow();
     return absl::OkStatus();
   }
   const std::lock_guard lock(mutex_);
-  hanging_.emplace(storage, Hanging{std::move(thread), since});
+  hanging_.emplace(storage, Hanging{*std::move(thread), since});
   return NoAnswer(storage);
 }
 

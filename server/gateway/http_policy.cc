@@ -68,12 +68,17 @@ HttpPolicy::HttpPolicy(bool loopback, std::vector<std::string> allowed_hosts,
 }
 
 std::optional<std::string> FindAmbiguity(const http::request_header<>& request) {
-  for (const http::field field : {http::field::host, http::field::origin,
-                                  http::field::content_length, http::field::authorization}) {
+  for (const http::field field :
+       {http::field::host, http::field::origin, http::field::content_length,
+        http::field::content_type, http::field::content_encoding, http::field::authorization}) {
     if (request.count(field) > 1) {
       return absl::StrCat("A request has one ", std::string(View(http::to_string(field))),
                           " header, not several.\n");
     }
+  }
+  const auto coding = request[http::field::content_encoding];
+  if (!coding.empty() && !boost::beast::iequals(coding, "identity")) {
+    return "A request's body has no Content-Encoding; send it as it is.\n";
   }
   if (!HasPlainEncoding(request)) return "The only Transfer-Encoding is 'chunked', once.\n";
   const bool has_encoding = request.count(http::field::transfer_encoding) > 0;

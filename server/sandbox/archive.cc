@@ -25,6 +25,15 @@ void Populate(std::span<const std::byte> memory, Use use) {
           use == Use::kWriting ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
 }
 
+void PrepareForArray(std::span<std::byte> memory) {
+  constexpr std::uintptr_t kHugePage = 2 << 20;
+  const std::uintptr_t first = reinterpret_cast<std::uintptr_t>(memory.data());
+  const std::uintptr_t begin = (first + kHugePage - 1) / kHugePage * kHugePage;
+  const std::uintptr_t end = (first + memory.size()) / kHugePage * kHugePage;
+  if (begin >= end) return;
+  madvise(memory.data() + (begin - first), end - begin, MADV_HUGEPAGE);
+}
+
 void Sender::Write(const void* bytes, std::size_t count) {
   const auto* from = static_cast<const char*>(bytes);
   while (count > 0) {
@@ -46,6 +55,7 @@ bool Receiver::Read(void* bytes, std::size_t count) {
       failure_ = Failure::kEnded;
       return false;
     }
+    anything_came_ = true;
     to += got;
     count -= static_cast<std::size_t>(got);
   }
@@ -57,11 +67,17 @@ bool Receiver::AwaitBytes() {
   while (true) {
     const auto start = time_.Now();
     pollfd ready{pipe_, POLLIN, 0};
-    const auto look_again_after = time_.LookAgainAt(start + patience_) - base::SteadyTime().Now();
+    const auto longest = std::min(patience_, longest_silence_ - silence_);
+    const auto look_again_after = time_.LookAgainAt(start + longest) - base::SteadyTime().Now();
     const auto wait = std::chrono::ceil<milliseconds>(look_again_after).count();
     const int found = poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(wait, 0, 60'000)));
-    patience_ -= time_.Now() - start;
-    if (found > 0) return true;
+    const auto waited = time_.Now() - start;
+    patience_ -= waited;
+    silence_ += waited;
+    if (found > 0) {
+      silence_ = {};
+      return true;
+    }
     if (found < 0 && errno != EINTR) {
       failure_ = Failure::kEnded;
       return false;
@@ -70,6 +86,12 @@ bool Receiver::AwaitBytes() {
       failure_ = Failure::kTooLate;
       return false;
     }
+    if (silence_ < longest_silence_) continue;
+    if (!is_excused_()) {
+      failure_ = Failure::kSilent;
+      return false;
+    }
+    silence_ = {};
   }
 }
 

@@ -8,10 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/time_source.h"
@@ -40,6 +42,10 @@ class SharedPlaces {
 // their first use. Where it cannot, they come one by one.
 enum class Use { kReading, kWriting };
 void Populate(std::span<const std::byte> memory, Use use);
+
+// Has the kernel provide the memory of a large array that is about to be written, in pages of 2 MB
+// where it can.
+void PrepareForArray(std::span<std::byte> memory);
 
 // The end that writes; what cannot be written, as nobody reads any more, is dropped.
 class Sender {
@@ -81,7 +87,7 @@ class Sender {
 // The end that reads. After a failure every value is that of its type's zero.
 class Receiver {
  public:
-  enum class Failure { kNone, kEnded, kTooLarge, kTooLate };
+  enum class Failure { kNone, kEnded, kTooLarge, kTooLate, kSilent };
 
   // Waits for `patience` in all, by `time`; takes arrays of `allowance` bytes in all.
   Receiver(int pipe, std::chrono::milliseconds patience, std::uint64_t allowance,
@@ -93,6 +99,13 @@ class Receiver {
         allowance_(allowance),
         shared_(shared),
         places_(shared.size()) {}
+
+  // Gives up with kSilent once nothing has come for `longest`, unless `is_excused` says that the
+  // other end waits for something itself. Then it may be silent for `longest` again.
+  void LimitSilence(std::chrono::nanoseconds longest, std::function<bool()> is_excused) {
+    longest_silence_ = longest;
+    is_excused_ = std::move(is_excused);
+  }
 
   template <Plain Value>
   void operator()(Value& value) {
@@ -107,6 +120,7 @@ class Receiver {
 
   bool Ok() const { return failure_ == Failure::kNone; }
   Failure Why() const { return failure_; }
+  bool AnythingCame() const { return anything_came_; }
 
   // Marks data as invalid that could be received.
   void Refuse() {
@@ -129,6 +143,8 @@ class Receiver {
     if (const auto place = places_.Next(count * each); place.has_value()) {
       // Copied before it is looked at, as the reader could still change it.
       Populate(shared_.subspan(*place, count * each), Use::kReading);
+      values.reserve(count);
+      PrepareForArray({reinterpret_cast<std::byte*>(values.data()), count * each});
       const auto* const first = reinterpret_cast<const Value*>(shared_.data() + *place);
       values.assign(first, first + count);
       return;
@@ -142,9 +158,13 @@ class Receiver {
   const int pipe_;
   const base::TimeSource& time_;
   std::chrono::nanoseconds patience_;
+  std::chrono::nanoseconds longest_silence_ = std::chrono::nanoseconds::max();
+  std::chrono::nanoseconds silence_{0};
+  std::function<bool()> is_excused_;
   std::uint64_t allowance_;
   const std::span<const std::byte> shared_;
   SharedPlaces places_;
+  bool anything_came_ = false;
   Failure failure_ = Failure::kNone;
 };
 

@@ -45,20 +45,22 @@ Request RequestFor(Wanted wanted, const std::string& path, std::size_t record = 
 
 }  // namespace
 
-ConfinedFiles::ConfinedFiles(const ConfinedOptions& options) : options_(options) {}
+ConfinedFiles::ConfinedFiles(const ConfinedOptions& options)
+    : options_(options),
+      readers_(options.limits, *options.time, options.program, options.check_opened) {}
 
-absl::Status ConfinedFiles::Probe() const {
-  return ReaderProcess(options_.limits, *options_.time, options_.program)
-      .Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, {}, [](Receiver& from_reader) {
-        Note nothing;
-        Visit(from_reader, nothing);
-        return absl::OkStatus();
-      });
+absl::Status ConfinedFiles::Probe() {
+  return readers_.Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, options_.limits.time,
+                      {}, [](Receiver& from_reader) {
+                        Note nothing;
+                        Visit(from_reader, nothing);
+                        return absl::OkStatus();
+                      });
 }
 
-absl::Status ConfinedFiles::Run(Request request, Reply wanted, const ReaderLimits& limits,
+absl::Status ConfinedFiles::Run(Request request, Reply wanted, std::chrono::milliseconds patience,
                                 const volume::ReadCheckpoint& checkpoint,
-                                const ReaderProcess::Take& take) {
+                                const Readers::Take& take) {
   const std::string path = request.path;
   const std::optional<base::FileStamp> stamp = base::StampOf(path);
   {
@@ -69,9 +71,7 @@ absl::Status ConfinedFiles::Run(Request request, Reply wanted, const ReaderLimit
       return known->second.failure;
     }
   }
-  absl::Status status =
-      ReaderProcess(limits, *options_.time, options_.program, options_.check_opened)
-          .Run(std::move(request), wanted, checkpoint, take);
+  absl::Status status = readers_.Run(std::move(request), wanted, patience, checkpoint, take);
   const std::lock_guard lock(mutex_);
   offenders_.erase(path);
   if (stamp.has_value() && IsReaderFailure(status)) {
@@ -81,11 +81,10 @@ absl::Status ConfinedFiles::Run(Request request, Reply wanted, const ReaderLimit
 }
 
 absl::StatusOr<volume::StormFile> ConfinedFiles::Describe(const std::string& path) {
-  ReaderLimits limits = options_.limits;
-  limits.time = std::min(limits.time, kDescriptionTime);
   volume::StormFile file;
   THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kDescription, path), Reply::kDescription,
-                                  limits, {}, [&file](Receiver& from_reader) {
+                                  std::min(options_.limits.time, kDescriptionTime), {},
+                                  [&file](Receiver& from_reader) {
                                     Visit(from_reader, file);
                                     return CheckPlausible(file);
                                   }));
@@ -100,8 +99,8 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
   Request request = RequestFor(Wanted::kFields, of.path, record);
   request.grid = grid;
   volume::HydrometeorFields fields;
-  THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, options_.limits, checkpoint,
-                                  [&](Receiver& from_reader) {
+  THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, options_.limits.time,
+                                  checkpoint, [&](Receiver& from_reader) {
                                     Visit(from_reader, fields);
                                     return CheckPlausible(fields, of);
                                   }));
@@ -112,7 +111,7 @@ absl::StatusOr<volume::VerticalGrid> ConfinedFiles::ReadVerticalGrid(const std::
                                                                      std::size_t record) {
   volume::VerticalGrid grid;
   THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kVerticalGrid, path, record), Reply::kGrid,
-                                  options_.limits, {}, [&grid](Receiver& from_reader) {
+                                  options_.limits.time, {}, [&grid](Receiver& from_reader) {
                                     Visit(from_reader, grid);
                                     return CheckPlausible(grid);
                                   }));

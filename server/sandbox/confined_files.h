@@ -1,4 +1,4 @@
-// Storm files, each described and read by a confined process for each request, so that one that
+// Storm files, each described and read by a confined process of its own, so that one that
 // takes over, crashes or exhausts its reader costs one error.
 #pragma once
 
@@ -13,7 +13,7 @@
 #include "absl/status/statusor.h"
 #include "base/file_stamp.h"
 #include "base/time_source.h"
-#include "sandbox/reader_process.h"
+#include "sandbox/readers.h"
 #include "volume/storm_file.h"
 #include "volume/storm_format.h"
 
@@ -21,7 +21,7 @@ namespace thunderhead::sandbox {
 
 struct ConfinedOptions {
   ReaderLimits limits = {};
-  ReaderProcess::CheckOpened check_opened = {};
+  CheckOpened check_opened = {};
   std::string program = {};                            // the reader; empty: ReaderProgram()
   const base::TimeSource* time = &base::SteadyTime();  // must outlive the files
 };
@@ -31,7 +31,7 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   explicit ConfinedFiles(const ConfinedOptions& options = {});
 
   // OK if this machine can confine a reader.
-  absl::Status Probe() const;
+  absl::Status Probe();
 
   absl::StatusOr<volume::StormFile> Describe(const std::string& path);
   // `of` is the file's description.
@@ -49,11 +49,12 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
     absl::Status failure;
   };
 
-  // Runs a reader unless the file has made one fail lately and is still the same.
-  absl::Status Run(Request request, Reply wanted, const ReaderLimits& limits,
-                   const volume::ReadCheckpoint& checkpoint, const ReaderProcess::Take& take);
+  // Asks a reader unless the file has made one fail lately and is still the same.
+  absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
+                   const volume::ReadCheckpoint& checkpoint, const Readers::Take& take);
 
   const ConfinedOptions options_;
+  Readers readers_;
   std::mutex mutex_;
   std::map<std::string, Offender> offenders_;
 };

@@ -56,6 +56,8 @@ int AllowReading(scmp_filter_ctx filter) {
   int error = 0;
   for (const int call : {SCMP_SYS(read),
                          SCMP_SYS(write),
+                         SCMP_SYS(poll),
+                         SCMP_SYS(ppoll),
                          SCMP_SYS(close),
                          SCMP_SYS(fstat),
                          SCMP_SYS(munmap),
@@ -126,7 +128,8 @@ absl::Status Confine(const Allowance& allowance) {
       Limit(RLIMIT_CPU, allowance.processor_s, rlim_t{allowance.processor_s} + 1));
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_CORE, 0, 0));
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_FSIZE, 0, 0));
-  THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_NOFILE, 0, 0));
+  // Descriptors below 1, of which there are none left; poll takes as many as this limit says.
+  THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_NOFILE, 1, 1));
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return Impossible("no_new_privs", errno);
   prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);
   return FilterCalls();

@@ -1,16 +1,20 @@
 #include "sandbox/reader_main.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -86,76 +90,85 @@ void OfferToEndFirst() {
   close(file);
 }
 
+constexpr std::uint64_t kLargestRequest = 64 << 10;
+
+// Longer than the server lets a reader rest, which ends it then.
+constexpr std::chrono::minutes kLongestRest{10};
+
 class Reader {
  public:
-  Reader(const volume::StormFormats& formats, Request request, std::span<std::byte> shared)
-      : formats_(formats), request_(std::move(request)), server_(STDOUT_FILENO, shared) {}
+  Reader(const volume::StormFormats& formats, std::span<std::byte> shared)
+      : formats_(formats), shared_(shared) {}
 
-  absl::Status Prepare();
-  absl::Status Answer();
+  // Maps the file of the first request, and confines the process.
+  absl::Status Prepare(const Request& first);
+  // Answers a request about that file.
+  absl::Status Answer(const Request& request);
   void Tell(const absl::Status& error);
 
  private:
   template <typename Value>
   void Send(Reply reply, Value& value) {
+    // Arrays are put where the first of each answer has its place.
+    Sender server(STDOUT_FILENO, shared_);
     for (Note& note : log_->Take()) {
-      server_(Reply::kLog);
-      Visit(server_, note);
+      server(Reply::kLog);
+      Visit(server, note);
     }
-    server_(reply);
-    Visit(server_, value);
+    server(reply);
+    Visit(server, value);
   }
-  absl::Status Describe(volume::StormFile& file);
-  absl::StatusOr<volume::HydrometeorFields> ReadFields(const volume::StormFile& file);
+  // Describes the file, once for all requests.
+  absl::Status Describe(const Request& request);
 
   const volume::StormFormats& formats_;
-  Request request_;
-  Sender server_;
+  const std::span<std::byte> shared_;
+  std::optional<volume::StormFile> file_;
   std::shared_ptr<KeptLog> log_ = std::make_shared<KeptLog>();
 };
 
-absl::Status Reader::Prepare() {
+absl::Status Reader::Prepare(const Request& first) {
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("reader", log_));
   OfferToEndFirst();
-  if (request_.wanted != Wanted::kProbe) {
+  if (first.wanted != Wanted::kProbe) {
     auto bytes = MapFile();
-    if (!bytes.ok()) return base::Annotate(bytes.status(), request_.path);
-    volume::NetcdfFile::ReadFromMemory(request_.path, *bytes);
+    if (!bytes.ok()) return base::Annotate(bytes.status(), first.path);
+    volume::NetcdfFile::ReadFromMemory(first.path, *bytes);
   }
-  return Confine({request_.memory_bytes, request_.processor_s});
+  return Confine({first.memory_bytes, first.processor_s});
 }
 
-absl::Status Reader::Describe(volume::StormFile& file) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(file, volume::DescribeFile(request_.path, formats_));
-  if (request_.record < file.times.size()) return absl::OkStatus();
-  return absl::DataLossError(absl::StrCat(request_.path, ": has no record ", request_.record,
+absl::Status Reader::Describe(const Request& request) {
+  if (!file_.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(file_, volume::DescribeFile(request.path, formats_));
+  }
+  if (request.record < file_->times.size()) return absl::OkStatus();
+  return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
                                           "; the file is shorter than it was: was it replaced?"));
 }
 
-absl::StatusOr<volume::HydrometeorFields> Reader::ReadFields(const volume::StormFile& file) {
-  return file.reader->Read(request_.record, request_.grid, [this](double share) {
-    server_(Reply::kProgress);
-    server_(share);
-    return absl::OkStatus();
-  });
-}
-
-absl::Status Reader::Answer() {
-  if (request_.wanted == Wanted::kProbe) {
+absl::Status Reader::Answer(const Request& request) {
+  if (request.wanted == Wanted::kProbe) {
     Note nothing;
     Send(Reply::kProbed, nothing);
     return absl::OkStatus();
   }
-  volume::StormFile file;
-  THUNDERHEAD_RETURN_IF_ERROR(Describe(file));
-  if (request_.wanted == Wanted::kDescription) {
-    Send(Reply::kDescription, file);
-  } else if (request_.wanted == Wanted::kVerticalGrid) {
+  THUNDERHEAD_RETURN_IF_ERROR(Describe(request));
+  if (request.wanted == Wanted::kDescription) {
+    Send(Reply::kDescription, *file_);
+  } else if (request.wanted == Wanted::kVerticalGrid) {
     THUNDERHEAD_ASSIGN_OR_RETURN(volume::VerticalGrid grid,
-                                 file.reader->ReadVerticalGrid(request_.record));
+                                 file_->reader->ReadVerticalGrid(request.record));
     Send(Reply::kGrid, grid);
   } else {
-    THUNDERHEAD_ASSIGN_OR_RETURN(volume::HydrometeorFields fields, ReadFields(file));
+    Sender server(STDOUT_FILENO);
+    const auto progress = [&server](double share) {
+      server(Reply::kProgress);
+      server(share);
+      return absl::OkStatus();
+    };
+    THUNDERHEAD_ASSIGN_OR_RETURN(volume::HydrometeorFields fields,
+                                 file_->reader->Read(request.record, request.grid, progress));
     Send(Reply::kFields, fields);
   }
   return absl::OkStatus();
@@ -173,20 +186,26 @@ int ReadStormFile(const volume::StormFormats& formats) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);
   Request request;
-  Receiver from_server(STDIN_FILENO, std::chrono::seconds(10), 1 << 10);
+  Receiver from_server(STDIN_FILENO, std::chrono::seconds(10), kLargestRequest);
   Visit(from_server, request);
   // A request of another version has another layout.
   if (!from_server.Ok() || request.version != base::Version()) return 1;
   const std::span<std::byte> shared = MapShared(request.shared_bytes);
-  // The other end puts arrays there without asking.
+  // The other end takes arrays from there without asking.
   if (shared.size() != request.shared_bytes) return 1;
-  Reader reader(formats, std::move(request), shared);
-  absl::Status status = reader.Prepare();
-  if (status.ok()) {
-    status = base::Guarded([&reader] { return reader.Answer(); });
+  Reader reader(formats, shared);
+  absl::Status status = reader.Prepare(request);
+  while (status.ok()) {
+    status = base::Guarded([&] { return reader.Answer(request); });
+    if (!status.ok()) break;
+    // Nobody waits for it any more, and the next request may never come.
+    malloc_trim(0);
+    Receiver next(STDIN_FILENO, kLongestRest, kLargestRequest);
+    Visit(next, request);
+    if (!next.Ok()) return 0;
   }
-  if (!status.ok()) reader.Tell(status);
-  return status.ok() ? 0 : 1;
+  reader.Tell(status);
+  return 1;
 }
 
 }  // namespace thunderhead::sandbox

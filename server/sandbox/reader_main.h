@@ -1,7 +1,7 @@
 // The program thunderhead-reader: the confined process that reads one storm file and nothing else.
-// The program starts it (reader_process.h) with a request on its standard input and the open file
-// and memory for large arrays as the descriptors below, and takes what it says on its standard
-// output.
+// The program starts it (started_reader.h) with the open file and memory for large arrays as the
+// descriptors below. It takes requests on its standard input, one after another, and answers on its
+// standard output.
 #pragma once
 
 #include "volume/storm_format.h"

@@ -2,6 +2,9 @@
 
 #include <sqlite3.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -12,6 +15,14 @@ namespace {
 
 // Backups read the file while the server runs.
 constexpr int kBusyTimeoutMs = 2000;
+
+// True where SQLite's own files, which are larger, do not fit any more.
+bool IsOnFullDisk(const std::string& path) {
+  constexpr std::uintmax_t kSharedMemoryBytes = 64 << 10;
+  std::error_code error;
+  const auto space = std::filesystem::space(std::filesystem::path(path).parent_path(), error);
+  return !error && space.available < kSharedMemoryBytes;
+}
 
 }  // namespace
 
@@ -57,7 +68,9 @@ absl::Status Database::Error() const {
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
     return DamagedFile(path_, message);
   }
-  return absl::UnavailableError(absl::StrCat(path_, " cannot be used: ", message));
+  return absl::UnavailableError(absl::StrCat(
+      path_, " cannot be used: ", message,
+      IsOnFullDisk(path_) ? "; the disk that it is on is full, make some room there" : ""));
 }
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }

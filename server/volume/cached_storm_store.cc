@@ -59,14 +59,11 @@ void CachedStormStore::Start() {
   if (options_.memory != nullptr) {
     member_.emplace(options_.memory, static_cast<base::MemoryBudget::Cache*>(this));
   }
-  threads_.emplace_back(
-      "reading a storm",
-      [self = shared_from_this()] { self->ReadDue(self->asked_, self->reading_asked_); },
-      *options_.time);
-  threads_.emplace_back(
-      "reading a storm beside a storage that hangs",
-      [self = shared_from_this()] { self->ReadDue(self->beside_, self->reading_beside_); },
-      *options_.time);
+  for (Activity& activity : reading_asked_) {
+    threads_.emplace_back(
+        "reading a storm", [self = shared_from_this(), &activity] { self->ReadDue(activity); },
+        *options_.time);
+  }
   if (options_.read_ahead == 0) return;
   threads_.emplace_back(
       "reading ahead", [self = shared_from_this()] { self->ReadAhead(); }, *options_.time);

@@ -1,10 +1,13 @@
-// The store behind what StormStore::Open gives: a catalogue, a cache, a thread that reads what is
-// asked for, one that reads ahead, and one that reads from other storages while one holds up the
-// first. A time is read once however many callers ask for it; reads that a caller
-// waits for go before read-ahead, and before files that the catalogue looks at. A storage that
-// hangs holds up a thread, but no caller beyond the deadline.
+// The store behind what StormStore::Open gives: a catalogue, a cache, threads that read what is
+// asked for, and one that reads ahead. A time is read once however many callers ask for it; reads
+// that a caller waits for go before read-ahead, and before files that the catalogue looks at.
+//
+// Reads go one after another, since several at once would need the memory of several. Only while
+// one takes long does another begin beside it, of another file. A storage that hangs holds up the
+// threads that read from it, but never the last one, and no caller beyond the deadline.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -66,11 +69,7 @@ class CachedStormStore final : public StormStore,
  private:
   class Handle;
   using Fields = absl::StatusOr<std::shared_ptr<const HydrometeorFields>>;
-  enum class Purpose {
-    kAsked,
-    kBeside,  // the same, while another storage holds up that thread
-    kAhead,
-  };
+  enum class Purpose { kAsked, kAhead };
 
   // A caller's listener, which is removed when the caller stops waiting.
   struct Listener {
@@ -82,7 +81,8 @@ class CachedStormStore final : public StormStore,
   struct Activity {
     bool reads = false;  // and does not pause
     std::string file;
-    std::uint64_t device = 0;                       // of that file
+    std::uint64_t device = 0;  // of that file
+    std::chrono::steady_clock::time_point began;
     std::chrono::steady_clock::time_point went_on;  // since when nothing has come
     bool told_of_hang = false;
   };
@@ -116,7 +116,8 @@ class CachedStormStore final : public StormStore,
   struct PendingRead {
     Place place;
     Purpose purpose = Purpose::kAsked;
-    int waiters = 0;  // callers that wait
+    Activity* activity = nullptr;  // of the thread that reads it, once it has begun
+    int waiters = 0;               // callers that wait
     std::vector<std::shared_ptr<Listener>> listeners;
     std::optional<Fields> result;
   };
@@ -131,23 +132,28 @@ class CachedStormStore final : public StormStore,
   // The read of that time that is pending, or another one. An error if it would wait behind a
   // storage that hangs and is its own.
   absl::StatusOr<std::shared_ptr<PendingRead>> ReadOf(const Place& place);
+  // True if that read may begin beside those under way.
+  bool MayBegin(const PendingRead& read) const;
+  // Takes the first read that may begin, if there is one.
+  std::shared_ptr<PendingRead> TakeDue();
+  // When another read may begin although this one has not ended.
+  std::chrono::steady_clock::time_point MayReadBesideAt(const Activity& activity) const;
   // On a reading thread, whose activity is given.
   void Read(Lock& lock, PendingRead& read, Activity& activity);
   Fields ReadFile(Lock& lock, PendingRead& read, Activity& activity);
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
                  const ReadProgress& progress);
-  Activity& ActivityOf(const PendingRead& read);
   std::optional<HungRead> HungIn(const Activity& activity) const;
   // The same; the log tells of each once.
   std::optional<HungRead> NoteHang(Activity& activity) const;
   base::TimeSource::Clock::time_point Now() const { return options_.time->Now(); }
   // When the activity hangs unless it goes on.
   std::chrono::steady_clock::time_point HangsAt(const Activity& activity) const;
-  // True if that time may be read while that read hangs: it is on another device or, where the
-  // device is unknown, in another folder.
-  bool MayReadBeside(const Place& place, const HungRead& hung) const;
-  // The read by the thread beside in place of `read`, which others may wait for already.
-  std::shared_ptr<PendingRead> Beside(const PendingRead& read);
+  // The read that hangs and keeps `read` from going on: itself, or one of its storage before it
+  // begins.
+  std::optional<HungRead> HoldsUp(const PendingRead& read);
+  // A read that callers wait for and that hangs, of the storage of that place.
+  std::optional<HungRead> HungOnStorageOf(const Place& place);
   absl::StatusOr<std::optional<VerticalGrid>> VerticalGridOf(Lock& lock, const Place& place);
   // Makes it the storm's, if that has none.
   void Choose(const Place& place, const VerticalGrid& grid);
@@ -162,7 +168,9 @@ class CachedStormStore final : public StormStore,
   std::chrono::milliseconds ReplacedRetryAfter() const;
   absl::Status Checkpoint(PendingRead& read, Activity& activity, double share);
   // Until the end, what is due.
-  void ReadDue(std::deque<std::shared_ptr<PendingRead>>& due, Activity& activity);
+  void ReadDue(Activity& activity);
+  // Waits until no other read that callers wait for is under way, or the end.
+  void LetOthersEnd(Lock& lock, Activity& activity);
   void ReadAhead();
 
   void Start();
@@ -180,10 +188,8 @@ class CachedStormStore final : public StormStore,
                                      // search or the store ended
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
-  std::deque<std::shared_ptr<PendingRead>> asked_;   // due, in order
-  std::deque<std::shared_ptr<PendingRead>> beside_;  // likewise
-  Activity reading_asked_;
-  Activity reading_beside_;
+  std::deque<std::shared_ptr<PendingRead>> asked_;  // due, in order
+  std::array<Activity, 4> reading_asked_;           // of each thread that reads what is asked for
   Activity reading_ahead_;
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;

@@ -24,6 +24,9 @@ namespace fs = std::filesystem;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
+// After this time another read may begin beside one.
+constexpr std::chrono::seconds kTakesLong{5};
+
 // When to look again whether a storage that held up read-ahead answers.
 constexpr std::chrono::milliseconds kLookAgain{500};
 
@@ -88,6 +91,13 @@ const StormFile& FileOf(const CataloguedStorm& storm, std::size_t time) {
   return storm.files[storm.sources[time].file];
 }
 
+// True for a file that lies on one storage with another of that path and device: on one device or,
+// where that is not known, in one folder.
+bool AreOfOneStorage(const StormFile& file, const std::string& path, std::uint64_t device) {
+  if (file.device != 0 && device != 0) return file.device == device;
+  return fs::path(file.path).parent_path() == fs::path(path).parent_path();
+}
+
 // Fields with their share of the budget, which lasts as long as somebody holds them.
 struct CountedFields {
   HydrometeorFields fields;
@@ -133,19 +143,17 @@ std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Begin(const Pla
     asked_.push_back(read);
     ++asked_reads_;
   }
-  if (purpose == Purpose::kBeside) beside_.push_back(read);
   return read;
 }
 
 absl::StatusOr<std::shared_ptr<CachedStormStore::PendingRead>> CachedStormStore::ReadOf(
     const Place& place) {
   if (const auto at = pending_.find(place.key); at != pending_.end()) return at->second;
-  NoteHang(reading_asked_);
   NoteHang(reading_ahead_);
-  const std::optional<HungRead> hung = HungIn(reading_asked_);
-  if (!hung.has_value()) return Begin(place, Purpose::kAsked);
-  if (!MayReadBeside(place, *hung)) return Hangs(*hung);
-  return Begin(place, Purpose::kBeside);
+  if (const std::optional<HungRead> hung = HungOnStorageOf(place); hung.has_value()) {
+    return Hangs(*hung);
+  }
+  return Begin(place, Purpose::kAsked);
 }
 
 CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
@@ -154,24 +162,12 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
   const auto listener = std::make_shared<Listener>();
   listener->progress = progress;
   // Keeps it alive after its removal from pending_, where `read` may lie.
-  std::shared_ptr<PendingRead> shared;
-  const auto wait_for = [&](const std::shared_ptr<PendingRead>& now) {
-    shared = now;
-    ++shared->waiters;
-    if (progress) shared->listeners.push_back(listener);
-    changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
-  };
-  wait_for(read);
+  const std::shared_ptr<PendingRead> shared = read;
+  ++shared->waiters;
+  if (progress) shared->listeners.push_back(listener);
+  changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
   while (!shared->result.has_value()) {
-    Activity& activity = ActivityOf(*shared);
-    const std::optional<HungRead> hung = NoteHang(activity);
-    if (!ending_ && hung.has_value() && shared->purpose != Purpose::kBeside &&
-        MayReadBeside(shared->place, *hung)) {
-      --shared->waiters;
-      std::erase(shared->listeners, listener);
-      wait_for(Beside(*shared));
-      continue;
-    }
+    const std::optional<HungRead> hung = HoldsUp(*shared);
     if (ending_ || hung.has_value()) {
       --shared->waiters;
       lock.unlock();
@@ -183,28 +179,51 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
       if (hung.has_value()) return Hangs(*hung);
       return absl::CancelledError("the store of storms has ended");
     }
-    changed_.wait_until(
-        lock, options_.time->LookAgainAt(HangsAt(activity) + std::chrono::milliseconds(1)));
+    steady_clock::time_point next = Now() + options_.read_deadline;
+    for (const Activity& activity : reading_asked_) next = std::min(next, HangsAt(activity));
+    if (shared->activity != nullptr) next = HangsAt(*shared->activity);
+    changed_.wait_until(lock, options_.time->LookAgainAt(next + std::chrono::milliseconds(1)));
   }
   return *shared->result;
 }
 
-CachedStormStore::Activity& CachedStormStore::ActivityOf(const PendingRead& read) {
-  if (read.purpose == Purpose::kBeside) return reading_beside_;
-  return read.purpose == Purpose::kAsked ? reading_asked_ : reading_ahead_;
+std::optional<HungRead> CachedStormStore::HoldsUp(const PendingRead& read) {
+  return read.activity != nullptr ? NoteHang(*read.activity) : HungOnStorageOf(read.place);
 }
 
-bool CachedStormStore::MayReadBeside(const Place& place, const HungRead& hung) const {
-  const StormFile& file = FileOf(*place.storm, place.time);
-  if (file.device != 0 && hung.device != 0) return file.device != hung.device;
-  const auto folder = [](const std::string& path) { return fs::path(path).parent_path(); };
-  return folder(file.path) != folder(hung.file);
+std::optional<HungRead> CachedStormStore::HungOnStorageOf(const Place& place) {
+  for (Activity& activity : reading_asked_) {
+    const std::optional<HungRead> hung = NoteHang(activity);
+    if (hung.has_value() &&
+        AreOfOneStorage(FileOf(*place.storm, place.time), hung->file, hung->device)) {
+      return hung;
+    }
+  }
+  return std::nullopt;
 }
 
-std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::Beside(const PendingRead& read) {
-  const auto at = pending_.find(read.place.key);
-  if (at != pending_.end() && at->second->purpose == Purpose::kBeside) return at->second;
-  return Begin(read.place, Purpose::kBeside);
+bool CachedStormStore::MayBegin(const PendingRead& read) const {
+  const StormFile& file = FileOf(*read.place.storm, read.place.time);
+  std::size_t of_its_storage = 0;
+  for (const Activity& other : reading_asked_) {
+    if (!other.reads) continue;
+    if (other.file == file.path || Now() < MayReadBesideAt(other)) return false;
+    if (AreOfOneStorage(file, other.file, other.device)) ++of_its_storage;
+  }
+  return of_its_storage + 1 < reading_asked_.size();
+}
+
+steady_clock::time_point CachedStormStore::MayReadBesideAt(const Activity& activity) const {
+  return activity.began + std::min<std::chrono::nanoseconds>(kTakesLong, options_.read_deadline);
+}
+
+std::shared_ptr<CachedStormStore::PendingRead> CachedStormStore::TakeDue() {
+  const auto due = std::ranges::find_if(
+      asked_, [this](const std::shared_ptr<PendingRead>& read) { return MayBegin(*read); });
+  if (due == asked_.end()) return nullptr;
+  std::shared_ptr<PendingRead> read = std::move(*due);
+  asked_.erase(due);
+  return read;
 }
 
 std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const {
@@ -230,21 +249,42 @@ steady_clock::time_point CachedStormStore::HangsAt(const Activity& activity) con
 
 std::optional<HungRead> CachedStormStore::Hung() const {
   const Lock lock(mutex_);
-  for (const Activity* activity : {&reading_asked_, &reading_ahead_, &reading_beside_}) {
-    if (auto hung = HungIn(*activity); hung.has_value()) return hung;
+  for (const Activity& activity : reading_asked_) {
+    if (auto hung = HungIn(activity); hung.has_value()) return hung;
   }
-  return std::nullopt;
+  return HungIn(reading_ahead_);
 }
 
-void CachedStormStore::ReadDue(std::deque<std::shared_ptr<PendingRead>>& due, Activity& activity) {
+void CachedStormStore::ReadDue(Activity& activity) {
   Lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock, [&] { return ending_ || !due.empty(); });
-    if (ending_) return;
-    const std::shared_ptr<PendingRead> read = std::move(due.front());
-    due.pop_front();
-    Read(lock, *read, activity);
+  while (!ending_) {
+    if (const std::shared_ptr<PendingRead> read = TakeDue(); read != nullptr) {
+      Read(lock, *read, activity);
+      continue;
+    }
+    // A read that is due may begin once those under way have taken long.
+    std::optional<steady_clock::time_point> next;
+    if (!asked_.empty()) {
+      for (const Activity& other : reading_asked_) {
+        const steady_clock::time_point at = MayReadBesideAt(other);
+        if (other.reads && at > Now()) next = std::min(next.value_or(at), at);
+      }
+    }
+    if (next.has_value()) {
+      changed_.wait_until(lock, options_.time->LookAgainAt(*next));
+    } else {
+      changed_.wait(lock);
+    }
   }
+}
+
+void CachedStormStore::LetOthersEnd(Lock& lock, Activity& activity) {
+  activity.reads = false;
+  changed_.wait(
+      lock, [this] { return ending_ || std::ranges::none_of(reading_asked_, &Activity::reads); });
+  activity.reads = true;
+  activity.went_on = Now();
+  changed_.notify_all();
 }
 
 void CachedStormStore::ReadAhead() {
@@ -256,7 +296,8 @@ void CachedStormStore::ReadAhead() {
       continue;
     }
     // The next times are mostly on the storage that hangs.
-    if (HungIn(reading_asked_).has_value()) {
+    if (std::ranges::any_of(reading_asked_,
+                            [this](const Activity& each) { return HungIn(each).has_value(); })) {
       changed_.wait_until(lock, options_.time->LookAgainAt(Now() + kLookAgain));
       continue;
     }
@@ -272,18 +313,20 @@ void CachedStormStore::ReadAhead() {
 
 void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   const TimeKey key = read.place.key;
-  const bool is_asked = read.purpose != Purpose::kAhead;
+  const bool is_asked = read.purpose == Purpose::kAsked;
   // The caller may have given up meanwhile.
   Fields fields = absl::CancelledError("nobody waits for it any more");
   if (!is_asked || read.waiters > 0) {
     const StormFile& file = FileOf(*read.place.storm, read.place.time);
-    activity = {true, file.path, file.device, Now(), false};
+    activity = {
+        .reads = true, .file = file.path, .device = file.device, .began = Now(), .went_on = Now()};
+    read.activity = &activity;
     changed_.notify_all();  // those who wait for it: from now on it may hang
     fields = ReadFile(lock, read, activity);
     activity.reads = false;
     if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
   }
-  if (read.purpose == Purpose::kAsked) --asked_reads_;
+  if (is_asked) --asked_reads_;
   // Fields of a time that was removed meanwhile are returned to callers but not cached.
   const bool keep = fields.ok() && PlaceOf(key).has_value();
   if (keep && (is_asked || read.waiters > 0)) {
@@ -291,10 +334,7 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   } else if (keep) {
     cache_.InsertAhead(key, *fields);
   }
-  // Another process may read it in this one's place.
-  if (const auto at = pending_.find(key); at != pending_.end() && at->second.get() == &read) {
-    pending_.erase(at);
-  }
+  pending_.erase(key);
   read.result = std::move(fields);
   changed_.notify_all();
 }
@@ -310,7 +350,7 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<VerticalGrid> grid, VerticalGridOf(lock, place));
   const std::shared_ptr<const RecordReader> reader = file.reader;
   activity.went_on = Now();
-  const auto urgency = read.purpose != Purpose::kAhead ? base::MemoryBudget::Urgency::kPatient
+  const auto urgency = read.purpose == Purpose::kAsked ? base::MemoryBudget::Urgency::kPatient
                                                        : base::MemoryBudget::Urgency::kAhead;
   lock.unlock();
   const auto read_counted = [&]() -> Fields {
@@ -345,6 +385,15 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   };
   Fields fields = read_counted();
   lock.lock();
+  const bool others_read = std::ranges::count(reading_asked_, true, &Activity::reads) > 1;
+  if (absl::IsResourceExhausted(fields.status()) && !base::DetailsOf(fields.status()).permanent &&
+      read.purpose == Purpose::kAsked && others_read) {
+    // They may hold the memory that this read needs.
+    LetOthersEnd(lock, activity);
+    lock.unlock();
+    fields = read_counted();
+    lock.lock();
+  }
   if (!fields.ok()) return fields;
   const RegularGrid& used = (*fields)->grid;
   Choose(place, {used.low_corner_m.z, used.spacing_m.z, used.cells.z});

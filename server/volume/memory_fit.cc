@@ -1,7 +1,6 @@
 #include "volume/memory_fit.h"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <limits>
@@ -10,15 +9,15 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "base/error_details.h"
+#include "base/machine_memory.h"
 
 namespace thunderhead::volume {
 namespace {
 
 // The lesser of the machine's memory and the process's address space.
 std::size_t MostBytes() {
-  static const std::size_t machine =
-      static_cast<std::size_t>(std::max(sysconf(_SC_PHYS_PAGES), 0L)) *
-      static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  // A confined process may not look, and has a limit of its own.
+  static const std::size_t machine = base::MachineMemoryBytes();
   const std::size_t most = machine > 0 ? machine : std::numeric_limits<std::size_t>::max();
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return most;

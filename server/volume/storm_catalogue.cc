@@ -383,7 +383,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<StormFile> fi
 
 void LogNotes(const std::vector<CataloguedStorm>& storms) {
   for (const CataloguedStorm& storm : storms) {
-    for (const std::string& note : storm.notes) spdlog::info("{}", note);
+    for (const std::string& note : storm.notes) spdlog::warn("{}", note);
   }
 }
 

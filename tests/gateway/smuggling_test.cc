@@ -63,6 +63,15 @@ TEST_F(SmugglingTest, RepeatedHostAndOriginAreRefused) {
   ExpectRefused(get + kHost + kHost + "\r\n");
   ExpectRefused(get + kHost + "Origin: http://localhost\r\nOrigin: http://evil.example\r\n\r\n");
   ExpectRefused(get + kHost + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n");
+  ExpectRefused(kPost + kHost + kType + kType + "Content-Length: 5\r\n\r\n" + Frame(""));
+}
+
+// Nothing here would decode it.
+TEST_F(SmugglingTest, AnEncodedBodyIsRefused) {
+  for (const std::string coding : {"gzip", "deflate", "gzip, identity"}) {
+    ExpectRefused(kPost + kHost + kType + "Content-Encoding: " + coding +
+                  "\r\nContent-Length: 5\r\n\r\n" + Frame(""));
+  }
 }
 
 TEST_F(SmugglingTest, APortThatIsNoNumberIsRefused) {

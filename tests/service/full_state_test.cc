@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/interacting.h"
+#include "tests/service/running_program.h"
 #include "tests/service/served_program.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait_for.h"
@@ -25,18 +27,53 @@ using Stub = v1::ThunderheadService::Stub;
 // More than there is room for in what SQLite has already of the disk.
 constexpr int kMaxSessions = 40;
 
-class FullStateTest : public ::testing::Test {
+constexpr char kStorm[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
+
+class SmallStateDisk : public ::testing::Test {
  protected:
   void SetUp() override {
     if (std::system("unshare -rm true 2>/dev/null") != 0) {
       GTEST_SKIP() << "no namespaces here: unshare -rm is refused";
     }
     fs::create_directory(state_);
+  }
+
+  // Returns the path of a script that starts the program with the script's arguments, after a
+  // small disk was mounted as the state folder and `then` was run.
+  std::string Starter(const std::string& then) const {
     const std::string starter = folder_.File("start");
     std::ofstream(starter) << "#!/bin/sh\nexec unshare -rm sh -c 'mount -t tmpfs -o size=8m none "
-                           << state_ << " && exec " << PROGRAM << " \"$@\"' sh \"$@\"\n";
+                           << state_ << " && " << then << "; exec " << PROGRAM
+                           << " \"$@\"' sh \"$@\"\n";
     fs::permissions(starter, fs::perms::owner_all);
-    program_.emplace(starter, std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc", state_,
+    return starter;
+  }
+
+  const TemporaryFolder folder_;
+  const std::string state_ = folder_.File("state");
+};
+
+TEST_F(SmallStateDisk, AServerThatFindsItFullAtItsStartSaysSo) {
+  const std::string fill =
+      absl::StrCat("dd if=/dev/zero of=", state_, "/filler bs=4096 2>/dev/null");
+  const std::string err = folder_.File("err");
+  RunningProgram program(Starter(fill),
+                         {"serve", "--data", kStorm, "--state", state_, "--grpc", "127.0.0.1:0",
+                          "--http", "127.0.0.1:0"},
+                         folder_.File("out"), err);
+  EXPECT_NE(program.Wait().code, 0);
+  std::ifstream said(err);
+  const std::string text{std::istreambuf_iterator<char>(said), {}};
+  EXPECT_THAT(text, HasSubstr("the disk that it is on is full, make some room there"));
+  EXPECT_THAT(text, HasSubstr(state_));
+}
+
+class FullStateTest : public SmallStateDisk {
+ protected:
+  void SetUp() override {
+    SmallStateDisk::SetUp();
+    if (IsSkipped()) return;
+    program_.emplace(Starter("true"), kStorm, state_,
                      std::vector<std::string>{"--max-sessions-each", "64"});
     ASSERT_NE(program_->stub(), nullptr);
   }
@@ -70,8 +107,6 @@ class FullStateTest : public ::testing::Test {
     return Call(*program_->stub(), &Stub::CloseSession, request, &response);
   }
 
-  const TemporaryFolder folder_;
-  const std::string state_ = folder_.File("state");
   std::optional<ServedProgram> program_;
 };
 

@@ -283,6 +283,26 @@ TEST_F(WatchCommand, ABadFileCountsAndTheEndTellsOfIt) {
   ExpectFinished(folder_.File("out"), Products(1));
 }
 
+// Only one of two files with the same time is drawn. The command says which, and says it once.
+TEST_F(WatchCommand, OfTwoFilesWithOneTimeItSaysWhichItDraws) {
+  Put(0, Bytes(0));
+  const std::string copy = RunFile(inbox_, 0) + "_copy";
+  std::ofstream(copy, std::ios::binary) << Bytes(0);
+  EXPECT_EQ(
+      RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", "2", "files"}), out_, err_)
+          .Wait()
+          .code,
+      0)
+      << Contents(err_);
+  const std::string said = Contents(err_);
+  const std::string note =
+      absl::StrCat(" is in ", RunFile(inbox_, 0), " and in ", copy, "; the latter is used");
+  const std::size_t at = said.find(note);
+  ASSERT_NE(at, std::string::npos) << said;
+  EXPECT_EQ(said.find(note, at + 1), std::string::npos) << said;
+  ExpectFinished(folder_.File("out"), Products(1));
+}
+
 // A suite may move what is drawn to an archive, also while nobody watches.
 TEST_F(WatchCommand, FilesThatAreMovedAwayOnceDrawnStillCount) {
   const std::vector<std::string> arguments =

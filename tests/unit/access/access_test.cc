@@ -14,6 +14,7 @@
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "access/door.h"
 #include "access/jwt_key.h"
 #include "access/rules.h"
@@ -136,9 +137,12 @@ class JwtTest : public ::testing::Test {
   // Of all tokens and all that are asked about them, however long a test takes.
   static inline const system_clock::time_point kNow = system_clock::now();
 
-  static std::string Sign(const Claims& claims, jwt_alg_t algorithm, const std::string& key) {
+  // With the fields of a JSON object in the header besides.
+  static std::string Sign(const Claims& claims, jwt_alg_t algorithm, const std::string& key,
+                          const std::string& header = "") {
     jwt_t* jwt = nullptr;
     jwt_new(&jwt);
+    if (!header.empty()) jwt_add_headers_json(jwt, header.c_str());
     const long now = system_clock::to_time_t(kNow);
     if (!claims.subject.empty()) jwt_add_grant(jwt, "sub", claims.subject.c_str());
     if (!claims.role.empty()) jwt_add_grant(jwt, "thunderhead_role", claims.role.c_str());
@@ -161,6 +165,10 @@ class JwtTest : public ::testing::Test {
 
   std::string Sign(const Claims& claims = {}) const { return Sign(claims, JWT_ALG_HS256, secret_); }
 
+  std::string SignWithHeader(const std::string& header) const {
+    return Sign({}, JWT_ALG_HS256, secret_, header);
+  }
+
   // Empty if the token is believed.
   std::string Complaint(const std::string& token, const JwtClaims& wanted = {}) const {
     const auto identity = JwtKey::Parse(secret_)->Verify(token, wanted, kNow);
@@ -180,16 +188,33 @@ TEST_F(JwtTest, ASignedTokenIsBelieved) {
 
 TEST_F(JwtTest, ForgedTokensAreNot) {
   EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS256, std::string(32, 'x'))), HasSubstr("not signed"));
-  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_NONE, "")), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_NONE, "")), HasSubstr("the form"));
   EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS512, std::string(64, 's'))), HasSubstr("not signed"));
   // Another payload under the signature.
   std::string token = Sign();
   token[token.find('.') + 5] ^= 1;
   EXPECT_THAT(Complaint(token), HasSubstr("not signed"));
   // Without its signature, as with alg none.
-  EXPECT_THAT(Complaint(token.substr(0, token.rfind('.') + 1)), HasSubstr("not signed"));
-  EXPECT_THAT(Complaint("nonsense"), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint(token.substr(0, token.rfind('.') + 1)), HasSubstr("the form"));
+  EXPECT_THAT(Complaint("nonsense"), HasSubstr("the form"));
   EXPECT_THAT(Complaint(std::string(10'000, 'a')), HasSubstr("too long"));
+}
+
+// libjwt ends a part at the first character of another alphabet.
+TEST_F(JwtTest, NothingMayFollowAPart) {
+  const std::string token = Sign();
+  for (const char* const more : {"=", "==", "!", "=forged", " ", "\n", ".", ".x", "%00"}) {
+    EXPECT_THAT(Complaint(token + more), HasSubstr("the form")) << more;
+  }
+  EXPECT_THAT(Complaint(absl::StrReplaceAll(token, {{".", "=."}})), HasSubstr("the form"));
+  EXPECT_EQ(Complaint(token), "");
+}
+
+// RFC 7515, 4.1.11: a token whose extensions are not understood must be refused.
+TEST_F(JwtTest, ExtensionsAreNotUnderstood) {
+  EXPECT_EQ(Complaint(SignWithHeader("")), "");
+  EXPECT_THAT(Complaint(SignWithHeader(R"({"crit": ["exp"], "exp": 1})")), HasSubstr("(crit)"));
+  EXPECT_THAT(Complaint(SignWithHeader(R"({"crit": []})")), HasSubstr("(crit)"));
 }
 
 TEST_F(JwtTest, TimesAndClaimsAreChecked) {
@@ -244,7 +269,10 @@ TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
   });
   const auto key = JwtKey::Parse(public_key);
   ASSERT_TRUE(key.ok()) << key.status();
-  EXPECT_TRUE(key->Verify(Sign({}, JWT_ALG_RS256, private_key), {}, kNow).ok());
+  const std::string token = Sign({}, JWT_ALG_RS256, private_key);
+  EXPECT_TRUE(key->Verify(token, {}, kNow).ok());
+  EXPECT_FALSE(key->Verify(token + "=forged", {}, kNow).ok());
+  EXPECT_FALSE(key->Verify(token + "AAAA", {}, kNow).ok());
   // Everybody knows the public key, so nobody may sign with it as if it were a secret.
   EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_HS256, public_key), {}, kNow).ok());
   EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_NONE, ""), {}, kNow).ok());

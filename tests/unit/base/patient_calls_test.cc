@@ -1,7 +1,10 @@
 #include "base/patient_calls.h"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <future>
 #include <memory>
 #include <new>
@@ -54,6 +57,26 @@ absl::Status CallInVain(PatientCalls& calls, Storage& storage, ManualTime& time)
   EXPECT_FALSE(has_ended());
   time.Advance(milliseconds(1));
   return hangs.get();
+}
+
+// As where the address space is limited. No system has room for such a stack.
+TEST(PatientCallsTest, ACallForWhichThereIsNoThreadIsRefused) {
+  pthread_attr_t usual;
+  pthread_attr_t huge;
+  ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
+  ASSERT_EQ(pthread_getattr_default_np(&huge), 0);
+  ASSERT_EQ(pthread_attr_setstacksize(&huge, std::size_t{1} << 47), 0);
+  ASSERT_EQ(pthread_setattr_default_np(&huge), 0);
+  PatientCalls calls(kPatience);
+  bool called = false;
+  const absl::Status refused = calls.Run("/mnt/state", [&called] { called = true; });
+  ASSERT_EQ(pthread_setattr_default_np(&usual), 0);
+  EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
+  EXPECT_FALSE(called);
+  EXPECT_TRUE(calls.Run("/mnt/state", [&called] { called = true; }).ok());
+  EXPECT_TRUE(called);
+  pthread_attr_destroy(&usual);
+  pthread_attr_destroy(&huge);
 }
 
 TEST(PatientCallsTest, WaitsForACallThatReturns) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -258,6 +259,33 @@ TEST_F(ConfinedFilesTest, AReaderThatIsKilledIsTriedAgain) {
   }
 }
 
+// Requests in a row have one process, which is ended when no other comes.
+TEST_F(ConfinedFilesTest, AReaderRestsForAMoment) {
+  const std::string path = Bad("named");
+  const auto files = Files();
+  const auto file = files->Describe(path);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const auto process = [&] {
+    const auto fields = file->reader->Read(0, std::nullopt, {});
+    EXPECT_TRUE(fields.ok()) << fields.status();
+    return fields.ok() ? std::stoi(fields->fields[0].variable) : 0;
+  };
+  const pid_t first = process();
+  EXPECT_EQ(process(), first);
+  EXPECT_TRUE(file->reader->ReadVerticalGrid(0).ok());
+  EXPECT_EQ(process(), first);
+  // One that has ended meanwhile is no error.
+  ASSERT_EQ(kill(first, SIGKILL), 0);
+  const pid_t second = process();
+  EXPECT_NE(second, first);
+  // Another file may be in its place.
+  std::ofstream(path) << "CDF and something else";
+  const pid_t third = process();
+  EXPECT_NE(third, second);
+  time_.Advance(std::chrono::seconds(2));
+  EXPECT_TRUE(WaitFor([&] { return kill(third, 0) != 0; })) << "it is ended and collected";
+}
+
 // A link may take the place of a folder after the path was checked.
 TEST_F(ConfinedFilesTest, WhereAnOpenedFileReallyLiesIsChecked) {
   const std::string path = folder_.File("wrfout_d01");
@@ -293,6 +321,25 @@ TEST_F(ConfinedFilesTest, AReaderHasATime) {
     const absl::Status status = DescribeInTime(*Files(), Bad(name)).status();
     EXPECT_EQ(status.code(), absl::StatusCode::kDeadlineExceeded) << status;
     EXPECT_THAT(std::string(status.message()), HasSubstr("--sandbox-seconds"));
+  }
+  EXPECT_EQ(Failures("time"), before + 2);
+}
+
+// Long before its time is over, so that others need not wait for it.
+TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
+  const std::uint64_t before = Failures("time");
+  for (const char* name : {"hang-reading", "spin-reading"}) {
+    const auto files = Files(kMemory, std::chrono::hours(100));
+    const auto file = files->Describe(Bad(name));
+    ASSERT_TRUE(file.ok()) << file.status();
+    const auto start = time_.Now();
+    const absl::Status status = GetInTime(std::async(
+        std::launch::async, [&] { return file->reader->Read(0, std::nullopt, {}).status(); }));
+    EXPECT_TRUE(absl::IsDeadlineExceeded(status)) << status;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("nothing had come from it for 1m"));
+    EXPECT_GE(time_.Now() - start, ReaderLimits().silence);
+    // It is left alone.
+    EXPECT_EQ(file->reader->Read(0, std::nullopt, {}).status().message(), status.message());
   }
   EXPECT_EQ(Failures("time"), before + 2);
 }
@@ -423,8 +470,12 @@ TEST_F(ConfinedFilesTest, AnErrorOfTheFileIsThatOfTheProgramItself) {
   EXPECT_EQ(Files()->Describe(folder_.File("nowhere")).status().code(),
             absl::StatusCode::kNotFound);
   mkfifo(folder_.File("pipe").c_str(), 0600);
-  EXPECT_THAT(std::string(Files()->Describe(folder_.File("pipe")).status().message()),
-              HasSubstr("no regular file"));
+  mknod(folder_.File("socket").c_str(), S_IFSOCK | 0600, 0);
+  for (const char* const other : {"pipe", "socket"}) {
+    const absl::Status refused = Files()->Describe(folder_.File(other)).status();
+    EXPECT_EQ(refused.code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(std::string(refused.message()), HasSubstr("no regular file"));
+  }
 }
 
 TEST_F(ConfinedFilesTest, ReadingStopsWhenNobodyWantsItAnyMore) {

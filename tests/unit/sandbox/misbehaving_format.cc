@@ -148,10 +148,16 @@ class MisbehavingReader final : public volume::RecordReader {
     if (checkpoint) static_cast<void>(checkpoint(0.5));
     HydrometeorFields fields = SoundFields();
     Spoil(name_, fields);
+    if (name_ == "named") fields.fields[0].variable = absl::StrCat(getpid());
     if (name_ == "crash-reading") std::raise(SIGBUS);
     if (name_ == "mute-reading") close(STDOUT_FILENO);
     if (name_ == "mute-reading" || name_ == "hang-reading") {
       std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+    if (name_ == "spin-reading") Spin();
+    if (name_ == "chatty-reading") {
+      // Forever: the server is to end it by its time.
+      while (checkpoint) static_cast<void>(checkpoint(0.5));
     }
     return fields;
   }

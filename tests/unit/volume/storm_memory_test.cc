@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
@@ -250,12 +251,15 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   ASSERT_TRUE(store->Get("b.cube", 0, {}).ok());
   storage_->Hang();
   auto far = GetFar(*store, 0);
-  // Somebody else's read, that waits behind it.
+  // Others' reads, that wait behind it: of another storage, and of its own.
   auto behind =
       std::async(std::launch::async, [&] { return store->Get("b.cube", 1, {}).status(); });
-  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 2; }));
+  auto behind_it =
+      std::async(std::launch::async, [&] { return store->Get("far.cube", 1, {}).status(); });
+  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 3; }));
   time_.Advance(kDeadline + milliseconds(1));
   EXPECT_TRUE(absl::IsDeadlineExceeded(far.get()));
+  EXPECT_TRUE(absl::IsDeadlineExceeded(behind_it.get()));
   EXPECT_TRUE(behind.get().ok());
   // Now that it is known, others go at once, while time stands still.
   double progress = 0.0;
@@ -269,6 +273,53 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   storage_->Answer();
   EXPECT_TRUE(store->Get("b.cube", 2, {}).ok());
   EXPECT_TRUE(WaitFor([&] { return store->Get("far.cube", 0, {}).ok(); }));
+}
+
+// One that has gone on a little, and does not hang.
+TEST_F(StormMemory, AReadThatTakesLongLeavesOtherFilesToAnotherThread) {
+  const auto store = Open({Cube("far", kCells), Cube("far2", kCells)}, {.read_ahead = 0});
+  storage_->Hang();
+  auto far = GetFar(*store, 0);
+  std::vector<std::future<absl::Status>> behind;
+  for (const char* name : {"far.cube", "far2.cube"}) {
+    behind.push_back(std::async(std::launch::async,
+                                [&store, name] { return store->Get(name, 1, {}).status(); }));
+  }
+  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 3; }));
+  EXPECT_EQ(storage_->Passed(), 1);
+  time_.Advance(std::chrono::seconds(5));
+  // The other file's read begins; that of the same file waits on.
+  ASSERT_TRUE(WaitFor([&] { return storage_->Passed() == 2; }));
+  EXPECT_EQ(behind[0].wait_for(milliseconds(0)), std::future_status::timeout);
+  EXPECT_FALSE(store->Hung().has_value());
+  storage_->Answer();
+  EXPECT_TRUE(far.get().ok());
+  for (auto& read : behind) EXPECT_TRUE(read.get().ok());
+}
+
+// However many of its files are asked for, a storage does not take the last thread.
+TEST_F(StormMemory, AStorageThatHangsDoesNotTakeTheLastThread) {
+  std::vector<std::string> paths{Cube("near", kCells)};
+  for (int i = 0; i < 6; ++i) paths.push_back(Cube(absl::StrCat("far", i), kCells));
+  const auto store = Open(paths, {.read_ahead = 0});
+  storage_->Hang();
+  std::vector<std::future<absl::Status>> far;
+  for (int i = 0; i < 6; ++i) {
+    far.push_back(std::async(std::launch::async, [&store, i] {
+      return store->Get(absl::StrCat("far", i, ".cube"), 0, {}).status();
+    }));
+  }
+  ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 6 && storage_->Passed() == 1; }));
+  for (int begun = 2; begun <= 3; ++begun) {
+    time_.Advance(std::chrono::seconds(5));
+    ASSERT_TRUE(WaitFor([&] { return storage_->Passed() == begun; }));
+  }
+  time_.Advance(std::chrono::seconds(5));
+  EXPECT_TRUE(store->Get("near.cube", 0, {}).ok());
+  EXPECT_EQ(storage_->Passed(), 3);
+  time_.Advance(std::chrono::seconds(60));
+  for (auto& read : far) EXPECT_TRUE(absl::IsDeadlineExceeded(read.get()));
+  storage_->Answer();
 }
 
 TEST_F(StormMemory, PlaybackGoesOnBesideAStorageThatHangs) {

@@ -1,0 +1,298 @@
+#include "sandbox/readers.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/file_stamp.h"
+#include "base/guarded.h"
+#include "base/status.h"
+#include "base/utf8.h"
+#include "base/version.h"
+#include "sandbox/process_state.h"
+#include "sandbox/reader_main.h"
+#include "spdlog/spdlog.h"
+#include "telemetry/metrics.h"
+
+namespace thunderhead::sandbox {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::string_view kReaderFailed = "READER_FAILED";
+constexpr char kWhatToDo[] =
+    "; the file may be damaged or hostile: have it written again, or take it away";
+
+// Counts and logs; the error is for who asked.
+absl::Status Failed(const std::string& path, const char* reason, absl::Status status) {
+  telemetry::Counted().reader_failures.Of(reason).Add();
+  status = absl::Status(status.code(), absl::StrCat(path, ": its reader ", status.message()));
+  spdlog::warn("{}", std::string(status.message()));
+  return base::WithDetails(std::move(status), {.reason = std::string(kReaderFailed)});
+}
+
+absl::Status TookTooLong(const std::string& path, milliseconds time) {
+  return Failed(path, "time",
+                absl::DeadlineExceededError(
+                    absl::StrCat("was ended after ", absl::FormatDuration(absl::FromChrono(time)),
+                                 " (--sandbox-seconds of `serve`)", kWhatToDo)));
+}
+
+absl::Status WasSilent(const std::string& path, milliseconds silence) {
+  return Failed(
+      path, "time",
+      absl::DeadlineExceededError(absl::StrCat(
+          "was ended: nothing had come from it for ",
+          absl::FormatDuration(absl::FromChrono(silence)),
+          " (--read-deadline of `serve`), and it did not wait for its storage", kWhatToDo)));
+}
+
+// Why a reader ended without a result.
+absl::Status EndedEarly(const std::string& path, int signal, milliseconds time) {
+  if (signal == SIGXCPU) return TookTooLong(path, time);
+  if (signal == SIGKILL) {
+    return Failed(path, "killed",
+                  absl::UnavailableError("was killed, probably because the machine's memory is "
+                                         "full; free some, and try again"));
+  }
+  const std::string how =
+      signal == 0 ? "ended without a result"
+                  : absl::StrCat("crashed (signal ", signal, ", ", strsignal(signal), ")");
+  return Failed(path, "crashed", absl::DataLossError(absl::StrCat(how, kWhatToDo)));
+}
+
+absl::Status Nonsense(const std::string& path, const std::string& what) {
+  return Failed(path, "nonsense",
+                absl::DataLossError(
+                    absl::StrCat("gave a result that cannot be right, by ", what, kWhatToDo)));
+}
+
+// Returns what the reader sent as one line of at most 2000 bytes.
+std::string OneLine(const std::string& text) {
+  constexpr std::size_t kLongest = 2000;
+  return base::Printable(text.substr(0, kLongest));
+}
+
+void Log(const Note& note) {
+  const bool warning = note.code >= static_cast<int>(spdlog::level::warn);
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", OneLine(note.text));
+}
+
+// More than any machine has stands for no limit.
+std::uint64_t MemoryOf(const ReaderLimits& limits) {
+  return limits.memory_bytes > 0 ? limits.memory_bytes : std::uint64_t{1} << 46;
+}
+
+// A status that the reader made of what the file says.
+absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
+  const auto code = static_cast<absl::StatusCode>(note.code);
+  std::string text = OneLine(note.text);
+  switch (code) {
+    case absl::StatusCode::kResourceExhausted:
+      absl::StrAppend(&text, " (reading a storm file may take ", MemoryOf(limits) >> 20,
+                      " MiB; --sandbox-memory of `serve` sets that)");
+      // The limit is of this one reader, so waiting until others end does not help.
+      return base::WithDetails(absl::ResourceExhaustedError(text), {.permanent = true});
+    case absl::StatusCode::kInvalidArgument:
+    case absl::StatusCode::kNotFound:
+    case absl::StatusCode::kPermissionDenied:
+    case absl::StatusCode::kFailedPrecondition:
+    case absl::StatusCode::kUnavailable:
+      return {code, text};
+    default:
+      return absl::DataLossError(text);
+  }
+}
+
+// The error of a reader whose answer could not be received.
+absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& child,
+                   const ReaderLimits& limits) {
+  switch (from_reader.Why()) {
+    case Receiver::Failure::kTooLate:
+      return TookTooLong(path, limits.time);
+    case Receiver::Failure::kSilent:
+      return WasSilent(path, limits.silence);
+    case Receiver::Failure::kTooLarge:
+      return Nonsense(path, "its size");
+    default:
+      return EndedEarly(path, child.End(milliseconds(1000)).value_or(0), limits.time);
+  }
+}
+
+// Hears the reader out. Its notes are limited, as it could talk for ever.
+absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted,
+                    const volume::ReadCheckpoint& checkpoint, const Readers::Take& take,
+                    const ReaderLimits& limits) {
+  constexpr int kMaxNotes = 10'000;
+  for (int notes = 0; notes < kMaxNotes; ++notes) {
+    Reply reply = Reply::kError;
+    from_reader(reply);
+    if (!from_reader.Ok()) return absl::OkStatus();
+    if (reply == Reply::kProgress) {
+      double share = 0.0;
+      from_reader(share);
+      if (!from_reader.Ok()) return absl::OkStatus();
+      if (!(share >= 0.0 && share <= 1.0)) break;
+      if (checkpoint) THUNDERHEAD_RETURN_IF_ERROR(checkpoint(share));
+    } else if (reply == Reply::kLog || reply == Reply::kError) {
+      Note note;
+      Visit(from_reader, note);
+      if (!from_reader.Ok()) return absl::OkStatus();
+      if (reply == Reply::kError) return StatusOf(note, limits);
+      Log(note);
+    } else if (reply == wanted) {
+      const absl::Status taken = take(from_reader);
+      if (taken.ok() || !from_reader.Ok()) return absl::OkStatus();
+      return Nonsense(path, std::string(taken.message()));
+    } else {
+      break;
+    }
+  }
+  return Nonsense(path, "its kind");
+}
+
+// How long a reader that has answered waits for another request about its file.
+constexpr std::chrono::seconds kRest{2};
+
+}  // namespace
+
+RestingReader::~RestingReader() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::unique_ptr<StartedReader> RestingReader::Take(const std::string& path) {
+  const std::optional<base::FileStamp> now = base::StampOf(path);
+  const std::lock_guard lock(mutex_);
+  if (reader_ == nullptr || !reader_->Reads(path, now)) return nullptr;
+  return std::exchange(reader_, nullptr);
+}
+
+void RestingReader::Put(std::unique_ptr<StartedReader> reader) {
+  reader->Arrays().Empty();
+  std::unique_ptr<StartedReader> before;  // ended after the lock
+  {
+    const std::lock_guard lock(mutex_);
+    before = std::exchange(reader_, std::move(reader));
+    until_ = time_.Now() + kRest;
+    try {
+      if (!thread_.joinable()) thread_ = std::thread([this] { EndInTime(); });
+    } catch (const std::system_error&) {
+      // The system has no room for another thread, so nobody would end it.
+      before = std::exchange(reader_, nullptr);
+    }
+  }
+  changed_.notify_all();
+}
+
+void RestingReader::EndInTime() {
+  std::unique_lock lock(mutex_);
+  while (!ending_) {
+    if (reader_ == nullptr) {
+      changed_.wait(lock);
+    } else if (time_.Now() < until_) {
+      changed_.wait_until(lock, time_.LookAgainAt(until_));
+    } else {
+      std::unique_ptr<StartedReader> ended = std::exchange(reader_, nullptr);
+      lock.unlock();
+      ended.reset();
+      lock.lock();
+    }
+  }
+}
+
+Readers::Readers(const ReaderLimits& limits, const base::TimeSource& time, std::string program,
+                 CheckOpened check_opened)
+    : limits_(limits),
+      time_(time),
+      program_(std::move(program)),
+      check_opened_(std::move(check_opened)),
+      resting_(time) {}
+
+std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
+                                         const Request& request, Reply wanted,
+                                         milliseconds patience,
+                                         const volume::ReadCheckpoint& checkpoint,
+                                         const Take& take) {
+  reader->Ask(request);
+  ReaderLimits limits = limits_;
+  limits.time = patience;
+  Receiver from_reader(reader->Replies(), patience, request.memory_bytes, time_,
+                       reader->Arrays().Bytes());
+  StorageWatch storage(reader->Process().Process());
+  from_reader.LimitSilence(limits.silence, [&storage] { return storage.ExplainsSilence(); });
+  absl::Status status = base::Guarded(
+      [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits); });
+  if (!from_reader.Ok()) {
+    const bool ended = from_reader.Why() == Receiver::Failure::kEnded;
+    if (has_rested && ended && !from_reader.AnythingCame()) return std::nullopt;
+    return Judge(request.path, from_reader, reader->Process(), limits);
+  }
+  // The kernel counts the processor time of all its requests together; so many that the next has
+  // enough left.
+  const bool is_young = time_.Now() - reader->Began() < limits_.time / 4;
+  if (status.ok() && request.wanted != Wanted::kProbe && is_young) {
+    resting_.Put(std::move(reader));
+  }
+  return status;
+}
+
+absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
+                          const volume::ReadCheckpoint& checkpoint, const Take& take) {
+  request.version = base::Version();
+  request.memory_bytes = MemoryOf(limits_);
+  request.processor_s = static_cast<std::uint32_t>(
+      std::max<std::int64_t>(1, std::chrono::ceil<std::chrono::seconds>(limits_.time).count()));
+  if (std::unique_ptr<StartedReader> rested = resting_.Take(request.path); rested != nullptr) {
+    std::optional<absl::Status> status =
+        Ask(std::move(rested), true, request, wanted, patience, checkpoint, take);
+    if (status.has_value()) return *status;
+    // It has ended meanwhile, without a word.
+  }
+  std::string program = program_;
+  if (program.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(program, ReaderProgram());
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<StartedReader> reader,
+                               StartedReader::Start(program, request, check_opened_, time_));
+  return *Ask(std::move(reader), false, request, wanted, patience, checkpoint, take);
+}
+
+absl::StatusOr<std::string> ReaderProgram() {
+  constexpr char kRemedy[] = "; install Thunderhead whole, and start this program again";
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  static const std::string path = (self.parent_path() / kReaderName).string();
+  static const std::optional<base::FileStamp> first = base::StampOf(path);
+  if (!first.has_value()) {
+    return absl::InternalError(
+        absl::StrCat(path, ", which reads storm files, is not there", kRemedy));
+  }
+  const std::optional<base::FileStamp> now = base::StampOf(path);
+  // Its status also changes when a backup gives the file another name, so that does not count.
+  if (now.has_value() && now->Id() == first->Id() && now->size_bytes == first->size_bytes &&
+      now->modified_ns == first->modified_ns) {
+    return path;
+  }
+  return absl::UnavailableError(
+      absl::StrCat(path, ", which reads storm files, was replaced", kRemedy));
+}
+
+bool IsReaderFailure(const absl::Status& status) {
+  // One that was killed may well read the file the next time.
+  return base::DetailsOf(status).reason == kReaderFailed && !absl::IsUnavailable(status);
+}
+
+}  // namespace thunderhead::sandbox

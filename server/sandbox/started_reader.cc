@@ -1,0 +1,246 @@
+#include "sandbox/started_reader.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "sandbox/archive.h"
+#include "sandbox/reader_main.h"
+#include "volume/netcdf_file.h"
+
+namespace thunderhead::sandbox {
+namespace {
+
+using std::chrono::milliseconds;
+
+absl::Status NoReader(const std::string& path, int error) {
+  return absl::UnavailableError(absl::StrCat(path, ": no process can be started to read it (",
+                                             std::strerror(error), "); try again"));
+}
+
+absl::Status NoRegularFile(const std::string& path) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, ": is no regular file; give the model's output file"));
+}
+
+// An open descriptor of a regular file, never of a pipe or device that would block or act.
+absl::StatusOr<base::FileDescriptor> OpenFile(const std::string& path) {
+  base::FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!file.IsOpen()) {
+    const int error = errno;
+    if (error == ENOENT) {
+      return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
+    }
+    // A socket cannot be opened.
+    if (error == ENXIO) return NoRegularFile(path);
+    return absl::PermissionDeniedError(absl::StrCat(path, ": may not be read (",
+                                                    std::strerror(error),
+                                                    "); give this user permission to read it"));
+  }
+  struct stat information = {};
+  if (fstat(file.Get(), &information) == 0 && S_ISREG(information.st_mode)) return file;
+  return NoRegularFile(path);
+}
+
+// Processes that did not end at once when they were killed: those that give back much memory, and
+// those that wait for a dead network file system. Asked again whenever another one ends.
+void ReapLater(pid_t process) {
+  static std::mutex mutex;
+  static std::vector<pid_t> left;
+  const std::lock_guard lock(mutex);
+  if (process > 0) left.push_back(process);
+  std::erase_if(left, [](pid_t each) { return waitpid(each, nullptr, WNOHANG) != 0; });
+}
+
+// Variables that a program needs to start; none of this one's secrets.
+std::vector<char*> Environment() {
+  constexpr std::array<std::string_view, 5> kNames = {
+      "LD_LIBRARY_PATH=", "ASAN_OPTIONS=", "UBSAN_OPTIONS=", "TSAN_OPTIONS=", "LSAN_OPTIONS="};
+  std::vector<char*> kept;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text(*variable);
+    const bool known = std::ranges::any_of(
+        kNames, [text](std::string_view name) { return text.starts_with(name); });
+    if (known) kept.push_back(*variable);
+  }
+  // Reading takes and gives back arrays of some 100 MB again and again. By default each would be
+  // mapped anew, and the kernel would clear all of its pages, one of 4 kB after another.
+  static char malloc_keeps_memory[] =
+      "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.mmap_max=0:"
+      "glibc.malloc.trim_threshold=1099511627776:glibc.malloc.arena_max=1";
+  kept.push_back(malloc_keeps_memory);
+  kept.push_back(nullptr);
+  return kept;
+}
+
+// The descriptor with a number beyond those that the reader gets, which Spawn must not overwrite
+// before it has copied them. A program whose standard streams are closed has it among those.
+base::FileDescriptor MovedUp(base::FileDescriptor file) {
+  constexpr int kBeyond = kSharedDescriptor + 1;
+  if (!file.IsOpen() || file.Get() >= kBeyond) return file;
+  return base::FileDescriptor(fcntl(file.Get(), F_DUPFD_CLOEXEC, kBeyond));
+}
+
+// Returns the path of an open file, with no link in it.
+std::string PlaceOf(const base::FileDescriptor& file) {
+  std::error_code error;
+  return std::filesystem::read_symlink(absl::StrCat("/proc/self/fd/", file.Get()), error).string();
+}
+
+// The descriptors that a reader inherits.
+struct Descriptors {
+  int request = -1;
+  int reply = -1;
+  int file = -1;
+  int shared = -1;
+};
+
+// Starts the program with the descriptors that it may have, in a group of its own, so that Ctrl-C
+// reaches the server alone. 0 and the process, or an error number.
+int Spawn(const std::string& program, const Descriptors& given, pid_t& process) {
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  posix_spawn_file_actions_adddup2(&actions, given.request, STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, given.reply, STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  int kept = kFileDescriptor;
+  for (const int each : {given.file, given.shared}) {
+    if (each >= 0) posix_spawn_file_actions_adddup2(&actions, each, kept++);
+  }
+  posix_spawn_file_actions_addclosefrom_np(&actions, kept);
+  sigset_t none;
+  sigset_t all;
+  sigemptyset(&none);
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(
+      &attributes,
+      static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
+  std::string name = kReaderName;
+  const std::array<char*, 2> arguments = {name.data(), nullptr};
+  const int error = posix_spawn(&process, program.c_str(), &actions, &attributes, arguments.data(),
+                                Environment().data());
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  return error;
+}
+
+}  // namespace
+
+Child::~Child() {
+  if (process_ <= 0) return;
+  kill(process_, SIGKILL);
+  if (!End(milliseconds(2)).has_value()) ReapLater(std::exchange(process_, 0));
+}
+
+std::optional<int> Child::End(milliseconds patience) {
+  const auto until = time_.Now() + patience;
+  int status = 0;
+  while (process_ > 0) {
+    const pid_t ended = waitpid(process_, &status, WNOHANG);
+    if (ended != 0) {
+      process_ = 0;
+      ReapLater(0);
+      return ended > 0 && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    }
+    if (time_.Now() >= until) return std::nullopt;
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+  return 0;
+}
+
+void UnmapBytes::operator()(const std::byte* bytes) const {
+  munmap(const_cast<std::byte*>(bytes), size);
+}
+
+SharedArrays SharedArrays::Make(std::size_t size) {
+  SharedArrays arrays;
+  base::FileDescriptor file(memfd_create("fields of a storm", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  // Sealed, as a memory that became smaller would end whoever reads it.
+  constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
+  if (!file.IsOpen() || ftruncate(file.Get(), static_cast<off_t>(size)) != 0 ||
+      fcntl(file.Get(), F_ADD_SEALS, kSeals) != 0) {
+    return arrays;
+  }
+  void* const bytes = mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_NORESERVE, file.Get(), 0);
+  if (bytes == MAP_FAILED) return arrays;
+  arrays.bytes_ = {static_cast<const std::byte*>(bytes), UnmapBytes{size}};
+  arrays.file_ = MovedUp(std::move(file));
+  return arrays;
+}
+
+void SharedArrays::Empty() {
+  if (!file_.IsOpen()) return;
+  fallocate(file_.Get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
+            static_cast<off_t>(Bytes().size()));
+}
+
+absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::string& program,
+                                                                    const Request& first,
+                                                                    const CheckOpened& check_opened,
+                                                                    const base::TimeSource& time) {
+  base::FileDescriptor file;
+  std::optional<base::FileStamp> stamp;
+  SharedArrays arrays;
+  if (first.wanted != Wanted::kProbe) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor opened, OpenFile(first.path));
+    file = MovedUp(std::move(opened));
+    const std::string place = PlaceOf(file);
+    if (check_opened) THUNDERHEAD_RETURN_IF_ERROR(check_opened(first.path, place));
+    // A folder may hold thousands of files of other kinds; none of them needs a process.
+    THUNDERHEAD_RETURN_IF_ERROR(volume::NetcdfFile::CheckStart(first.path, file.Get()));
+    stamp = base::StampOf(absl::StrCat("/proc/self/fd/", file.Get()));
+    arrays = SharedArrays::Make(first.memory_bytes);
+  }
+  std::array<int, 2> asking{};
+  std::array<int, 2> answering{};
+  if (pipe2(asking.data(), O_CLOEXEC) != 0) return NoReader(first.path, errno);
+  base::FileDescriptor requests_from = MovedUp(base::FileDescriptor(asking[0]));
+  base::FileDescriptor requests(asking[1]);
+  if (pipe2(answering.data(), O_CLOEXEC) != 0) return NoReader(first.path, errno);
+  base::FileDescriptor replies(answering[0]);
+  const base::FileDescriptor replies_to = MovedUp(base::FileDescriptor(answering[1]));
+  // Fewer switches between the processes; where it is not allowed, the pipe stays small.
+  fcntl(replies_to.Get(), F_SETPIPE_SZ, 1 << 20);
+  pid_t process = 0;
+  const int error =
+      Spawn(program, {requests_from.Get(), replies_to.Get(), file.Get(), arrays.File()}, process);
+  if (error != 0) return NoReader(first.path, error);
+  std::unique_ptr<StartedReader> reader(new StartedReader(first.path, process, time));
+  reader->stamp_ = stamp;
+  reader->arrays_ = std::move(arrays);
+  reader->requests_ = std::move(requests);
+  reader->requests_from_ = std::move(requests_from);
+  reader->replies_ = std::move(replies);
+  return reader;
+}
+
+void StartedReader::Ask(Request request) {
+  request.shared_bytes = arrays_.Bytes().size();
+  Sender to_reader(requests_.Get());
+  Visit(to_reader, request);
+}
+
+}  // namespace thunderhead::sandbox
