@@ -19,6 +19,7 @@
 #include "app/catalogue_flags.h"
 #include "app/clouds_folder.h"
 #include "app/commands.h"
+#include "app/config_file.h"
 #include "app/exit_codes.h"
 #include "app/operation.h"
 #include "app/roster_timeouts_file.h"
@@ -26,14 +27,14 @@
 #include "app/state_folder.h"
 #include "base/error_details.h"
 #include "base/status.h"
+#include "drawing/gl_frame_source.h"
 #include "gateway/gateway.h"
 #include "gateway/tls_contexts.h"
-#include "session/gl_frame_source.h"
 #include "spdlog/spdlog.h"
+#include "storm_store/border_data.h"
+#include "storm_store/storm_catalogue.h"
 #include "telemetry/metrics.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
-#include "volume/border_data.h"
-#include "volume/storm_catalogue.h"
 
 namespace thunderhead::app {
 namespace {
@@ -105,7 +106,7 @@ void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& d
 
 // Waits for the first search of the folders, so that clients find the storms, but not longer than
 // 30 s. Returns false if it is told to stop.
-bool AwaitStorms(const volume::StormStore& store, const std::stop_token& stop) {
+bool AwaitStorms(const storm_store::StormStore& store, const std::stop_token& stop) {
   constexpr std::chrono::seconds kWhile{30};
   constexpr std::chrono::milliseconds kPause{20};
   const auto until = std::chrono::steady_clock::now() + kWhile;
@@ -162,7 +163,7 @@ absl::Status Serve(ServeFlags flags) {
         gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());
   }
   RaiseFileLimit();
-  volume::StormStoreOptions store_options;
+  storm_store::StormStoreOptions store_options;
   base::ShareFreedBlocks();
   const Budgets budgets = BudgetsOf(flags);
   store_options.memory = budgets.memory;
@@ -174,7 +175,7 @@ absl::Status Serve(ServeFlags flags) {
   store_options.read_deadline = read_deadline + std::chrono::seconds(5);
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(reader_limits));
-  store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
+  store_options.borders = storm_store::BorderData::Find(storm_store::kBorderFolder);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
   store_options.links = LinksOf(flags.catalogue);
   std::vector<std::string> folders = flags.data;
@@ -183,10 +184,10 @@ absl::Status Serve(ServeFlags flags) {
       ConfinedFormats({.limits = reader_limits,
                        .check_opened = [folders, links = store_options.links](
                                            const std::string& path, const std::string& place) {
-                         return volume::CheckPlace(folders, links, path, place);
+                         return storm_store::CheckPlace(folders, links, path, place);
                        }});
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<volume::StormStore> store,
-                               volume::StormStore::Open(flags.data, store_options));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<storm_store::StormStore> store,
+                               storm_store::StormStore::Open(flags.data, store_options));
   for (const std::string& file : clouds.Files()) {
     if (const auto added = store->Add(file); !added.ok()) {
       spdlog::warn("skipping {}: {}", file, std::string(added.status().message()));
@@ -219,7 +220,7 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const std::unique_ptr<service::Server> server,
       service::Server::Start(server_options, store,
-                             session::GlFrameSources(flags.device, {.memory = budgets.memory,
+                             drawing::GlFrameSources(flags.device, {.memory = budgets.memory,
                                                                     .gpu_memory = budgets.gpu})));
   gateway::GatewayOptions gateway_options = flags.gateway;
   gateway_options.address = http.host;
@@ -276,7 +277,21 @@ Command AddServe(CLI::App& app) {
   auto flags = std::make_shared<ServeFlags>();
   CLI::App* serve = app.add_subcommand("serve", "Serve storms to browsers and gRPC clients");
   AddServeFlags(*serve, *flags);
-  return {serve, [flags] { return Serve(*flags); }};
+  return {serve, [flags, serve]() -> absl::Status {
+            if (!flags->config.empty()) {
+              THUNDERHEAD_RETURN_IF_ERROR(ReadConfigFile(*serve, flags->config));
+            }
+            if (flags->print_config) {
+              std::cout << ConfigFileOf(*serve);
+              return absl::OkStatus();
+            }
+            if (flags->data.empty()) {
+              return absl::InvalidArgumentError(
+                  "there are no storms to serve; give --data FILE or --data FOLDER, also in the "
+                  "file of --config");
+            }
+            return Serve(*flags);
+          }};
 }
 
 }  // namespace thunderhead::app

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "absl/strings/match.h"
@@ -16,6 +17,45 @@ namespace thunderhead::app {
 namespace {
 
 constexpr char kWho[] = "Who may come";
+
+// Flags that --help leaves out. --print-config lists them.
+constexpr std::array kRarelyChanged = {
+    "--drain-seconds",
+    "--grpc-memory",
+    "--jobs-quota-each",
+    "--max-connections",
+    "--max-connections-each",
+    "--max-handshakes-each",
+    "--max-job-pictures",
+    "--max-job-pictures-each",
+    "--max-jobs",
+    "--max-jobs-each",
+    "--max-kept-pictures",
+    "--max-kept-pictures-each",
+    "--max-message",
+    "--max-picture",
+    "--max-predicted-render-time",
+    "--max-render-time",
+    "--max-requests",
+    "--max-samples",
+    "--max-sessions-each",
+    "--max-stills",
+    "--max-stills-each",
+    "--max-streams",
+    "--max-streams-each",
+    "--max-streams-per-connection",
+    "--max-unsent",
+    "--max-waiting",
+    "--max-waiting-each",
+    "--max-wrong-tokens",
+    "--read-deadline",
+    "--rescan-seconds",
+    "--roster-timeouts",
+    "--sandbox-memory",
+    "--sandbox-seconds",
+    "--settle-seconds",
+    "--stuck-seconds",
+};
 constexpr char kHowMuch[] = "Limits; what is beyond them is refused with the time to try again";
 
 constexpr std::size_t kMinBudget = std::size_t{64} << 20U;
@@ -166,8 +206,15 @@ absl::Status CheckReachOfMetrics(const std::string& metrics) {
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   serve
-      .add_option("--data", flags.data, "Storm files, or folders of them; the page opens the first")
-      ->required();
+      .add_option("--config", flags.config,
+                  "File with settings: any of these flags and the limits, as `max-sessions = 200`")
+      ->configurable(false);
+  serve
+      .add_flag("--print-config", flags.print_config,
+                "Print such a file with every setting, its unit and its default, and exit")
+      ->configurable(false);
+  serve.add_option("--data", flags.data,
+                   "Storm files, or folders of them; the page opens the first");
   serve.add_option("--http", flags.http, "HOST:PORT to serve the page on")->capture_default_str();
   serve.add_option("--grpc", flags.grpc, "HOST:PORT to serve gRPC on")->capture_default_str();
   serve.add_option("--device", flags.device, "auto, software or a GPU's number")
@@ -181,7 +228,10 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
       "--state", flags.state,
       "Folder in which sessions and render jobs outlive the server, or 'none'; by default "
       "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
-  serve.add_option("--roster-timeouts", flags.roster_timeouts)->group("");
+  serve
+      .add_option("--roster-timeouts", flags.roster_timeouts,
+                  "File with the times after which people of a session count as away, for tests")
+      ->configurable(false);
   AddMemoryFlags(serve, flags);
   AddCatalogueFlags(serve, flags.catalogue);
   AddReaderFlags(serve, flags.reader);
@@ -189,6 +239,8 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   AddAccessFlags(serve, flags);
   AddLimitFlags(serve, flags);
   AddJobsFlags(serve, flags.jobs);
+  serve.get_option("--help")->configurable(false);
+  for (const char* const name : kRarelyChanged) serve.get_option(name)->group("");
 }
 
 Budgets BudgetsOf(const ServeFlags& flags) {

@@ -18,13 +18,15 @@
 #include "app/operation.h"
 #include "base/executor.h"
 #include "base/memory_budget.h"
+#include "drawing/render_loop.h"
 #include "gateway/gateway.h"
 #include "service/server.h"
-#include "session/render_loop.h"
 
 namespace thunderhead::app {
 
 struct ServeFlags {
+  std::string config;  // a file with further flags
+  bool print_config = false;
   std::vector<std::string> data;
   std::string http = "127.0.0.1:8080";
   std::string grpc = "127.0.0.1:50051";
@@ -56,7 +58,7 @@ struct ServeFlags {
   session::SessionsOptions sessions;
   service::Limits limits;
   access::QuotaLimits quotas;
-  session::RenderLoopOptions render_loop;
+  drawing::RenderLoopOptions render_loop;
   base::Executor::Limits executor;
   gateway::GatewayOptions gateway;
   double max_render_s = 1800.0;

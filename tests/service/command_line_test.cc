@@ -96,6 +96,60 @@ TEST_F(CommandLineTest, VersionAndHelp) {
   }
 }
 
+TEST_F(CommandLineTest, ServeReadsItsSettingsFromAFile) {
+  const std::string file = folder_.File("serve.conf");
+  const auto write = [&file](const std::string& text) { std::ofstream(file) << text; };
+  // What it prints is a file that it reads, with every setting.
+  const std::string defaults = Run("serve --print-config").out;
+  for (const char* const setting :
+       {"max-sessions=64", "max-wrong-tokens=5", "insecure=false", "read-deadline=60", "data="}) {
+    EXPECT_THAT(defaults, HasSubstr(setting));
+  }
+  write(defaults);
+  EXPECT_EQ(Run("serve --config " + file + " --print-config").out, defaults);
+  // The command line takes precedence.
+  write("# a comment\nmax-sessions = 200\ninsecure = true\ndata = [\"" + kSample + "\"]\n");
+  const std::string merged = Run("serve --config " + file + " --max-viewers 7 --print-config").out;
+  for (const std::string& setting : {std::string("max-sessions=200"), std::string("max-viewers=7"),
+                                     std::string("insecure=true"), "data=\"" + kSample + "\""}) {
+    EXPECT_THAT(merged, HasSubstr(setting));
+  }
+  EXPECT_THAT(Run("serve --config " + file + " --max-sessions 3 --print-config").out,
+              HasSubstr("max-sessions=3\n"));
+}
+
+TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
+  const std::string file = folder_.File("serve.conf");
+  const auto refuse = [&](const std::string& setting, const std::string& text) {
+    std::ofstream(file) << setting << "\n";
+    ExpectError("serve --data " + kSample + " --config " + file, 64, file + ": " + text);
+  };
+  refuse("max-session = 3",
+         "there is no setting 'max-session'; `thunderhead serve --print-config`");
+  refuse("print-config = true", "there is no setting 'print-config'");
+  refuse("config = \"other\"", "there is no setting 'config'");
+  refuse("[limits]\nmax-sessions = 3", "there is no setting 'limits.max-sessions'");
+  refuse("max-sessions = many", "max-sessions: ");
+  refuse("max-sessions = 0", "max-sessions: ");
+  refuse("insecure = perhaps", "insecure: ");
+  ExpectError("serve --config " + folder_.File("none"), 64, "there is no such file");
+  ExpectError("serve", 64, "there are no storms to serve");
+}
+
+// The flags that most servers need, on two screens; the rest stand in the file of settings.
+TEST_F(CommandLineTest, HelpOfServeIsShort) {
+  const std::string help = Run("serve --help").out;
+  int flags = 0;
+  for (std::size_t at = help.find("\n  --"); at != std::string::npos;
+       at = help.find("\n  --", at + 1)) {
+    ++flags;
+  }
+  EXPECT_GE(flags, 20);
+  EXPECT_LE(flags, 32);
+  EXPECT_THAT(help, HasSubstr("--print-config"));
+  EXPECT_THAT(help, Not(HasSubstr("--max-streams-per-connection")));
+}
+
 TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ExpectError("", 64, "subcommand");
   ExpectError("frobnicate", 64, "'frobnicate'");

@@ -1,0 +1,62 @@
+#include "app/config_file.h"
+
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
+namespace thunderhead::app {
+namespace {
+
+absl::Status Set(CLI::Option& option, const CLI::ConfigItem& setting) {
+  if (option.count() > 0) return absl::OkStatus();
+  try {
+    if (option.get_expected_max() == 0) {
+      option.add_result(option.get_flag_value(setting.name, CLI::ConfigINI().to_flag(setting)));
+    } else {
+      option.add_result(setting.inputs);
+    }
+    option.run_callback();
+  } catch (const CLI::Error& error) {
+    return absl::InvalidArgumentError(error.what());
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, ": there is no such file; check --config"));
+  }
+  std::vector<CLI::ConfigItem> settings;
+  try {
+    settings = CLI::ConfigINI().from_file(path);
+  } catch (const CLI::Error& unreadable) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": ", unreadable.what()));
+  }
+  for (const CLI::ConfigItem& setting : settings) {
+    CLI::Option* const option =
+        setting.parents.empty() ? command.get_option_no_throw("--" + setting.name) : nullptr;
+    if (option == nullptr || !option->get_configurable()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, ": there is no setting '", setting.fullname(), "'; `thunderhead ",
+                       command.get_name(), " --print-config` lists them all"));
+    }
+    THUNDERHEAD_RETURN_IF_ERROR(
+        base::Annotate(Set(*option, setting), absl::StrCat(path, ": ", setting.name)));
+  }
+  return absl::OkStatus();
+}
+
+std::string ConfigFileOf(const CLI::App& command) {
+  constexpr bool kDefaultsToo = true;
+  constexpr bool kWithMeaning = true;
+  return CLI::ConfigINI().to_config(&command, kDefaultsToo, kWithMeaning, "");
+}
+
+}  // namespace thunderhead::app
