@@ -34,8 +34,8 @@ bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fie
 
 class LightCorrector {
  public:
-  // TracesLight must be true. Programs are linked in `programs`; traces on the device where that is
-  // faster (device_paths::TracesOnDevice), else on `threads` threads, 0: all cores.
+  // TracesLight must be true. Links programs in `programs`. Traces on the device if
+  // device_paths::TracesOnDevice(), else on `threads` threads (0: all cores).
   static absl::StatusOr<std::unique_ptr<LightCorrector>> Create(
       const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
       std::shared_ptr<gl::ProgramCache> programs, int threads);

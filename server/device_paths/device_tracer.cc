@@ -12,7 +12,6 @@
 #include "base/guarded.h"
 #include "base/status.h"
 #include "device_paths/bindings.h"
-#include "gl/device.h"
 #include "gl/device_faults.h"
 #include "reference/eye_segment.h"
 #include "reference/parallel.h"
@@ -53,8 +52,7 @@ glm::uvec3 StreamOf(std::size_t ray, std::uint32_t sample, std::uint32_t kind,
 
 bool TracesOnDevice() {
   static const char* const chosen = std::getenv("THUNDERHEAD_PATHS");
-  if (chosen != nullptr) return std::string_view(chosen) == "device";
-  return !gl::DrawsInSoftware();
+  return chosen != nullptr && std::string_view(chosen) == "device";
 }
 
 struct DeviceTracer::Begun {

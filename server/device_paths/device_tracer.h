@@ -22,9 +22,8 @@
 
 namespace thunderhead::device_paths {
 
-// True if the thread's device should trace paths: any but software GL, where they take longer than
-// by the processors' own code (docs/decisions/0057). THUNDERHEAD_PATHS=device or processors in the
-// environment decides instead.
+// Returns whether the thread's device traces paths: only if THUNDERHEAD_PATHS is "device" in the
+// environment, because no GPU has been measured yet (docs/decisions/0057).
 bool TracesOnDevice();
 
 class DeviceTracer {

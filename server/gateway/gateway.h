@@ -1,7 +1,7 @@
 // Thunderhead for browsers: one HTTP/1.1 port with the built page, /healthz, and a bridge to a gRPC
 // channel: gRPC-Web (binary) for unary and server-streaming calls, a WebSocket for calls of any
 // kind, bidirectional ones too (websocket_protocol.h has its wire format). Knows no message type
-// and nothing of storms. Needs no proxy in front of it; deploy/envoy.yaml shows how to add one.
+// and nothing of storms. Needs no proxy in front of it; deploy/haproxy/ shows how to add one.
 #pragma once
 
 #include <chrono>

@@ -9,7 +9,6 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
-#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -94,10 +93,6 @@ bool IsNotMetadata(std::string_view name) {
 bool IsBinaryGrpcWeb(std::string_view content_type) {
   const std::string type = MediaType(content_type);
   return type == "application/grpc-web" || type == "application/grpc-web+proto";
-}
-
-bool IsAnyGrpc(std::string_view content_type) {
-  return absl::StartsWith(MediaType(content_type), "application/grpc");
 }
 
 bool IsMethodPath(std::string_view path) {

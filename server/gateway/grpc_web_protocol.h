@@ -26,9 +26,6 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 // True for application/grpc-web and application/grpc-web+proto, the binary kinds.
 bool IsBinaryGrpcWeb(std::string_view content_type);
 
-// True for every type that begins with application/grpc, supported or not.
-bool IsAnyGrpc(std::string_view content_type);
-
 // True for "/package.Service/Method".
 bool IsMethodPath(std::string_view path);
 

@@ -35,12 +35,4 @@ class DeviceMemory {
   const std::function<bool()> drop_unused_;
 };
 
-// Bytes on the device, as far as the driver tells (GL_NVX_gpu_memory_info, GL_ATI_meminfo); 0 where
-// it does not. On the context's thread.
-struct DriverMemory {
-  std::size_t total_bytes = 0;
-  std::size_t free_bytes = 0;
-};
-DriverMemory DriverMemoryNow();
-
 }  // namespace thunderhead::gl

@@ -1,4 +1,4 @@
-// Takes the screenshots of docs/page/: every tool, panel and kind of picture at three sizes of window, to be looked at.
+// Takes screenshots of every tool, panel and kind of picture at three sizes of window, for people to look at.
 //   node screenshots.mjs [folder] [tool ...]
 import { mkdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -31,7 +31,7 @@ const PICTURES = {
     await restedAndFits(page, "compared-canvas");
   },
 };
-const folder = process.argv[2] ?? fileURLToPath(new URL("../../docs/page/", import.meta.url));
+const folder = process.argv[2] ?? fileURLToPath(new URL("../../build/screenshots/", import.meta.url));
 const only = process.argv.slice(3);
 // Of the windows' widths; all of them, if it is not set.
 const onlyWidth = Number(process.env.THUNDERHEAD_WIDTH ?? 0);
