@@ -18,6 +18,8 @@
 #include "base/whole_file.h"
 #include "frame/image_codec.h"
 #include "frame/png_text.h"
+#include "google/protobuf/descriptor.h"
+#include "google/protobuf/message.h"
 #include "picture/exr_file.h"
 #include "pipeline/sha256.h"
 #include "product/annotation.h"
@@ -52,9 +54,17 @@ std::string RunText(const Texts& texts, absl::Time valid) {
                          std::abs(minutes % 60));
 }
 
+// Returns whether the settings of the chosen technique, whichever it is, have false_colors on.
 bool ShowsFalseColors(const v1::Rendering& rendering) {
-  return rendering.light_volume().false_colors() || rendering.half_angle().false_colors() ||
-         rendering.metaball().false_colors();
+  const google::protobuf::FieldDescriptor* const technique =
+      rendering.GetReflection()->GetOneofFieldDescriptor(
+          rendering, rendering.GetDescriptor()->FindOneofByName("technique"));
+  if (technique == nullptr) return false;
+  const google::protobuf::Message& settings =
+      rendering.GetReflection()->GetMessage(rendering, technique);
+  const google::protobuf::FieldDescriptor* const field =
+      settings.GetDescriptor()->FindFieldByName("false_colors");
+  return field != nullptr && settings.GetReflection()->GetBool(settings, field);
 }
 
 // Of the fields that the picture shows, where their colours tell them apart.

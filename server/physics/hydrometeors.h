@@ -30,7 +30,7 @@ constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
 // "cloud", "rain", "ice", "snow", "graupel" or "hail".
 std::string_view NameOf(Hydrometeor hydrometeor);
 
-// Formulas, then tables (docs/phase_tables.md); in the order of the message's enumerators.
+// A kind of phase function: a formula (kPhaseFormulas in optics.h) or a table (kPhaseTables).
 enum class PhaseKind {
   kHenyeyGreenstein,
   kCornetteShanks,
@@ -42,8 +42,25 @@ enum class PhaseKind {
   kWaterNarrow
 };
 
-// The computed tables (docs/phase_tables.md) of the kinds that are no formulas. Water droplets have
-// one for each of several radii, of which the nearest is chosen; others have no radius.
+// The name of each kind: that of its enumerator of the message PhaseFunction.Kind, in lower case
+// and without KIND_. Messages are translated by it, so kinds may be in any order.
+struct PhaseKindName {
+  PhaseKind kind;
+  std::string_view name;
+};
+inline constexpr std::array kPhaseKindNames = {
+    PhaseKindName{PhaseKind::kHenyeyGreenstein, "henyey_greenstein"},
+    PhaseKindName{PhaseKind::kCornetteShanks, "cornette_shanks"},
+    PhaseKindName{PhaseKind::kRayleigh, "rayleigh"},
+    PhaseKindName{PhaseKind::kWaterDroplets, "water_droplets"},
+    PhaseKindName{PhaseKind::kIceColumns, "ice_columns"},
+    PhaseKindName{PhaseKind::kIcePlates, "ice_plates"},
+    PhaseKindName{PhaseKind::kIceRough, "ice_rough"},
+    PhaseKindName{PhaseKind::kWaterNarrow, "water_narrow"},
+};
+
+// The computed tables (docs/phase_tables.md) of the kinds that are not formulas. Water droplets
+// have one for each of several radii, and the nearest is chosen. Other kinds have no radius.
 struct PhaseTableName {
   PhaseKind kind;
   float droplet_radius_m;

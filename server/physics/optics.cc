@@ -60,36 +60,58 @@ const PhaseTable& TableOf(const PhaseFunction& phase) {
   return tables[TableIndexOf(phase)];
 }
 
-// Formulas come before tables.
-static_assert(std::ranges::min(kPhaseTables, {}, &PhaseTableName::kind).kind ==
-              kPhaseTables.front().kind);
-bool IsFormula(const PhaseFunction& phase) { return phase.kind < kPhaseTables.front().kind; }
-
 template <typename F>
 double Luminance(const F& value_of_channel) {
   return glm::dot(kLuminance,
                   glm::dvec3(value_of_channel(0), value_of_channel(1), value_of_channel(2)));
 }
 
-// 1 - mu keeps the forward peak free of cancellation.
-double FormulaValue(const PhaseFunction& phase, double mu) {
-  if (phase.kind == PhaseKind::kRayleigh) return 0.75 * (1.0 + mu * mu);
-  const double g = phase.asymmetry;
+double HenyeyGreenstein(double g, double mu) {
+  // 1 - mu keeps the forward peak free of cancellation.
   const double base = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - mu);
-  const double henyey_greenstein = (1.0 - g) * (1.0 + g) / (base * std::sqrt(base));
-  if (phase.kind == PhaseKind::kHenyeyGreenstein) return henyey_greenstein;
-  // Applied Optics 31, 1992, eq. 8.
-  return henyey_greenstein * 1.5 * (1.0 + mu * mu) / (2.0 + g * g);
+  return (1.0 - g) * (1.0 + g) / (base * std::sqrt(base));
+}
+
+// Cornette and Shanks, Applied Optics 31, 1992, eq. 8.
+double CornetteShanks(double g, double mu) {
+  return HenyeyGreenstein(g, mu) * 1.5 * (1.0 + mu * mu) / (2.0 + g * g);
+}
+
+double Rayleigh(double /*g*/, double mu) { return 0.75 * (1.0 + mu * mu); }
+
+constexpr std::array kPhaseFormulas = {
+    PhaseFormula{PhaseKind::kHenyeyGreenstein, true, HenyeyGreenstein},
+    PhaseFormula{PhaseKind::kCornetteShanks, true, CornetteShanks},
+    PhaseFormula{PhaseKind::kRayleigh, false, Rayleigh},
+};
+
+// Every kind is either a formula or a table.
+constexpr bool HasOneForm(PhaseKind kind) {
+  const bool formula = std::ranges::count(kPhaseFormulas, kind, &PhaseFormula::kind) == 1;
+  const bool table = std::ranges::count(kPhaseTables, kind, &PhaseTableName::kind) > 0;
+  return formula != table;
+}
+static_assert(std::ranges::all_of(kPhaseKindNames, HasOneForm, &PhaseKindName::kind));
+
+bool IsFormula(const PhaseFunction& phase) { return FormulaOf(phase.kind) != nullptr; }
+
+double FormulaValue(const PhaseFunction& phase, double mu) {
+  return FormulaOf(phase.kind)->value(phase.asymmetry, mu);
 }
 
 }  // namespace
+
+const PhaseFormula* FormulaOf(PhaseKind kind) {
+  const auto* const formula = std::ranges::find(kPhaseFormulas, kind, &PhaseFormula::kind);
+  return formula == kPhaseFormulas.end() ? nullptr : formula;
+}
 
 PhaseFunction PhaseOf(const ParticleOptics& optics) {
   PhaseFunction phase{optics.phase.kind, 0.0F, 0.0F};
   if (phase.kind == PhaseKind::kWaterDroplets) {
     phase.droplet_radius_m = optics.radius_m;
     phase.droplet_radius_m = kPhaseTables[TableIndexOf(phase)].droplet_radius_m;
-  } else if (IsFormula(phase) && phase.kind != PhaseKind::kRayleigh) {
+  } else if (IsFormula(phase) && FormulaOf(phase.kind)->has_asymmetry) {
     phase.asymmetry = optics.phase.asymmetry;
   }
   return phase;

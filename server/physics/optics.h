@@ -21,6 +21,18 @@ using glm::sqrt;
 
 }  // namespace glsl
 
+// A phase function by a formula.
+struct PhaseFormula {
+  PhaseKind kind;
+  bool has_asymmetry;  // whether `value` depends on the asymmetry parameter g
+  // The value at the cosine `mu` of a scattering angle, the same for all colours. The mean over the
+  // sphere is 1.
+  double (*value)(double g, double mu);
+};
+
+// Returns the formula of `kind`, or null for a kind that is a table.
+const PhaseFormula* FormulaOf(PhaseKind kind);
+
 // The phase function of a field's particles in canonical form, so that equal functions compare
 // equal: parameters that its kind does not use are zero, and the droplets' radius is that of the
 // nearest table (by ratio).

@@ -80,10 +80,8 @@ SampledPhase SampledPhase::Of(const physics::PhaseFunction& phase) {
   const auto color = [phase](int c) {
     return [phase, c](double mu) { return physics::PhaseColors(phase, mu)[c]; };
   };
-  if (phase.kind == physics::PhaseKind::kCornetteShanks ||
-      phase.kind == physics::PhaseKind::kRayleigh) {
-    return Tabulated(color(0));
-  }
+  // A formula has one value for all colours.
+  if (physics::FormulaOf(phase.kind) != nullptr) return Tabulated(color(0));
   return Tabulated({color(0), color(1), color(2)});
 }
 

@@ -109,8 +109,8 @@ int CompareDefaults(const Message& message, const std::string& path) {
   return compared;
 }
 
-volume::StormInfo Storm() {
-  volume::StormInfo storm;
+storm_store::StormInfo Storm() {
+  storm_store::StormInfo storm;
   storm.id = "storm";
   storm.times.resize(1);
   storm.fields.assign(physics::kHydrometeors.begin(), physics::kHydrometeors.end());
@@ -374,6 +374,7 @@ TEST(SceneDefaults, HydrometeorsAreNamedAlike) {
   }
 }
 
+// Records and clients know the kinds by these numbers.
 TEST(SceneDefaults, PhaseKindsAreNamedAlike) {
   using physics::PhaseKind;
   const std::vector<std::pair<std::string, PhaseKind>> kinds = {
@@ -459,13 +460,13 @@ TEST(SceneDefaults, ThePapersPresetsStandForTheirConstants) {
 
 // On land use of a storm with a map projection.
 TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
-  const auto borders = [](const volume::StormInfo& storm, v1::Scene scene = {}) {
+  const auto borders = [](const storm_store::StormInfo& storm, v1::Scene scene = {}) {
     FillSceneDefaults(scene, storm);
     EXPECT_TRUE(scene.ground().has_borders());
     EXPECT_EQ(ToScene(scene).ground.borders, scene.ground().borders());
     return scene.ground().borders();
   };
-  volume::StormInfo real = Storm();
+  storm_store::StormInfo real = Storm();
   real.latitude_deg = 35.0;
   real.longitude_deg = -97.0;
   EXPECT_FALSE(borders(Storm()));
@@ -484,13 +485,13 @@ TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
 
 // The ground that is the default follows from the storm; rings are as the value has them.
 TEST(SceneDefaults, TheGroundIsThatOfTheStormAndPlainInThePapersLook) {
-  const auto cover = [](const volume::StormInfo& storm, v1::Scene scene = {}) {
+  const auto cover = [](const storm_store::StormInfo& storm, v1::Scene scene = {}) {
     FillSceneDefaults(scene, storm);
     EXPECT_EQ(scene.ground().rings(), scene::Ground{}.rings);
     EXPECT_EQ(ToScene(scene).ground.rings, scene::Ground{}.rings);
     return ToScene(scene).ground.cover;
   };
-  volume::StormInfo real = Storm();
+  storm_store::StormInfo real = Storm();
   real.latitude_deg = 35.0;
   real.longitude_deg = -97.0;
   EXPECT_EQ(cover(Storm()), scene::GroundCover::kFields);

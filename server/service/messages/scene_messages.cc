@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
+#include <string>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/file_stamp.h"
@@ -28,14 +31,30 @@ std::size_t IndexOf(v1::Hydrometeor hydrometeor) {
   return static_cast<std::size_t>(hydrometeor) - 1;
 }
 
-// Enumerators of message and value are in the same order; the message's begin with UNSPECIFIED.
-v1::PhaseFunction::Kind KindMessage(physics::PhaseKind kind) {
-  return static_cast<v1::PhaseFunction::Kind>(static_cast<int>(kind) + 1);
+// The message's enumerator of each kind, found by its name.
+const std::map<physics::PhaseKind, v1::PhaseFunction::Kind>& PhaseKindMessages() {
+  static const auto* const messages = [] {
+    auto* found = new std::map<physics::PhaseKind, v1::PhaseFunction::Kind>;
+    for (const auto& [kind, name] : physics::kPhaseKindNames) {
+      const std::string enumerator =
+          absl::StrCat("KIND_", absl::AsciiStrToUpper(std::string(name)));
+      THUNDERHEAD_CHECK(v1::PhaseFunction::Kind_Parse(enumerator, &(*found)[kind]), enumerator);
+    }
+    return found;
+  }();
+  return *messages;
 }
 
-// The first where none is given, as in a damaged record of a scene.
-physics::PhaseKind ToPhaseKind(v1::PhaseFunction::Kind kind) {
-  return static_cast<physics::PhaseKind>(std::max(static_cast<int>(kind) - 1, 0));
+v1::PhaseFunction::Kind KindMessage(physics::PhaseKind kind) {
+  return PhaseKindMessages().at(kind);
+}
+
+// Returns the first kind if the message has none, as a damaged record of a scene may.
+physics::PhaseKind ToPhaseKind(v1::PhaseFunction::Kind message) {
+  for (const auto& [kind, its_message] : PhaseKindMessages()) {
+    if (its_message == message) return kind;
+  }
+  return physics::kPhaseKindNames.front().kind;
 }
 
 constexpr std::array kSizeSources = {
@@ -251,7 +270,7 @@ void FillSizesDefault(v1::Scene& scene) {
 namespace {
 
 // The particles' sizes are known by now.
-void FillGroundDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
+void FillGroundDefaults(v1::Scene& scene, const storm_store::StormInfo& storm) {
   v1::Ground& ground = *scene.mutable_ground();
   if (ground.cover() == v1::Ground::COVER_UNSPECIFIED) {
     const bool of_the_papers = scene.particle_sizes() == v1::PARTICLE_SIZES_PAPERS;
@@ -272,7 +291,7 @@ void ToMessage(const scene::Ground& ground, v1::Ground& message) {
   message.set_borders(ground.borders);
 }
 
-void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm) {
+void FillSceneDefaults(v1::Scene& scene, const storm_store::StormInfo& storm) {
   scene.set_storm_id(storm.id);
   v1::Camera& camera = *scene.mutable_camera();
   if (camera.kind_case() == v1::Camera::KIND_NOT_SET) camera.mutable_orbit();
@@ -333,7 +352,7 @@ scene::Scene ToScene(const v1::Scene& message) {
   return scene;
 }
 
-void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message) {
+void ToMessage(const storm_store::StormInfo& storm, v1::StormSummary& message) {
   message.set_id(storm.id);
   message.set_title(storm.title);
   message.set_time_count(static_cast<std::uint32_t>(storm.times.size()));
@@ -348,7 +367,7 @@ bool ToMessage(const std::string& path, v1::StormFile& message) {
   return true;
 }
 
-void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
+void ToMessage(const storm_store::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message) {
   message.set_id(storm.id);
   message.set_title(storm.title);
