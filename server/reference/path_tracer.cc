@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/status.h"
-#include "base/stopwatch.h"
 #include "reference/parallel.h"
 #include "reference/path_radiance.h"
 
@@ -140,8 +139,8 @@ ImageProgress PathTracer::ProgressOf(double seconds, std::int64_t samples_before
 
 RefineResult PathTracer::Refine(const RefineLimits& limits, const ImageObserver& observer,
                                 const std::stop_token& stop) {
-  const base::Stopwatch stopwatch;
-  const auto seconds = [&] { return stopwatch.ElapsedMs() * 1e-3; };
+  const auto start = limits.time->Now();
+  const auto seconds = [&] { return 1e-3 * base::MsSince(*limits.time, start); };
   const auto timed_out = [&] { return limits.seconds > 0.0 && seconds() >= limits.seconds; };
   const auto pauses = [&] { return limits.pause_s > 0.0 && seconds() >= limits.pause_s; };
   const std::int64_t samples_before = AllSamples();

@@ -9,6 +9,7 @@
 #include <stop_token>
 #include <vector>
 
+#include "base/time_source.h"
 #include "glm/vec2.hpp"
 #include "glm/vec3.hpp"
 #include "picture/linear_picture.h"
@@ -32,6 +33,8 @@ struct RefineLimits {
   double seconds = 0.0;         // of this call; 0: no limit. One sample a pixel is always finished
   double relative_error = 0.0;  // see ImageProgress; 0: no limit. Needs 16 samples at least
   double pause_s = 0.0;         // of this call; 0: no limit. May leave pixels without a sample
+  // The clock of `seconds` and `pause_s`. It must outlive the call.
+  const base::TimeSource* time = &base::SteadyTime();
 };
 
 struct ImageProgress {

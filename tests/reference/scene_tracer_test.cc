@@ -1,8 +1,11 @@
 // A picture traced after changes of the scene is the same as one traced from scratch.
 #include "reference/scene_tracer.h"
 
+#include <atomic>
+#include <chrono>
 #include <memory>
 
+#include "base/time_source.h"
 #include "gtest/gtest.h"
 #include "reference/trace_scene.h"
 #include "tests/support/techniques.h"
@@ -93,6 +96,18 @@ TEST_F(SceneTracerTest, SizesOfAPictureShowTheSameView) {
   EXPECT_NEAR(mean({6, 4}) / mean({24, 16}), 1.0, 0.05);
 }
 
+// A clock that moves by a millisecond each time that somebody looks at it.
+class CountedLooks final : public base::TimeSource {
+ public:
+  Clock::time_point Now() const override {
+    return Clock::time_point(std::chrono::milliseconds(++looks_));
+  }
+  Clock::time_point LookAgainAt(Clock::time_point deadline) const override { return deadline; }
+
+ private:
+  mutable std::atomic<int> looks_ = 0;
+};
+
 // A pause may fall anywhere, before every pixel has had its first sample too.
 TEST_F(SceneTracerTest, PausesChangeNothing) {
   const auto storm = TracedStorm();
@@ -100,10 +115,14 @@ TEST_F(SceneTracerTest, PausesChangeNothing) {
   scene.output = {96, 64, 88};
   ASSERT_TRUE(tracer_.Begin(scene, storm, {96, 64}).ok());
   RefineLimits limits = Until(2);
-  limits.pause_s = 2e-3;
+  // The tracer looks at the clock before each of the 6144 pixels. Each call may look at more of
+  // them than the one before, because it begins at the first pixel again.
+  const CountedLooks time;
+  limits.time = &time;
   int pauses = 0;
   bool paused_within_first_sample = false;
   for (;;) {
+    limits.pause_s += 1.5;
     const RefineResult result = tracer_.Refine(limits, {});
     if (result.end == RefineEnd::kSamples) break;
     ASSERT_EQ(result.end, RefineEnd::kPaused);
