@@ -31,15 +31,15 @@ void AddCatalogueFlags(CLI::App& command, CatalogueFlags& flags) {
       "folders are always followed, and links in --untrusted folders never");
 }
 
-volume::LinkPolicy LinksOf(const CatalogueFlags& flags) {
+storm_store::LinkPolicy LinksOf(const CatalogueFlags& flags) {
   return {.allowed = flags.allowed_links, .untrusted = flags.untrusted};
 }
 
-std::optional<volume::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags) {
+std::optional<storm_store::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags) {
   if (flags.rescan_s <= 0.0) return std::nullopt;
-  return volume::LiveCatalogueOptions{.rescan = Milliseconds(flags.rescan_s),
-                                      .settle = Milliseconds(flags.settle_s),
-                                      .first_search = std::chrono::milliseconds(0)};
+  return storm_store::LiveCatalogueOptions{.rescan = Milliseconds(flags.rescan_s),
+                                           .settle = Milliseconds(flags.settle_s),
+                                           .first_search = std::chrono::milliseconds(0)};
 }
 
 }  // namespace thunderhead::app

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "CLI/CLI.hpp"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::app {
 
@@ -19,9 +19,9 @@ struct CatalogueFlags {
 
 void AddCatalogueFlags(CLI::App& command, CatalogueFlags& flags);
 
-volume::LinkPolicy LinksOf(const CatalogueFlags& flags);
+storm_store::LinkPolicy LinksOf(const CatalogueFlags& flags);
 
 // Nothing where the storms are to stay those of the start.
-std::optional<volume::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags);
+std::optional<storm_store::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags);
 
 }  // namespace thunderhead::app

@@ -6,8 +6,8 @@
 
 namespace thunderhead::app {
 
-volume::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options) {
-  return sandbox::Confined(volume::StormFormats::BuiltIn(),
+storm_files::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options) {
+  return sandbox::Confined(storm_files::StormFormats::BuiltIn(),
                            std::make_shared<sandbox::ConfinedFiles>(options));
 }
 

@@ -5,11 +5,11 @@
 #include "CLI/CLI.hpp"
 #include "base/machine_memory.h"
 #include "sandbox/confined_files.h"
-#include "volume/storm_format.h"
+#include "storm_files/storm_format.h"
 
 namespace thunderhead::app {
 
-volume::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options = {});
+storm_files::StormFormats ConfinedFormats(const sandbox::ConfinedOptions& options = {});
 
 struct ReaderFlags {
   double memory_mib = static_cast<double>(base::MachineMemoryBytes() >> 20);

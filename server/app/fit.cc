@@ -17,7 +17,7 @@
 #include "base/version.h"
 #include "clouds/rbf_fit.h"
 #include "spdlog/spdlog.h"
-#include "volume/cf_writer.h"
+#include "storm_files/cf_writer.h"
 
 namespace thunderhead::app {
 namespace {
@@ -140,7 +140,7 @@ absl::StatusOr<clouds::FitResult> FitWithProgress(const volume::RegularGrid& gri
 // Writes the balls' sum as a storm file, for comparison with the original.
 absl::Status WriteVolume(const FitFlags& flags, const clouds::MetaballCloud& cloud,
                          const volume::RegularGrid& grid) {
-  volume::CfCloud file;
+  storm_files::CfCloud file;
   file.grid = grid;
   file.quantity = cloud.quantity == "extinction" ? volume::Quantity::kExtinction
                                                  : volume::Quantity::kMassConcentration;
@@ -148,7 +148,7 @@ absl::Status WriteVolume(const FitFlags& flags, const clouds::MetaballCloud& clo
   file.title = absl::StrCat(cloud.balls.size(), " metaballs");
   file.source = absl::StrCat("thunderhead ", base::Version(), " fit");
   file.comment = absl::StrCat("approximates ", cloud.quantity, " of ", flags.storm);
-  return volume::WriteCfCloud(file, flags.volume);
+  return storm_files::WriteCfCloud(file, flags.volume);
 }
 
 absl::Status Fit(const FitFlags& flags) {

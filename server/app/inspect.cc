@@ -124,9 +124,9 @@ std::string Json(const v1::StormDescription& storm) {
 
 absl::Status Inspect(const InspectFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
                                OpenStorm(flags.storm));
-  const volume::StormInfo& storm = *store->Storms().front();
+  const storm_store::StormInfo& storm = *store->Storms().front();
   THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index, TimeOf(*store, flags.storm, flags.time_index));
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, store->Get(storm.id, time_index, {}));

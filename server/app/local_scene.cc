@@ -14,7 +14,8 @@ absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& 
   LocalScene local;
   THUNDERHEAD_ASSIGN_OR_RETURN(local.message, ReadScene(flags));
   THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(local.message));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store, OpenStorm(path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
+                               OpenStorm(path));
   THUNDERHEAD_RETURN_IF_ERROR(service::PrepareScene(
       *store, renderers::TechniqueRegistry::BuiltIn().Infos(), local.message));
   const auto time_index = static_cast<int>(local.message.time_index());

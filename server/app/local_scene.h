@@ -8,14 +8,14 @@
 #include "absl/status/statusor.h"
 #include "app/scene_file.h"
 #include "scene/scene.h"
+#include "storm_store/storm_store.h"
 #include "volume/hydrometeor_fields.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::app {
 
 struct LocalScene {
   std::string storm_id;
-  volume::StormInfo storm;
+  storm_store::StormInfo storm;
   v1::Scene message;  // completed: every default filled in
   scene::Scene scene;
   std::shared_ptr<const volume::HydrometeorFields> fields;

@@ -10,8 +10,8 @@
 #include "app/progress_bar.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
-#include "session/gl_frame_source.h"
-#include "volume/border_data.h"
+#include "drawing/gl_frame_source.h"
+#include "storm_store/border_data.h"
 
 namespace thunderhead::app {
 namespace {
@@ -38,26 +38,26 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
       absl::StrCat(status.message(), "; as it changed just now, it may still be being written"));
 }
 
-absl::StatusOr<std::shared_ptr<volume::StormStore>> OpenStorm(const std::string& path) {
-  volume::StormStoreOptions options;
+absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path) {
+  storm_store::StormStoreOptions options;
   options.formats = ConfinedFormats();
-  options.links = volume::EveryLink();
+  options.links = storm_store::EveryLink();
   options.read_ahead = 0;
-  options.borders = volume::BorderData::Find(volume::kBorderFolder);
-  auto opened = volume::StormStore::Open({path}, options);
+  options.borders = storm_store::BorderData::Find(storm_store::kBorderFolder);
+  auto opened = storm_store::StormStore::Open({path}, options);
   if (!opened.ok()) return AsFileProblem(path, opened.status());
-  std::shared_ptr<volume::StormStore> store = *std::move(opened);
-  const std::vector<volume::StormInfoPtr> storms = store->Storms();
+  std::shared_ptr<storm_store::StormStore> store = *std::move(opened);
+  const std::vector<storm_store::StormInfoPtr> storms = store->Storms();
   if (storms.size() == 1) return store;
   const std::string names =
-      absl::StrJoin(storms, ", ", [](std::string* out, const volume::StormInfoPtr& storm) {
+      absl::StrJoin(storms, ", ", [](std::string* out, const storm_store::StormInfoPtr& storm) {
         absl::StrAppend(out, storm->files.front());
       });
   return absl::InvalidArgumentError(
       absl::StrCat(path, " holds ", storms.size(), " storms; name one of ", names));
 }
 
-absl::StatusOr<int> TimeOf(const volume::StormStore& store, const std::string& path,
+absl::StatusOr<int> TimeOf(const storm_store::StormStore& store, const std::string& path,
                            std::optional<int> wanted) {
   const int last = static_cast<int>(store.Storms().front()->times.size()) - 1;
   const int time_index = wanted.value_or(last);
@@ -66,8 +66,8 @@ absl::StatusOr<int> TimeOf(const volume::StormStore& store, const std::string& p
       absl::StrCat("--time is ", time_index, "; ", path, " has times 0 to ", last));
 }
 
-absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
-  const volume::StormInfo& storm = *store.Storms().front();
+absl::Status ReadWithProgress(storm_store::StormStore& store, int time_index) {
+  const storm_store::StormInfo& storm = *store.Storms().front();
   ProgressBar bar(absl::StrCat("reading ", storm.id));
   return AsFileProblem(
       storm.times[static_cast<std::size_t>(time_index)].file,
@@ -76,17 +76,18 @@ absl::Status ReadWithProgress(volume::StormStore& store, int time_index) {
 
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
     const std::string& path, std::optional<int> wanted) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store, OpenStorm(path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
+                               OpenStorm(path));
   THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index, TimeOf(*store, path, wanted));
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
   return store->Get(store->Storms().front()->id, time_index, {});
 }
 
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
-    std::shared_ptr<volume::StormStore> store, const std::string& device) {
+    std::shared_ptr<storm_store::StormStore> store, const std::string& device) {
   service::ServerOptions options;
   options.render_loop.lanes_yield = false;
-  auto server = service::Server::Start(options, std::move(store), session::GlFrameSources(device));
+  auto server = service::Server::Start(options, std::move(store), drawing::GlFrameSources(device));
   // A device that is not there does not come by waiting.
   if (!server.ok() && !absl::IsInvalidArgument(server.status())) {
     return absl::FailedPreconditionError(server.status().message());

@@ -28,14 +28,14 @@ struct FramesFlags {
   bool json = false;
 };
 
-absl::StatusOr<FieldsPtr> Read(volume::StormStore& store, int time_index) {
+absl::StatusOr<FieldsPtr> Read(storm_store::StormStore& store, int time_index) {
   THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(store, time_index));
   return store.Get(store.Storms().front()->id, time_index, {});
 }
 
 // The requested time, or the one with the most condensate.
 absl::StatusOr<FieldsPtr> Choose(const FramesFlags& flags) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
                                OpenStorm(flags.storm));
   if (flags.time_index.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index,

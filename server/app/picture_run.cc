@@ -19,9 +19,9 @@
 #include "base/whole_file.h"
 #include "pipeline/plan.h"
 #include "pipeline/sha256.h"
-#include "volume/border_data.h"
-#include "volume/cached_storm_store.h"
-#include "volume/run_start.h"
+#include "storm_files/run_start.h"
+#include "storm_store/border_data.h"
+#include "storm_store/cached_storm_store.h"
 
 namespace thunderhead::app {
 namespace {
@@ -32,15 +32,16 @@ std::string Iso(absl::Time time) {
   return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
 }
 
-pipeline::ProductKey KeyOf(const volume::CataloguedStorm& storm, int time_index, bool assume_run) {
-  const volume::TimeSource& source = storm.sources[static_cast<std::size_t>(time_index)];
-  const volume::StormFile& file = storm.files[source.file];
+pipeline::ProductKey KeyOf(const storm_store::CataloguedStorm& storm, int time_index,
+                           bool assume_run) {
+  const storm_store::TimeSource& source = storm.sources[static_cast<std::size_t>(time_index)];
+  const storm_files::StormFile& file = storm.files[source.file];
   pipeline::ProductKey key;
   key.valid = file.times[source.record];
-  key.run = volume::RunStart(file);
+  key.run = storm_files::RunStart(file);
   key.time_index = time_index;
   if (!key.run.has_value() && assume_run) {
-    const volume::TimeSource& first = storm.sources.front();
+    const storm_store::TimeSource& first = storm.sources.front();
     key.run = storm.files[first.file].times[first.record];
   }
   return key;
@@ -68,12 +69,12 @@ bool IsOfInput(const absl::Status& status) {
 }  // namespace
 
 absl::StatusOr<std::vector<PlannedPicture>> PlanOf(
-    const PictureRunOptions& options, const std::vector<volume::CataloguedStorm>& storms,
+    const PictureRunOptions& options, const std::vector<storm_store::CataloguedStorm>& storms,
     std::size_t storm, const std::string& name, const std::vector<int>& times, bool assume_run) {
   std::vector<PlannedPicture> pictures;
-  const volume::CataloguedStorm& whole = storms[storm];
+  const storm_store::CataloguedStorm& whole = storms[storm];
   for (const int time_index : times) {
-    const volume::TimeSource& source = whole.sources[static_cast<std::size_t>(time_index)];
+    const storm_store::TimeSource& source = whole.sources[static_cast<std::size_t>(time_index)];
     for (std::size_t view = 0; view < options.views.size(); ++view) {
       PlannedPicture& picture = pictures.emplace_back();
       picture.storm = storm;
@@ -243,7 +244,7 @@ absl::Status PictureRun::Record(const std::string& path, pipeline::ManifestEntry
   return MarkDone(path, sha256);
 }
 
-absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormStore& store,
+absl::Status PictureRun::MakeOne(const PlannedPicture& picture, storm_store::StormStore& store,
                                  const std::shared_ptr<grpc::Channel>& channel,
                                  const std::string& device, const std::string& storm_id,
                                  const std::stop_token& stop, double& milliseconds,
@@ -285,7 +286,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, volume::StormSto
   return absl::OkStatus();
 }
 
-absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms,
+absl::Status PictureRun::Make(const std::vector<storm_store::CataloguedStorm>& storms,
                               std::vector<PlannedPicture>& pictures, RunProgress& progress,
                               const std::stop_token& stop) {
   progress.Plan(static_cast<int>(pictures.size()));
@@ -308,12 +309,12 @@ absl::Status PictureRun::Make(const std::vector<volume::CataloguedStorm>& storms
   if (missing.empty()) return absl::OkStatus();
 
   begun_.clear();
-  volume::StormStoreOptions store_options;
-  store_options.links = volume::EveryLink();
+  storm_store::StormStoreOptions store_options;
+  store_options.links = storm_store::EveryLink();
   store_options.read_ahead = 0;
-  store_options.borders = volume::BorderData::Find(volume::kBorderFolder);
-  const std::shared_ptr<volume::StormStore> store = volume::CachedStormStore::Owned(
-      std::make_shared<volume::CachedStormStore>(storms, store_options));
+  store_options.borders = storm_store::BorderData::Find(storm_store::kBorderFolder);
+  const std::shared_ptr<storm_store::StormStore> store = storm_store::CachedStormStore::Owned(
+      std::make_shared<storm_store::CachedStormStore>(storms, store_options));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                StartLocalService(store, options_.device));
   std::stop_source ending;

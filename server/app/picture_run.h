@@ -18,8 +18,8 @@
 #include "grpcpp/channel.h"
 #include "pipeline/manifest.h"
 #include "pipeline/product_name.h"
-#include "volume/storm_catalogue.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_catalogue.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::app {
 
@@ -41,7 +41,7 @@ struct PlannedPicture {
 // Every time in `times` of a storm in every view, under the storm's name `name`. `assume_run` takes
 // the run's first time as its start if the files do not tell. Errors: those of the names.
 absl::StatusOr<std::vector<PlannedPicture>> PlanOf(
-    const PictureRunOptions& options, const std::vector<volume::CataloguedStorm>& storms,
+    const PictureRunOptions& options, const std::vector<storm_store::CataloguedStorm>& storms,
     std::size_t storm, const std::string& name, const std::vector<int>& times, bool assume_run);
 
 // INVALID_ARGUMENT if two pictures would have one name.
@@ -65,7 +65,7 @@ class PictureRun {
   // Makes those of `pictures` that are missing, and sets their outcome. Pictures whose input is bad
   // or changes leave the others alone; other errors end the run and are returned: CANCELLED after
   // `stop`. Products that were recorded stay recorded.
-  absl::Status Make(const std::vector<volume::CataloguedStorm>& storms,
+  absl::Status Make(const std::vector<storm_store::CataloguedStorm>& storms,
                     std::vector<PlannedPicture>& pictures, RunProgress& progress,
                     const std::stop_token& stop);
 
@@ -93,7 +93,7 @@ class PictureRun {
       : options_(std::move(options)), manifest_(std::move(manifest)) {}
 
   absl::StatusOr<bool> IsMade(const PlannedPicture& picture);
-  absl::Status MakeOne(const PlannedPicture& picture, volume::StormStore& store,
+  absl::Status MakeOne(const PlannedPicture& picture, storm_store::StormStore& store,
                        const std::shared_ptr<grpc::Channel>& channel, const std::string& device,
                        const std::string& storm_id, const std::stop_token& stop,
                        double& milliseconds, PictureTimes& times);

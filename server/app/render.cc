@@ -70,7 +70,7 @@ absl::StatusOr<v1::RenderImageResponse> CallServer(const RenderFlags& flags,
 absl::StatusOr<v1::RenderImageResponse> CallHere(const RenderFlags& flags,
                                                  const v1::RenderImageRequest& request,
                                                  const Interruption& interruption) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<volume::StormStore> store,
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
                                OpenStorm(flags.storm));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                StartLocalService(store, flags.device));

@@ -20,8 +20,8 @@
 #include "base/status.h"
 #include "pipeline/plan.h"
 #include "spdlog/spdlog.h"
-#include "volume/storm_catalogue.h"
-#include "volume/storm_format.h"
+#include "storm_files/storm_format.h"
+#include "storm_store/storm_catalogue.h"
 
 namespace thunderhead::app {
 namespace {
@@ -35,7 +35,7 @@ struct SequenceFlags {
 
 // The storms and their files, as found.
 struct Found {
-  std::vector<volume::CataloguedStorm> storms;
+  std::vector<storm_store::CataloguedStorm> storms;
   // The places of storms' files among all, in the order of their names, the unreadable ones
   // included.
   std::map<std::string, std::size_t> places;
@@ -70,10 +70,10 @@ absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
 // Looks at each path. A file that cannot be read leaves the others alone.
 absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   Found found;
-  const volume::StormFormats formats = ConfinedFormats();
-  const volume::StormSearch search{
-      .describe = [&](const std::string& path) -> absl::StatusOr<volume::StormFile> {
-        auto file = volume::DescribeFile(path, formats);
+  const storm_files::StormFormats formats = ConfinedFormats();
+  const storm_store::StormSearch search{
+      .describe = [&](const std::string& path) -> absl::StatusOr<storm_files::StormFile> {
+        auto file = storm_store::DescribeFile(path, formats);
         // A folder may also hold files of other kinds.
         const bool other = absl::IsInvalidArgument(file.status());
         if (other && std::ranges::find(paths, path) == paths.end()) return file;
@@ -86,8 +86,8 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
       .on_unlisted = {},
       .on_folder = {},
       .examples = formats.Examples(),
-      .links = volume::EveryLink()};
-  auto storms = volume::FindStorms(paths, search);
+      .links = storm_store::EveryLink()};
+  auto storms = storm_store::FindStorms(paths, search);
   if (!storms.ok()) return AsFileProblem(storms.status());
   found.storms = *std::move(storms);
   for (const std::string& path : paths) {
@@ -126,7 +126,7 @@ absl::Status CheckCounts(const Found& found, const std::string& times,
 }
 
 absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(
-    const PictureRunOptions& options, const std::vector<volume::CataloguedStorm>& storms,
+    const PictureRunOptions& options, const std::vector<storm_store::CataloguedStorm>& storms,
     const std::string& times, bool assume_run) {
   std::vector<PlannedPicture> all;
   for (std::size_t storm = 0; storm < storms.size(); ++storm) {

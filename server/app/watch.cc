@@ -76,7 +76,7 @@ absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
 // The pictures of every ready file; those of files that are done count as made.
 absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
     const PictureRunOptions& options, const std::vector<FolderStorm>& storms,
-    const std::vector<volume::CataloguedStorm>& catalogue, const WatchedFolder& folder) {
+    const std::vector<storm_store::CataloguedStorm>& catalogue, const WatchedFolder& folder) {
   std::vector<PlannedPicture> all;
   for (std::size_t storm = 0; storm < storms.size(); ++storm) {
     std::vector<int> times(catalogue[storm].info.times.size());
@@ -188,7 +188,7 @@ absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, Picture
   if (folder.Unsettled().empty()) return absl::OkStatus();
   const std::vector<FolderStorm> storms = folder.Storms();
   TellNotes(storms, told);
-  std::vector<volume::CataloguedStorm> catalogue;
+  std::vector<storm_store::CataloguedStorm> catalogue;
   catalogue.reserve(storms.size());
   for (const FolderStorm& storm : storms) catalogue.push_back(storm.storm);
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<PlannedPicture> all,

@@ -103,7 +103,7 @@ void WatchedFolder::ForgetGone(const std::set<std::string>& there) {
 }
 
 void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progress) const {
-  absl::StatusOr<volume::StormFile> storm = formats_.Describe(path);
+  absl::StatusOr<storm_files::StormFile> storm = formats_.Describe(path);
   if (storm.ok()) {
     file.storm = *std::move(storm);
     file.state = State::kReady;
@@ -119,19 +119,19 @@ void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progr
 }
 
 std::vector<FolderStorm> WatchedFolder::Storms() const {
-  std::vector<volume::StormFile> files;
+  std::vector<storm_files::StormFile> files;
   for (const auto& [path, file] : known_) {
     if (file.storm.has_value() && file.state != State::kBad) files.push_back(*file.storm);
   }
   std::vector<FolderStorm> storms;
   std::set<std::string> ids;
-  for (std::vector<volume::StormFile>& run : volume::FilesOfRuns(std::move(files))) {
+  for (std::vector<storm_files::StormFile>& run : storm_store::FilesOfRuns(std::move(files))) {
     std::string name = NameOfFolder(folder_);
     if (run.front().domain > 1) {
       absl::StrAppend(&name, "-d", absl::Dec(run.front().domain, absl::kZeroPad2));
     }
     FolderStorm& storm = storms.emplace_back();
-    storm.storm = volume::AssembleStorm(name, std::move(run));
+    storm.storm = storm_store::AssembleStorm(name, std::move(run));
     std::string& id = storm.storm.info.id;
     storm.name = id;
     for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(storm.name, "-", copy);

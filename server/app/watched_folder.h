@@ -15,15 +15,15 @@
 #include "app/run_progress.h"
 #include "pipeline/manifest.h"
 #include "pipeline/readiness.h"
-#include "volume/storm_catalogue.h"
-#include "volume/storm_file.h"
+#include "storm_files/storm_file.h"
+#include "storm_store/storm_catalogue.h"
 
 namespace thunderhead::app {
 
 // A storm of a folder, under a name that stays the same as its files come.
 struct FolderStorm {
   std::string name;
-  volume::CataloguedStorm storm;
+  storm_store::CataloguedStorm storm;
 };
 
 class WatchedFolder {
@@ -66,7 +66,7 @@ class WatchedFolder {
     bool gone = false;  // when it had been drawn or found bad
     State state = State::kWaiting;
     bool refused = false;  // waits for a change, as it does not open
-    std::optional<volume::StormFile> storm;
+    std::optional<storm_files::StormFile> storm;
   };
 
   absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names,
@@ -81,7 +81,7 @@ class WatchedFolder {
   const std::string folder_;
   const std::string files_;
   const pipeline::ReadinessPolicy policy_;
-  const volume::StormFormats formats_ = ConfinedFormats();
+  const storm_files::StormFormats formats_ = ConfinedFormats();
   Time looked_ = Time::min();          // of the last look
   std::map<std::string, File> known_;  // by path
 };

@@ -4,8 +4,8 @@
 #include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "base/version.h"
-#include "volume/cf_writer.h"
-#include "volume/netcdf_file.h"
+#include "netcdf/netcdf_file.h"
+#include "storm_files/cf_writer.h"
 
 namespace thunderhead::clouds {
 namespace {
@@ -28,17 +28,17 @@ std::string Parameters(const CloudShape& shape, const CloudOrigin& origin) {
 absl::Status WriteGenerated(const CloudShape& shape, const CloudOrigin& origin,
                             const std::string& path, const GenerateObserver& observer,
                             const std::stop_token& stop) {
-  volume::CfCloud cloud;
+  storm_files::CfCloud cloud;
   cloud.grid = shape.grid;
   cloud.title = absl::StrFormat("%s, seed %d", origin.preset, origin.seed);
   cloud.source = kMaker + base::Version() + kCommand;
   cloud.comment = Parameters(shape, origin);
   THUNDERHEAD_ASSIGN_OR_RETURN(cloud.values, Generate(shape, observer, stop));
-  return volume::WriteCfCloud(cloud, path);
+  return storm_files::WriteCfCloud(cloud, path);
 }
 
 bool IsGenerated(const std::string& path) {
-  const auto file = volume::NetcdfFile::Open(path);
+  const auto file = netcdf::NetcdfFile::Open(path);
   if (!file.ok()) return false;
   const std::string source = file->TextAttribute("", "source").value_or("");
   return absl::StartsWith(source, kMaker) && absl::EndsWith(source, kCommand);

@@ -112,9 +112,9 @@ VdbMetadata OpticsOf(const scene::DrawnField& drawn, const volume::HydrometeorFi
   return metadata;
 }
 
-VdbMetadata OriginOf(const scene::Scene& scene, const volume::StormInfo& storm,
+VdbMetadata OriginOf(const scene::Scene& scene, const storm_store::StormInfo& storm,
                      const ExportOptions& options) {
-  const volume::StormTime& time = storm.times[static_cast<std::size_t>(scene.time_index)];
+  const storm_store::StormTime& time = storm.times[static_cast<std::size_t>(scene.time_index)];
   VdbMetadata metadata{{"creator", absl::StrCat("thunderhead ", base::Version())},
                        {"title", storm.title},
                        {"source_files", absl::StrJoin(storm.files, "\n")},
@@ -149,7 +149,8 @@ double Number(const VdbGrid& grid, const std::string& name) {
 }  // namespace
 
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, const Fields& fields,
-                                 const volume::StormInfo& storm, const ExportOptions& options) {
+                                 const storm_store::StormInfo& storm,
+                                 const ExportOptions& options) {
   // The fields as a technique shows them that leaves nothing out.
   scene::Scene shown = scene;
   shown.rendering.technique = scene::LightVolume{};

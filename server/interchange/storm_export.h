@@ -8,8 +8,8 @@
 #include "absl/status/statusor.h"
 #include "interchange/vdb_file.h"
 #include "scene/scene.h"
+#include "storm_store/storm_store.h"
 #include "volume/hydrometeor_fields.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::interchange {
 
@@ -32,7 +32,7 @@ struct ExportOptions {
 // `fields` alive. INVALID_ARGUMENT if an extinction is too large for a half float.
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene,
                                  const std::shared_ptr<const volume::HydrometeorFields>& fields,
-                                 const volume::StormInfo& storm, const ExportOptions& options);
+                                 const storm_store::StormInfo& storm, const ExportOptions& options);
 
 // The scene's settings for showing the grids of `file` in another program, as JSON: the view as in
 // scene/view.h, the sun, the picture's size, and albedo and asymmetry of each grid. World metres.

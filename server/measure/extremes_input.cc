@@ -8,7 +8,7 @@
 #include "base/half_float.h"
 #include "glm/gtc/packing.hpp"
 #include "measure/extremes_internal.h"
-#include "volume/field_scan.h"
+#include "storm_files/field_scan.h"
 
 namespace thunderhead::measure::internal {
 namespace {
@@ -17,8 +17,8 @@ constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // One layer of air, 1 m thick and of 1 kg/m3, with a column for each of `values`.
-volume::LayerAir AirOver(const std::vector<float>& values) {
-  volume::LayerAir air;
+storm_files::LayerAir AirOver(const std::vector<float>& values) {
+  storm_files::LayerAir air;
   air.levels = 1;
   air.columns = values.size();
   air.interface_height_m.assign(values.size(), 0.0F);
@@ -34,7 +34,7 @@ Extreme MixingRatios(const std::string& name, const std::vector<float>& values, 
   return {name, [=](Probe&) -> absl::StatusOr<Verdict> {
             std::vector<float> held = values;
             const volume::FieldStatistics found =
-                volume::MixingRatioToConcentration(AirOver(held), held);
+                storm_files::MixingRatioToConcentration(AirOver(held), held);
             float left = 0.0F;
             bool usable = true;
             for (const float value : held) {

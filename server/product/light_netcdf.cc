@@ -11,13 +11,13 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_replace.h"
 #include "base/status.h"
+#include "netcdf/netcdf_writer.h"
 #include "product/cf_grid_mapping.h"
-#include "volume/netcdf_writer.h"
 
 namespace thunderhead::product {
 namespace {
 
-using volume::NetcdfWriter;
+using netcdf::NetcdfWriter;
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 

@@ -15,24 +15,24 @@ constexpr std::chrono::milliseconds kDescriptionTime{60'000};
 // How long a file that made its reader fail is left alone while it stays the same.
 constexpr std::chrono::minutes kPause{10};
 
-class ConfinedRecordReader final : public volume::RecordReader {
+class ConfinedRecordReader final : public storm_files::RecordReader {
  public:
-  ConfinedRecordReader(std::shared_ptr<ConfinedFiles> files, volume::StormFile description)
+  ConfinedRecordReader(std::shared_ptr<ConfinedFiles> files, storm_files::StormFile description)
       : files_(std::move(files)), description_(std::move(description)) {}
 
   absl::StatusOr<volume::HydrometeorFields> Read(
-      std::size_t record, const std::optional<volume::VerticalGrid>& grid,
-      const volume::ReadCheckpoint& checkpoint) const override {
+      std::size_t record, const std::optional<storm_files::VerticalGrid>& grid,
+      const storm_files::ReadCheckpoint& checkpoint) const override {
     return files_->Read(description_, record, grid, checkpoint);
   }
 
-  absl::StatusOr<volume::VerticalGrid> ReadVerticalGrid(std::size_t record) const override {
+  absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(std::size_t record) const override {
     return files_->ReadVerticalGrid(description_.path, record);
   }
 
  private:
   const std::shared_ptr<ConfinedFiles> files_;
-  const volume::StormFile description_;
+  const storm_files::StormFile description_;
 };
 
 Request RequestFor(Wanted wanted, const std::string& path, std::size_t record = 0) {
@@ -59,7 +59,7 @@ absl::Status ConfinedFiles::Probe() {
 }
 
 absl::Status ConfinedFiles::Run(Request request, Reply wanted, std::chrono::milliseconds patience,
-                                const volume::ReadCheckpoint& checkpoint,
+                                const storm_files::ReadCheckpoint& checkpoint,
                                 const Readers::Take& take) {
   const std::string path = request.path;
   const std::optional<base::FileStamp> stamp = base::StampOf(path);
@@ -80,8 +80,8 @@ absl::Status ConfinedFiles::Run(Request request, Reply wanted, std::chrono::mill
   return status;
 }
 
-absl::StatusOr<volume::StormFile> ConfinedFiles::Describe(const std::string& path) {
-  volume::StormFile file;
+absl::StatusOr<storm_files::StormFile> ConfinedFiles::Describe(const std::string& path) {
+  storm_files::StormFile file;
   THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kDescription, path), Reply::kDescription,
                                   std::min(options_.limits.time, kDescriptionTime), {},
                                   [&file](Receiver& from_reader) {
@@ -94,8 +94,9 @@ absl::StatusOr<volume::StormFile> ConfinedFiles::Describe(const std::string& pat
 }
 
 absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
-    const volume::StormFile& of, std::size_t record,
-    const std::optional<volume::VerticalGrid>& grid, const volume::ReadCheckpoint& checkpoint) {
+    const storm_files::StormFile& of, std::size_t record,
+    const std::optional<storm_files::VerticalGrid>& grid,
+    const storm_files::ReadCheckpoint& checkpoint) {
   Request request = RequestFor(Wanted::kFields, of.path, record);
   request.grid = grid;
   volume::HydrometeorFields fields;
@@ -107,9 +108,9 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
   return fields;
 }
 
-absl::StatusOr<volume::VerticalGrid> ConfinedFiles::ReadVerticalGrid(const std::string& path,
-                                                                     std::size_t record) {
-  volume::VerticalGrid grid;
+absl::StatusOr<storm_files::VerticalGrid> ConfinedFiles::ReadVerticalGrid(const std::string& path,
+                                                                          std::size_t record) {
+  storm_files::VerticalGrid grid;
   THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kVerticalGrid, path, record), Reply::kGrid,
                                   options_.limits.time, {}, [&grid](Receiver& from_reader) {
                                     Visit(from_reader, grid);
@@ -118,8 +119,8 @@ absl::StatusOr<volume::VerticalGrid> ConfinedFiles::ReadVerticalGrid(const std::
   return grid;
 }
 
-volume::StormFormats Confined(volume::StormFormats formats,
-                              const std::shared_ptr<ConfinedFiles>& files) {
+storm_files::StormFormats Confined(storm_files::StormFormats formats,
+                                   const std::shared_ptr<ConfinedFiles>& files) {
   formats.LeaveTo([files](const std::string& path) { return files->Describe(path); });
   return formats;
 }

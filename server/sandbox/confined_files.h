@@ -14,8 +14,8 @@
 #include "base/file_stamp.h"
 #include "base/time_source.h"
 #include "sandbox/readers.h"
-#include "volume/storm_file.h"
-#include "volume/storm_format.h"
+#include "storm_files/storm_file.h"
+#include "storm_files/storm_format.h"
 
 namespace thunderhead::sandbox {
 
@@ -33,13 +33,14 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   // OK if this machine can confine a reader.
   absl::Status Probe();
 
-  absl::StatusOr<volume::StormFile> Describe(const std::string& path);
+  absl::StatusOr<storm_files::StormFile> Describe(const std::string& path);
   // `of` is the file's description.
-  absl::StatusOr<volume::HydrometeorFields> Read(const volume::StormFile& of, std::size_t record,
-                                                 const std::optional<volume::VerticalGrid>& grid,
-                                                 const volume::ReadCheckpoint& checkpoint);
-  absl::StatusOr<volume::VerticalGrid> ReadVerticalGrid(const std::string& path,
-                                                        std::size_t record);
+  absl::StatusOr<volume::HydrometeorFields> Read(
+      const storm_files::StormFile& of, std::size_t record,
+      const std::optional<storm_files::VerticalGrid>& grid,
+      const storm_files::ReadCheckpoint& checkpoint);
+  absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(const std::string& path,
+                                                             std::size_t record);
 
  private:
   // A file that made its reader fail, which would probably do so again.
@@ -51,7 +52,7 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
 
   // Asks a reader unless the file has made one fail lately and is still the same.
   absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
-                   const volume::ReadCheckpoint& checkpoint, const Readers::Take& take);
+                   const storm_files::ReadCheckpoint& checkpoint, const Readers::Take& take);
 
   const ConfinedOptions options_;
   Readers readers_;
@@ -60,7 +61,7 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
 };
 
 // `formats` with every file left to confined readers, which have the formats of the program.
-volume::StormFormats Confined(volume::StormFormats formats,
-                              const std::shared_ptr<ConfinedFiles>& files);
+storm_files::StormFormats Confined(storm_files::StormFormats formats,
+                                   const std::shared_ptr<ConfinedFiles>& files);
 
 }  // namespace thunderhead::sandbox

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "absl/time/time.h"
+#include "storm_files/storm_file.h"
 #include "volume/hydrometeor_fields.h"
-#include "volume/storm_file.h"
 
 namespace thunderhead::sandbox {
 
@@ -21,7 +21,7 @@ struct Request {
   std::string version;  // of the program that asks
   std::string path;     // for messages: the file itself is an open descriptor
   std::uint64_t record = 0;
-  std::optional<volume::VerticalGrid> grid;
+  std::optional<storm_files::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // that reading may take, the file itself left out
   std::uint64_t shared_bytes = 0;  // of the shared memory, an open descriptor; 0: there is none
   std::uint32_t processor_s = 0;
@@ -64,75 +64,114 @@ void Visit(Archive& archive, Note& note) {
 }
 
 template <typename Archive>
-void Visit(Archive& archive, volume::VerticalGrid& grid) {
+void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
   archive(grid);
 }
 
-// All but the reader and the version. Times travel as seconds and nanoseconds since 1970.
+// The functions below take each value apart into all of its members, so that one with a new member
+// does not compile until the member is sent as well.
+
+// All but what the program itself knows: the path, the reader, and which file it is. Times travel
+// as seconds and nanoseconds since 1970.
 template <typename Archive>
-void Visit(Archive& archive, volume::StormFile& file) {
-  archive(file.cells);
-  archive(file.dx_m);
-  archive(file.dy_m);
+void Visit(Archive& archive, storm_files::StormFile& file) {
+  auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg, longitude_deg,
+         projection, reader, version, id, device] = file;
+  archive(cells);
+  archive(dx_m);
+  archive(dy_m);
   std::vector<std::int64_t> seconds;
   std::vector<std::int64_t> nanoseconds;
-  for (const absl::Time time : file.times) {
+  for (const absl::Time time : times) {
     seconds.push_back(absl::ToUnixSeconds(time));
     nanoseconds.push_back(absl::ToInt64Nanoseconds(time - absl::FromUnixSeconds(seconds.back())));
   }
   archive(seconds);
   archive(nanoseconds);
-  file.times.clear();
+  times.clear();
   nanoseconds.resize(seconds.size());
   for (std::size_t i = 0; i < seconds.size(); ++i) {
-    file.times.push_back(absl::FromUnixSeconds(seconds[i]) + absl::Nanoseconds(nanoseconds[i]));
+    times.push_back(absl::FromUnixSeconds(seconds[i]) + absl::Nanoseconds(nanoseconds[i]));
   }
-  archive(file.fields);
-  archive(file.about);
-  archive(file.domain);
-  archive(file.run);
-  VisitOptional(archive, file.latitude_deg);
-  VisitOptional(archive, file.longitude_deg);
-  archive(file.projection);
+  archive(fields);
+  archive(about);
+  archive(domain);
+  archive(run);
+  VisitOptional(archive, latitude_deg);
+  VisitOptional(archive, longitude_deg);
+  archive(projection);
+}
+
+template <typename Archive>
+void Visit(Archive& archive, volume::ParticleSizes& sizes) {
+  auto& [origin, name, inverse_radius, first_cell, mean_radius_m] = sizes;
+  archive(origin);
+  archive(name);
+  archive(inverse_radius);
+  archive(first_cell);
+  archive(mean_radius_m);
 }
 
 template <typename Archive>
 void Visit(Archive& archive, volume::HydrometeorField& field) {
-  archive(field.hydrometeor);
-  archive(field.variable);
-  archive(field.quantity);
-  archive(field.concentration_kg_per_m3);
-  archive(field.statistics);
-  archive(field.sizes.origin);
-  archive(field.sizes.name);
-  archive(field.sizes.inverse_radius);
-  archive(field.sizes.first_cell);
-  archive(field.sizes.mean_radius_m);
+  auto& [hydrometeor, variable, quantity, concentration_kg_per_m3, statistics, sizes] = field;
+  archive(hydrometeor);
+  archive(variable);
+  archive(quantity);
+  archive(concentration_kg_per_m3);
+  archive(statistics);
+  Visit(archive, sizes);
 }
 
 template <typename Archive>
+void Visit(Archive& archive, volume::LandSurface& land) {
+  auto& [texels, mean_albedo, mean_reflectance] = land;
+  archive(texels);
+  archive(mean_albedo);
+  archive(mean_reflectance);
+}
+
+template <typename Archive>
+void Visit(Archive& archive, volume::AirDensity& air) {
+  auto& [blocks, kg_per_m3] = air;
+  archive(blocks);
+  archive(kg_per_m3);
+}
+
+template <typename Archive>
+void Visit(Archive& archive, volume::AirMotion& motion) {
+  auto& [source, variable, turbulence, ascent, shear_m_per_s, steering_m_per_s, time_s] = motion;
+  archive(source);
+  archive(variable);
+  archive(turbulence);
+  archive(ascent);
+  archive(shear_m_per_s);
+  archive(steering_m_per_s);
+  archive(time_s);
+}
+
+template <typename Archive>
+void Visit(Archive& archive, volume::RegularGrid& grid) {
+  auto& [cells, spacing_m, low_corner_m] = grid;
+  archive(cells);
+  archive(spacing_m);
+  archive(low_corner_m);
+}
+
+// All but the borders, which the store adds.
+template <typename Archive>
 void Visit(Archive& archive, volume::HydrometeorFields& fields) {
-  archive(fields.grid.cells);
-  archive(fields.grid.spacing_m);
-  archive(fields.grid.low_corner_m);
-  auto count = static_cast<std::uint32_t>(fields.fields.size());
+  auto& [grid, of_hydrometeors, terrain_height_m, land, borders, motion, air, condensate] = fields;
+  Visit(archive, grid);
+  auto count = static_cast<std::uint32_t>(of_hydrometeors.size());
   archive(count);
-  fields.fields.resize(std::min<std::size_t>(count, physics::kHydrometeorCount));
-  for (volume::HydrometeorField& field : fields.fields) Visit(archive, field);
-  archive(fields.terrain_height_m);
-  archive(fields.land.texels);
-  archive(fields.land.mean_albedo);
-  archive(fields.land.mean_reflectance);
-  archive(fields.air.blocks);
-  archive(fields.air.kg_per_m3);
-  archive(fields.motion.source);
-  archive(fields.motion.variable);
-  archive(fields.motion.turbulence);
-  archive(fields.motion.ascent);
-  archive(fields.motion.shear_m_per_s);
-  archive(fields.motion.steering_m_per_s);
-  archive(fields.motion.time_s);
-  archive(fields.condensate);
+  of_hydrometeors.resize(std::min<std::size_t>(count, physics::kHydrometeorCount));
+  for (volume::HydrometeorField& field : of_hydrometeors) Visit(archive, field);
+  archive(terrain_height_m);
+  Visit(archive, land);
+  Visit(archive, air);
+  Visit(archive, motion);
+  archive(condensate);
 }
 
 }  // namespace thunderhead::sandbox

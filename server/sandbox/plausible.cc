@@ -145,13 +145,14 @@ absl::Status CheckAir(const volume::AirDensity& air, const glm::ivec3& cells) {
 
 }  // namespace
 
-absl::Status CheckPlausible(const volume::StormFile& file) {
+absl::Status CheckPlausible(const storm_files::StormFile& file) {
   THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(file.cells), "the number of its cells"));
   THUNDERHEAD_RETURN_IF_ERROR(
       Require(Within(file.dx_m, 1e-6, kFarthest_m) && Within(file.dy_m, 1e-6, kFarthest_m),
               "the size of its cells"));
-  THUNDERHEAD_RETURN_IF_ERROR(Require(!file.times.empty() && file.times.size() <= volume::kMaxTimes,
-                                      "the number of its times"));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Require(!file.times.empty() && file.times.size() <= storm_files::kMaxTimes,
+              "the number of its times"));
   static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
   static const absl::Time kLast = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
   const bool in_time = std::ranges::all_of(
@@ -165,7 +166,7 @@ absl::Status CheckPlausible(const volume::StormFile& file) {
   return Require(place, "its place");
 }
 
-absl::Status CheckPlausible(const volume::VerticalGrid& grid) {
+absl::Status CheckPlausible(const storm_files::VerticalGrid& grid) {
   return Require(grid.cells >= 1 && grid.cells <= kMaxCells &&
                      Within(grid.low_m, -kFarthest_m, kFarthest_m) &&
                      Within(grid.spacing_m, 1e-6, kFarthest_m),
@@ -173,7 +174,7 @@ absl::Status CheckPlausible(const volume::VerticalGrid& grid) {
 }
 
 absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
-                            const volume::StormFile& file) {
+                            const storm_files::StormFile& file) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckGrid(fields.grid));
   const glm::ivec3 cells = fields.grid.cells;
   THUNDERHEAD_RETURN_IF_ERROR(

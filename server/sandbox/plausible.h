@@ -3,17 +3,18 @@
 #pragma once
 
 #include "absl/status/status.h"
+#include "storm_files/storm_file.h"
+#include "storm_files/vertical_remap.h"
 #include "volume/hydrometeor_fields.h"
-#include "volume/storm_file.h"
-#include "volume/vertical_remap.h"
 
 namespace thunderhead::sandbox {
 
 // INVALID_ARGUMENT names the member at fault.
-absl::Status CheckPlausible(const volume::StormFile& file);
-absl::Status CheckPlausible(const volume::VerticalGrid& grid);
+absl::Status CheckPlausible(const storm_files::StormFile& file);
+absl::Status CheckPlausible(const storm_files::VerticalGrid& grid);
 // `file` is the description of the file that the fields are of; another number of columns means
 // that the file was replaced, or that the reader lies.
-absl::Status CheckPlausible(const volume::HydrometeorFields& fields, const volume::StormFile& file);
+absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
+                            const storm_files::StormFile& file);
 
 }  // namespace thunderhead::sandbox

@@ -24,13 +24,13 @@
 #include "base/guarded.h"
 #include "base/status.h"
 #include "base/version.h"
+#include "netcdf/netcdf_file.h"
 #include "sandbox/archive.h"
 #include "sandbox/confinement.h"
 #include "sandbox/messages.h"
 #include "spdlog/sinks/base_sink.h"
 #include "spdlog/spdlog.h"
-#include "volume/netcdf_file.h"
-#include "volume/storm_catalogue.h"
+#include "storm_store/storm_catalogue.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -97,7 +97,7 @@ constexpr std::chrono::minutes kLongestRest{10};
 
 class Reader {
  public:
-  Reader(const volume::StormFormats& formats, std::span<std::byte> shared)
+  Reader(const storm_files::StormFormats& formats, std::span<std::byte> shared)
       : formats_(formats), shared_(shared) {}
 
   // Maps the file of the first request, and confines the process.
@@ -121,9 +121,9 @@ class Reader {
   // Describes the file, once for all requests.
   absl::Status Describe(const Request& request);
 
-  const volume::StormFormats& formats_;
+  const storm_files::StormFormats& formats_;
   const std::span<std::byte> shared_;
-  std::optional<volume::StormFile> file_;
+  std::optional<storm_files::StormFile> file_;
   std::shared_ptr<KeptLog> log_ = std::make_shared<KeptLog>();
 };
 
@@ -133,14 +133,14 @@ absl::Status Reader::Prepare(const Request& first) {
   if (first.wanted != Wanted::kProbe) {
     auto bytes = MapFile();
     if (!bytes.ok()) return base::Annotate(bytes.status(), first.path);
-    volume::NetcdfFile::ReadFromMemory(first.path, *bytes);
+    netcdf::NetcdfFile::ReadFromMemory(first.path, *bytes);
   }
   return Confine({first.memory_bytes, first.processor_s});
 }
 
 absl::Status Reader::Describe(const Request& request) {
   if (!file_.has_value()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(file_, volume::DescribeFile(request.path, formats_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(file_, storm_store::DescribeFile(request.path, formats_));
   }
   if (request.record < file_->times.size()) return absl::OkStatus();
   return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
@@ -157,7 +157,7 @@ absl::Status Reader::Answer(const Request& request) {
   if (request.wanted == Wanted::kDescription) {
     Send(Reply::kDescription, *file_);
   } else if (request.wanted == Wanted::kVerticalGrid) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(volume::VerticalGrid grid,
+    THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::VerticalGrid grid,
                                  file_->reader->ReadVerticalGrid(request.record));
     Send(Reply::kGrid, grid);
   } else {
@@ -181,7 +181,7 @@ void Reader::Tell(const absl::Status& error) {
 
 }  // namespace
 
-int ReadStormFile(const volume::StormFormats& formats) {
+int ReadStormFile(const storm_files::StormFormats& formats) {
   // Nobody waits for what is read after the server's end.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);

@@ -4,7 +4,7 @@
 // standard output.
 #pragma once
 
-#include "volume/storm_format.h"
+#include "storm_files/storm_format.h"
 
 namespace thunderhead::sandbox {
 
@@ -16,6 +16,6 @@ inline constexpr int kSharedDescriptor = 4;
 
 // Returns the exit status. The caller ends the process by _exit, as destructors of what a
 // hostile file may have overwritten must not run.
-int ReadStormFile(const volume::StormFormats& formats);
+int ReadStormFile(const storm_files::StormFormats& formats);
 
 }  // namespace thunderhead::sandbox

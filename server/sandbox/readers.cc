@@ -129,7 +129,7 @@ absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& 
 
 // Hears the reader out. Its notes are limited, as it could talk for ever.
 absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted,
-                    const volume::ReadCheckpoint& checkpoint, const Readers::Take& take,
+                    const storm_files::ReadCheckpoint& checkpoint, const Readers::Take& take,
                     const ReaderLimits& limits) {
   constexpr int kMaxNotes = 10'000;
   for (int notes = 0; notes < kMaxNotes; ++notes) {
@@ -224,7 +224,7 @@ Readers::Readers(const ReaderLimits& limits, const base::TimeSource& time, std::
 std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
                                          const Request& request, Reply wanted,
                                          milliseconds patience,
-                                         const volume::ReadCheckpoint& checkpoint,
+                                         const storm_files::ReadCheckpoint& checkpoint,
                                          const Take& take) {
   reader->Ask(request);
   ReaderLimits limits = limits_;
@@ -250,7 +250,7 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
 }
 
 absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
-                          const volume::ReadCheckpoint& checkpoint, const Take& take) {
+                          const storm_files::ReadCheckpoint& checkpoint, const Take& take) {
   request.version = base::Version();
   request.memory_bytes = MemoryOf(limits_);
   request.processor_s = static_cast<std::uint32_t>(

@@ -19,7 +19,7 @@
 #include "sandbox/archive.h"
 #include "sandbox/messages.h"
 #include "sandbox/started_reader.h"
-#include "volume/storm_file.h"
+#include "storm_files/storm_file.h"
 
 namespace thunderhead::sandbox {
 
@@ -76,14 +76,14 @@ class Readers {
   // Has the file read, within `patience`. `wanted` is the reply that `take` understands; errors of
   // the file come as they are. `checkpoint` may be empty.
   absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
-                   const volume::ReadCheckpoint& checkpoint, const Take& take);
+                   const storm_files::ReadCheckpoint& checkpoint, const Take& take);
 
  private:
   // Nothing if a reader that had rested has ended without a word.
   std::optional<absl::Status> Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
                                   const Request& request, Reply wanted,
                                   std::chrono::milliseconds patience,
-                                  const volume::ReadCheckpoint& checkpoint, const Take& take);
+                                  const storm_files::ReadCheckpoint& checkpoint, const Take& take);
 
   const ReaderLimits limits_;
   const base::TimeSource& time_;

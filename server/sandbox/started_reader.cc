@@ -22,9 +22,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "netcdf/netcdf_file.h"
 #include "sandbox/archive.h"
 #include "sandbox/reader_main.h"
-#include "volume/netcdf_file.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -210,7 +210,7 @@ absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::s
     const std::string place = PlaceOf(file);
     if (check_opened) THUNDERHEAD_RETURN_IF_ERROR(check_opened(first.path, place));
     // A folder may hold thousands of files of other kinds; none of them needs a process.
-    THUNDERHEAD_RETURN_IF_ERROR(volume::NetcdfFile::CheckStart(first.path, file.Get()));
+    THUNDERHEAD_RETURN_IF_ERROR(netcdf::NetcdfFile::CheckStart(first.path, file.Get()));
     stamp = base::StampOf(absl::StrCat("/proc/self/fd/", file.Get()));
     arrays = SharedArrays::Make(first.memory_bytes);
   }

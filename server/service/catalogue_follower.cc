@@ -20,36 +20,37 @@ constexpr std::chrono::milliseconds kBetweenAttempts{50};
 
 // True if what that time shows is another file's than before the change, or the storm has come
 // back.
-bool IsReplaced(const volume::StormChange& change, std::size_t time) {
+bool IsReplaced(const storm_store::StormChange& change, std::size_t time) {
   if (change.before == nullptr) return true;
-  const std::vector<volume::StormTime>& before = change.before->times;
+  const std::vector<storm_store::StormTime>& before = change.before->times;
   return time < before.size() && before[time].version != change.after->times[time].version;
 }
 
 }  // namespace
 
-std::optional<StormPlace> PlaceAfter(const volume::StormChange& change, std::uint32_t time_index) {
+std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
+                                     std::uint32_t time_index) {
   if (change.after == nullptr) return std::nullopt;
-  const std::vector<volume::StormTime>& after = change.after->times;
+  const std::vector<storm_store::StormTime>& after = change.after->times;
   if (change.before == nullptr) {
     const auto last = static_cast<std::uint32_t>(after.size() - 1);
     return StormPlace{change.after->id, std::min(time_index, last)};
   }
-  const std::vector<volume::StormTime>& before = change.before->times;
+  const std::vector<storm_store::StormTime>& before = change.before->times;
   const auto place = [&](std::size_t index) {
     return StormPlace{change.after->id, static_cast<std::uint32_t>(index)};
   };
   if (time_index + 1 >= before.size()) return place(after.size() - 1);
   // ISO 8601 sorts as the times do.
   const auto at = std::ranges::upper_bound(after, before[time_index].valid_time, {},
-                                           &volume::StormTime::valid_time);
+                                           &storm_store::StormTime::valid_time);
   return place(at == after.begin() ? 0 : static_cast<std::size_t>(at - after.begin()) - 1);
 }
 
-CatalogueFollower::CatalogueFollower(volume::StormStore& store, session::Sessions& sessions,
-                                     const session::RenderLoop& loop)
+CatalogueFollower::CatalogueFollower(storm_store::StormStore& store, session::Sessions& sessions,
+                                     const drawing::RenderLoop& loop)
     : store_(store), sessions_(sessions), loop_(loop) {
-  store_.Listen([this](const volume::CatalogueChange& change) { Follow(change); });
+  store_.Listen([this](const storm_store::CatalogueChange& change) { Follow(change); });
 }
 
 CatalogueFollower::~CatalogueFollower() { store_.Listen({}); }
@@ -66,10 +67,10 @@ std::string CatalogueFollower::IdNow(std::string id) const {
   return id;
 }
 
-void CatalogueFollower::Follow(const volume::CatalogueChange& change) {
+void CatalogueFollower::Follow(const storm_store::CatalogueChange& change) {
   {
     const std::lock_guard lock(mutex_);
-    for (const volume::StormChange& storm : change) {
+    for (const storm_store::StormChange& storm : change) {
       if (storm.before == nullptr || storm.after == nullptr) continue;
       if (storm.before->id != storm.after->id) renamed_[storm.before->id] = storm.after->id;
     }
@@ -86,13 +87,14 @@ void CatalogueFollower::Follow(const volume::CatalogueChange& change) {
 }
 
 // False if it is to be tried again.
-bool CatalogueFollower::Move(session::Session& session, const volume::CatalogueChange& change) {
+bool CatalogueFollower::Move(session::Session& session,
+                             const storm_store::CatalogueChange& change) {
   if (!session.Newest().has_value()) return true;
   absl::StatusOr<ReadScene> newest = NewestSceneOf(session);
   if (!newest.ok()) return true;
   v1::Scene& scene = newest->scene;
   // A storm that was gone comes back by its id, to those who could not be shown it.
-  const auto at = std::ranges::find_if(change, [&](const volume::StormChange& storm) {
+  const auto at = std::ranges::find_if(change, [&](const storm_store::StormChange& storm) {
     return (storm.before != nullptr ? storm.before : storm.after)->id == scene.storm_id();
   });
   if (at == change.end()) return true;

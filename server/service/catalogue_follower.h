@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "session/render_loop.h"
+#include "drawing/render_loop.h"
 #include "session/sessions.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -28,13 +28,14 @@ struct StormPlace {
 // Where a scene that shows that time of the storm before a change belongs after it: at the last
 // time if it was there, else at the same time, or where that is gone at the one before; in a storm
 // that was gone at the same index, or the last. Nothing if the storm is gone.
-std::optional<StormPlace> PlaceAfter(const volume::StormChange& change, std::uint32_t time_index);
+std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
+                                     std::uint32_t time_index);
 
 class CatalogueFollower {
  public:
   // Listens to the store as long as it lives; all must outlive it.
-  CatalogueFollower(volume::StormStore& store, session::Sessions& sessions,
-                    const session::RenderLoop& loop);
+  CatalogueFollower(storm_store::StormStore& store, session::Sessions& sessions,
+                    const drawing::RenderLoop& loop);
   // Waits for a change that is being followed.
   ~CatalogueFollower();
   CatalogueFollower(const CatalogueFollower&) = delete;
@@ -48,12 +49,12 @@ class CatalogueFollower {
   std::string IdNow(std::string id) const;
 
  private:
-  void Follow(const volume::CatalogueChange& change);
-  bool Move(session::Session& session, const volume::CatalogueChange& change);
+  void Follow(const storm_store::CatalogueChange& change);
+  bool Move(session::Session& session, const storm_store::CatalogueChange& change);
 
-  volume::StormStore& store_;
+  storm_store::StormStore& store_;
   session::Sessions& sessions_;
-  const session::RenderLoop& loop_;
+  const drawing::RenderLoop& loop_;
   std::atomic<std::uint64_t> changes_{0};
   mutable std::mutex mutex_;
   std::map<std::string, std::string> renamed_;

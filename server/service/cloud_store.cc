@@ -44,23 +44,23 @@ bool LiesIn(const std::string& folder, const std::string& file) {
 
 }  // namespace
 
-CloudStore::CloudStore(std::string path, volume::StormStore& store,
+CloudStore::CloudStore(std::string path, storm_store::StormStore& store,
                        std::shared_ptr<base::MemoryBudget> memory)
     : path_(std::move(path)),
       store_(store),
       memory_(memory != nullptr ? std::move(memory) : base::MemoryBudget::Unlimited()) {
   if (path_.empty()) return;
-  for (const volume::StormInfoPtr& storm : store_.Storms()) {
+  for (const storm_store::StormInfoPtr& storm : store_.Storms()) {
     if (storm->files.size() != 1 || !LiesIn(path_, storm->files[0])) continue;
     if (clouds::IsGenerated(storm->files[0])) files_[storm->id] = {storm->files[0], ""};
   }
 }
 
-absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& shape,
-                                                      const clouds::CloudOrigin& origin,
-                                                      const clouds::GenerateObserver& observer,
-                                                      const std::stop_token& stop,
-                                                      const std::string& owner) {
+absl::StatusOr<storm_store::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& shape,
+                                                           const clouds::CloudOrigin& origin,
+                                                           const clouds::GenerateObserver& observer,
+                                                           const std::stop_token& stop,
+                                                           const std::string& owner) {
   if (path_.empty()) {
     return base::WithDetails(
         absl::FailedPreconditionError(
@@ -89,7 +89,7 @@ absl::StatusOr<volume::StormInfoPtr> CloudStore::Make(const clouds::CloudShape& 
       memory_->Reserve(base::MemoryUse::kReading, shape.grid.CellCount() * kBytesPerCell,
                        "a cloud that is generated"));
   THUNDERHEAD_RETURN_IF_ERROR(clouds::WriteGenerated(shape, origin, path, observer, stop));
-  THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm, store_.Add(path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(storm_store::StormInfoPtr storm, store_.Add(path));
   const std::lock_guard files(mutex_);
   files_[storm->id] = {path, owner};
   used_ids_.insert(storm->id);

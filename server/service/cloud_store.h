@@ -16,7 +16,7 @@
 #include "base/memory_budget.h"
 #include "base/patient_calls.h"
 #include "clouds/cloud_file.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -25,18 +25,18 @@ class CloudStore {
   // `path` is the folder; if empty, no clouds are generated. Generated clouds that the storm store
   // has already loaded from the folder are those of an earlier server, and can be deleted too.
   // The memory taken to generate a cloud counts in `memory`, which may be null.
-  CloudStore(std::string path, volume::StormStore& store,
+  CloudStore(std::string path, storm_store::StormStore& store,
              std::shared_ptr<base::MemoryBudget> memory = nullptr);
 
   // Generates the cloud into a file of its own and adds it to the storm store, for the identity
   // `owner` (empty: nobody's). FAILED_PRECONDITION without a folder, RESOURCE_EXHAUSTED at the
   // maximum number, in all or of one identity since the server started, or without memory,
   // UNAVAILABLE during another call, DEADLINE_EXCEEDED if the folder's storage hangs as it begins.
-  absl::StatusOr<volume::StormInfoPtr> Make(const clouds::CloudShape& shape,
-                                            const clouds::CloudOrigin& origin,
-                                            const clouds::GenerateObserver& observer,
-                                            const std::stop_token& stop,
-                                            const std::string& owner = "");
+  absl::StatusOr<storm_store::StormInfoPtr> Make(const clouds::CloudShape& shape,
+                                                 const clouds::CloudOrigin& origin,
+                                                 const clouds::GenerateObserver& observer,
+                                                 const std::stop_token& stop,
+                                                 const std::string& owner = "");
 
   // True if the storm is one of these clouds.
   bool Holds(const std::string& storm_id) const;
@@ -58,7 +58,7 @@ class CloudStore {
   bool WasUsed(const std::string& id) const;
 
   const std::string path_;
-  volume::StormStore& store_;
+  storm_store::StormStore& store_;
   const std::shared_ptr<base::MemoryBudget> memory_;
   base::PatientCalls patient_{std::chrono::seconds(10)};  // for what the storage is asked
   std::mutex making_;                                     // held while a cloud is generated

@@ -17,7 +17,7 @@ void TellSessions(session::Sessions& sessions, const std::string& storm_id) {
     session->hub().Publish(
         {.scene_revision = newest->revision,
          .message = absl::StrCat("the cloud '", storm_id, "' was deleted; choose another storm"),
-         .code = session::Problem::Code::kStormGone});
+         .code = delivery::Problem::Code::kStormGone});
   }
 }
 

@@ -8,16 +8,16 @@
 namespace thunderhead::service {
 namespace {
 
-absl::StatusOr<volume::StormInfoPtr> CheckDescribe(const Engine& engine,
-                                                   const v1::DescribeStormRequest& request) {
+absl::StatusOr<storm_store::StormInfoPtr> CheckDescribe(const Engine& engine,
+                                                        const v1::DescribeStormRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
-  THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm,
+  THUNDERHEAD_ASSIGN_OR_RETURN(storm_store::StormInfoPtr storm,
                                FindStorm(engine.store, request.storm_id()));
   THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, request.time_index(), "time_index"));
   return storm;
 }
 
-absl::Status Describe(Engine& engine, const volume::StormInfo& storm, int time_index,
+absl::Status Describe(Engine& engine, const storm_store::StormInfo& storm, int time_index,
                       v1::DescribeStormResponse& response) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields,
                                ReadFields(engine.store, storm.id, time_index, "storm_id"));

@@ -16,7 +16,7 @@ void SaveThen(Engine& engine, session::SessionKeeper::Done done) {
 }
 
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
-    volume::StormStore& store, const std::string& storm_id, int time_index,
+    storm_store::StormStore& store, const std::string& storm_id, int time_index,
     const std::string& path) {
   auto fields = store.Get(storm_id, time_index, {});
   if (fields.ok()) return fields;

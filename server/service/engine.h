@@ -11,23 +11,23 @@
 #include "absl/status/statusor.h"
 #include "base/executor.h"
 #include "base/wake_signal.h"
+#include "drawing/render_loop.h"
 #include "service/cloud_store.h"
 #include "service/drain.h"
 #include "service/limits.h"
-#include "session/render_loop.h"
 #include "session/session_keeper.h"
 #include "session/sessions.h"
+#include "storm_store/storm_store.h"
 #include "thunderhead/v1/thunderhead.pb.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::service {
 
 class CatalogueFollower;
 
 struct Engine {
-  volume::StormStore& store;
+  storm_store::StormStore& store;
   session::Sessions& sessions;
-  session::RenderLoop& loop;
+  drawing::RenderLoop& loop;
   base::WakeSignal& wake;
   base::Executor& executor;
   CloudStore& clouds;
@@ -43,7 +43,7 @@ void SaveThen(Engine& engine, session::SessionKeeper::Done done);
 
 // The storm's fields at that time. An error names `path`, the request's field with the storm's id.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
-    volume::StormStore& store, const std::string& storm_id, int time_index,
+    storm_store::StormStore& store, const std::string& storm_id, int time_index,
     const std::string& path);
 
 // Frames the condensate if the camera needs it, then calls `then`: at once if it does not, else on

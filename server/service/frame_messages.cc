@@ -47,16 +47,16 @@ constexpr std::array kUnmetCodes = {
     std::pair{v1::Unmet::CODE_TIME_OUT_OF_REACH, accuracy::Unmet::Code::kTimeOutOfReach},
 };
 constexpr std::array kProblemCodes = {
-    std::pair{v1::Problem::CODE_INTERNAL, session::Problem::Code::kInternal},
-    std::pair{v1::Problem::CODE_STORM_GONE, session::Problem::Code::kStormGone},
-    std::pair{v1::Problem::CODE_STORM_UNREADABLE, session::Problem::Code::kStormUnreadable},
-    std::pair{v1::Problem::CODE_SCENE, session::Problem::Code::kScene},
-    std::pair{v1::Problem::CODE_BUSY, session::Problem::Code::kBusy},
+    std::pair{v1::Problem::CODE_INTERNAL, delivery::Problem::Code::kInternal},
+    std::pair{v1::Problem::CODE_STORM_GONE, delivery::Problem::Code::kStormGone},
+    std::pair{v1::Problem::CODE_STORM_UNREADABLE, delivery::Problem::Code::kStormUnreadable},
+    std::pair{v1::Problem::CODE_SCENE, delivery::Problem::Code::kScene},
+    std::pair{v1::Problem::CODE_BUSY, delivery::Problem::Code::kBusy},
 };
 
 }  // namespace
 
-void ToMessage(const session::Modelled& modelled, v1::Modelled& message) {
+void ToMessage(const delivery::Modelled& modelled, v1::Modelled& message) {
   const renderers::Content& content = modelled.content;
   for (physics::Hydrometeor field : content.fields) message.add_fields(ToMessage(field));
   message.set_technique(modelled.technique);
@@ -81,14 +81,14 @@ void ToMessage(const scene::StageTime& time, v1::StageCost& message) {
   message.set_milliseconds(static_cast<float>(time.milliseconds));
 }
 
-void ToMessage(const session::Refinement& refinement, v1::Refinement& message) {
+void ToMessage(const delivery::Refinement& refinement, v1::Refinement& message) {
   message.set_samples_per_pixel(static_cast<std::uint32_t>(refinement.samples_per_pixel));
   if (refinement.relative_error.has_value()) {
     message.set_relative_error(static_cast<float>(*refinement.relative_error));
   }
 }
 
-void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& message) {
+void ToMessage(const accuracy::AccuracyReport& report, v1::AccuracyReport& message) {
   ToMessage(report.technique, *message.mutable_rendering());
   message.set_slices(static_cast<std::uint32_t>(report.slices));
   message.set_image_scale(static_cast<float>(report.image_scale));
@@ -115,7 +115,7 @@ void ToMessage(const session::AccuracyReport& report, v1::AccuracyReport& messag
   }
 }
 
-void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
+void ToMessage(const delivery::EncodedFrame& frame, v1::Frame& message) {
   message.set_sequence(frame.sequence);
   message.set_scene_revision(frame.scene_revision);
   if (!frame.jpeg.empty()) message.set_jpeg(frame.jpeg);
@@ -137,7 +137,7 @@ void ToMessage(const session::EncodedFrame& frame, v1::Frame& message) {
   if (frame.accuracy.has_value()) ToMessage(*frame.accuracy, *message.mutable_accuracy());
 }
 
-void ToMessage(const session::Problem& problem, v1::Problem& message) {
+void ToMessage(const delivery::Problem& problem, v1::Problem& message) {
   message.set_scene_revision(problem.scene_revision);
   message.set_message(problem.message);
   message.set_code(MessageOf(kProblemCodes, problem.code));

@@ -24,7 +24,7 @@ absl::Status Make(Engine& engine, const std::string& owner, const clouds::CloudS
     if (context.IsCancelled()) stop.request_stop();
   };
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      volume::StormInfoPtr storm,
+      storm_store::StormInfoPtr storm,
       engine.clouds.Make(shape, OriginOf(request), observe, stop.get_token(), owner));
   ToMessage(*storm, *response.mutable_storm());
   response.mutable_storm()->set_deletable(true);

@@ -9,7 +9,7 @@ grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerCont
                                         const CallerRef& caller,
                                         const v1::GetServerInfoRequest* /*request*/,
                                         v1::GetServerInfoResponse* response) {
-  const session::DeviceInfo& device = engine.loop.Device();
+  const drawing::DeviceInfo& device = engine.loop.Device();
   response->set_version(base::Version());
   response->set_gl_renderer(device.gl_renderer);
   response->set_gl_version(device.gl_version);

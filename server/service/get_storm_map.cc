@@ -20,17 +20,18 @@ bool IsExtinction(const volume::HydrometeorField& field) {
   return field.quantity == volume::Quantity::kExtinction;
 }
 
-absl::StatusOr<volume::StormInfoPtr> CheckMap(const Engine& engine,
-                                              const v1::GetStormMapRequest& request) {
+absl::StatusOr<storm_store::StormInfoPtr> CheckMap(const Engine& engine,
+                                                   const v1::GetStormMapRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));
-  THUNDERHEAD_ASSIGN_OR_RETURN(volume::StormInfoPtr storm,
+  THUNDERHEAD_ASSIGN_OR_RETURN(storm_store::StormInfoPtr storm,
                                FindStorm(engine.store, request.storm_id()));
   THUNDERHEAD_RETURN_IF_ERROR(CheckTime(*storm, request.time_index(), "time_index"));
   return storm;
 }
 
 absl::Status NotThere(const v1::GetStormMapRequest& request, int index,
-                      const volume::StormInfo& storm, const volume::HydrometeorFields& fields) {
+                      const storm_store::StormInfo& storm,
+                      const volume::HydrometeorFields& fields) {
   const std::string names =
       absl::StrJoin(fields.fields, ", ", [](std::string* out, const auto& field) {
         out->append(v1::Hydrometeor_Name(ToMessage(field.hydrometeor)));
@@ -44,7 +45,7 @@ absl::Status NotThere(const v1::GetStormMapRequest& request, int index,
 
 // Indices of the fields to add up, each once. Water paths and optical depths have no sum.
 absl::StatusOr<std::vector<std::size_t>> FieldsAdded(const v1::GetStormMapRequest& request,
-                                                     const volume::StormInfo& storm,
+                                                     const storm_store::StormInfo& storm,
                                                      const volume::HydrometeorFields& fields) {
   std::vector<std::size_t> added;
   for (int i = 0; i < request.fields_size(); ++i) {
@@ -71,7 +72,7 @@ absl::StatusOr<std::vector<std::size_t>> FieldsAdded(const v1::GetStormMapReques
   return added;
 }
 
-absl::Status Map(Engine& engine, const volume::StormInfo& storm,
+absl::Status Map(Engine& engine, const storm_store::StormInfo& storm,
                  const v1::GetStormMapRequest& request, v1::GetStormMapResponse& response) {
   const int time_index = static_cast<int>(request.time_index());
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields,

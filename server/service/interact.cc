@@ -260,11 +260,11 @@ class InteractCall : public InteractReactor,
     if (watched_ == nullptr) return std::nullopt;
     const auto event = watched_->hub().Take(watcher_id_);
     if (!event.has_value()) return std::nullopt;
-    if (const auto* frame = std::get_if<std::shared_ptr<const session::EncodedFrame>>(&*event)) {
+    if (const auto* frame = std::get_if<std::shared_ptr<const delivery::EncodedFrame>>(&*event)) {
       return FrameResponse(*frame, watched_ != session_);
     }
     v1::InteractResponse response;
-    ToMessage(std::get<session::Problem>(*event), *response.mutable_problem());
+    ToMessage(std::get<delivery::Problem>(*event), *response.mutable_problem());
     response.mutable_problem()->set_own_view(watched_ != session_);
     return ResponseOf(response);
   }
@@ -413,7 +413,7 @@ class InteractCall : public InteractReactor,
   }
 
   // Needs mutex_.
-  session::ViewerWants WantsOf(const v1::Window& window) const {
+  delivery::ViewerWants WantsOf(const v1::Window& window) const {
     return {.window_width_px = static_cast<int>(window.width_px()),
             .frames_per_second = window.frames_per_second(),
             .adapts = true,
@@ -476,7 +476,7 @@ class InteractCall : public InteractReactor,
   bool hidden_ = false;
   bool takes_video_ = false;
   bool takes_stills_ = false;
-  session::ViewerWants wants_;
+  delivery::ViewerWants wants_;
   std::shared_ptr<session::Session> watched_;  // whose frames come
   std::uint64_t watcher_id_ = 0;               // in its hub
   std::uint64_t told_doubts_ = 0;

@@ -89,13 +89,13 @@ session::AudienceFormat InteractFormat() {
   return {PresenceOf, PointersOf, MarksOf, MarksChangeOf, TimesInMemoryOf};
 }
 
-std::string SerializedFrame(const session::EncodedFrame& frame) {
+std::string SerializedFrame(const delivery::EncodedFrame& frame) {
   v1::Frame message;
   ToMessage(frame, message);
   return message.SerializeAsString();
 }
 
-grpc::ByteBuffer FrameResponse(const std::shared_ptr<const session::EncodedFrame>& frame,
+grpc::ByteBuffer FrameResponse(const std::shared_ptr<const delivery::EncodedFrame>& frame,
                                bool own_view) {
   std::string fields;
   AppendNumber(v1::Frame::kSequenceFieldNumber, frame->sequence, &fields);

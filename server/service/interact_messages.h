@@ -17,10 +17,10 @@ namespace thunderhead::service {
 // Whole responses as bytes, for session::Audience.
 session::AudienceFormat InteractFormat();
 // A frame's message without its sequence, for session::FrameEncoder.
-std::string SerializedFrame(const session::EncodedFrame& frame);
+std::string SerializedFrame(const delivery::EncodedFrame& frame);
 
 // Responses. Those of frames and scenes share the bytes of their largest part.
-grpc::ByteBuffer FrameResponse(const std::shared_ptr<const session::EncodedFrame>& frame,
+grpc::ByteBuffer FrameResponse(const std::shared_ptr<const delivery::EncodedFrame>& frame,
                                bool own_view);
 grpc::ByteBuffer SceneResponse(const session::NewestScene& scene);
 grpc::ByteBuffer ResponseOf(const v1::InteractResponse& response);

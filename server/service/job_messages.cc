@@ -97,7 +97,8 @@ jobs::Asker AskerOf(const access::Caller& caller) {
   return {caller.identity().name, caller.identity().role == access::Role::kOperator};
 }
 
-jobs::PictureOrder OrderOf(const volume::StormStore& store, const v1::RenderJobPicture& picture) {
+jobs::PictureOrder OrderOf(const storm_store::StormStore& store,
+                           const v1::RenderJobPicture& picture) {
   v1::RenderImageRequest request;
   *request.mutable_scene() = picture.scene();
   request.set_format(picture.format());

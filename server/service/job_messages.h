@@ -20,7 +20,8 @@ jobs::Asker AskerOf(const access::Caller& caller);
 
 // A picture as a job keeps it: with the storm and the valid time that its scene means now, if there
 // are such. Checks nothing else; what is wrong is found when it is drawn.
-jobs::PictureOrder OrderOf(const volume::StormStore& store, const v1::RenderJobPicture& picture);
+jobs::PictureOrder OrderOf(const storm_store::StormStore& store,
+                           const v1::RenderJobPicture& picture);
 
 // Where a job's results are at the HTTP port: "/results/KEY".
 std::string ResultPathOf(const std::string& result_key);

@@ -95,10 +95,10 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
     input_.set_device(engine_.loop.Device().device);
     // An order without a time is found wrong as for any picture.
     if (order.valid_time.empty()) return absl::OkStatus();
-    THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm,
+    THUNDERHEAD_ASSIGN_OR_RETURN(const storm_store::StormInfoPtr storm,
                                  FindStorm(engine_.store, scene.storm_id()));
     const auto time =
-        std::ranges::find(storm->times, order.valid_time, &volume::StormTime::valid_time);
+        std::ranges::find(storm->times, order.valid_time, &storm_store::StormTime::valid_time);
     if (time == storm->times.end()) {
       return base::WithDetails(
           absl::NotFoundError(absl::StrCat("storm '", storm->id, "' has no time ", order.valid_time,

@@ -8,7 +8,7 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
                                      const CallerRef& caller,
                                      const v1::ListStormsRequest* /*request*/,
                                      v1::ListStormsResponse* response) {
-  for (const volume::StormInfoPtr& storm : engine.store.Storms()) {
+  for (const storm_store::StormInfoPtr& storm : engine.store.Storms()) {
     v1::StormSummary& summary = *response->add_storms();
     ToMessage(*storm, summary);
     summary.set_deletable(engine.clouds.Holds(storm->id));

@@ -21,7 +21,7 @@
 namespace thunderhead::service {
 
 // The call that the requests come from. Whatever is on its way to an answer holds it.
-class Asker : public session::Viewer {
+class Asker : public delivery::Viewer {
  public:
   // The answer to a request comes later, by Settle.
   virtual void Await() = 0;

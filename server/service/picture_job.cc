@@ -24,9 +24,9 @@ namespace {
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 // The picture as light. Its estimated error is not known yet.
-absl::StatusOr<std::string> EncodeLight(session::DisplayFrame& picture,
+absl::StatusOr<std::string> EncodeLight(drawing::DisplayFrame& picture,
                                         const volume::HydrometeorFields& fields,
-                                        const volume::StormInfo* storm,
+                                        const storm_store::StormInfo* storm,
                                         const v1::RenderImageResponse& response) {
   scene::AddOpticalDepths(ToScene(response.scene()), fields, &*picture.linear);
   picture::ExrAttributes attributes{.texts = {}, .numbers = {{kErrorText, kUnknown}}};
@@ -35,7 +35,7 @@ absl::StatusOr<std::string> EncodeLight(session::DisplayFrame& picture,
 }
 
 // Takes the picture's pixels.
-absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest& request,
+absl::Status Encode(drawing::DisplayFrame& picture, const v1::RenderImageRequest& request,
                     v1::RenderImageResponse& response) {
   const bool jpeg = request.format() == v1::IMAGE_FORMAT_JPEG;
   const int quality = static_cast<int>(response.scene().output().jpeg_quality());
@@ -48,7 +48,7 @@ absl::Status Encode(session::DisplayFrame& picture, const v1::RenderImageRequest
   return absl::OkStatus();
 }
 
-void Describe(const session::DisplayFrame& picture, double encode_ms,
+void Describe(const drawing::DisplayFrame& picture, double encode_ms,
               v1::RenderImageResponse& response) {
   for (const scene::StageTime& time : picture.stages) ToMessage(time, *response.add_stages());
   ToMessage({scene::FrameStage::kEncode, encode_ms}, *response.add_stages());
@@ -58,7 +58,7 @@ void Describe(const session::DisplayFrame& picture, double encode_ms,
 
 // Writes into a PNG what it shows, and into an OpenEXR file what was not known when it was encoded.
 // `storm` is null if it has gone since.
-void AddTexts(const volume::StormInfo* storm, v1::RenderImageResponse& response) {
+void AddTexts(const storm_store::StormInfo* storm, v1::RenderImageResponse& response) {
   if (response.format() == v1::IMAGE_FORMAT_EXR && response.has_accuracy()) {
     picture::SetExrNumber(kErrorText, response.accuracy().estimated_error(),
                           response.mutable_image());
@@ -79,9 +79,9 @@ void PictureJob::Begin() {
   if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
   engine_.loop.RenderImage(
       {ToScene(response_.scene()), [this] { return Read(); },
-       [this](session::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
-       [this](const absl::StatusOr<session::DisplayFrame>& picture) { Drawn(picture); },
-       [this](const session::ImageProgress& progress) { listener_.Progressed(progress); },
+       [this](drawing::DisplayFrame& picture) { return EncodeTimed(picture); }, cancelled_,
+       [this](const absl::StatusOr<drawing::DisplayFrame>& picture) { Drawn(picture); },
+       [this](const drawing::ImageProgress& progress) { listener_.Progressed(progress); },
        awaited_ == Awaited::kByNobody, request_.format() == v1::IMAGE_FORMAT_EXR,
        request_.error_seconds(), static_cast<double>(engine_.limits.max_render_time.count()),
        RenderedTooLong(engine_.limits.max_render_time), owner_});
@@ -105,7 +105,7 @@ absl::Status PictureJob::CompleteScene() {
                             "TECHNIQUE_FOR_SESSIONS_ONLY");
 }
 
-absl::StatusOr<session::ImageInput> PictureJob::Read() {
+absl::StatusOr<drawing::ImageInput> PictureJob::Read() {
   v1::Scene& scene = *response_.mutable_scene();
   THUNDERHEAD_ASSIGN_OR_RETURN(
       auto fields, ReadFields(engine_.store, scene.storm_id(), static_cast<int>(scene.time_index()),
@@ -114,15 +114,15 @@ absl::StatusOr<session::ImageInput> PictureJob::Read() {
   const scene::Scene value = ToScene(scene);
   ToMessage(scene::ViewOf(value, *fields), *response_.mutable_view());
   if (request_.format() == v1::IMAGE_FORMAT_EXR) fields_ = fields;
-  return session::ImageInput{std::move(fields), value.camera};
+  return drawing::ImageInput{std::move(fields), value.camera};
 }
 
-absl::Status PictureJob::EncodeTimed(session::DisplayFrame& picture) {
+absl::Status PictureJob::EncodeTimed(drawing::DisplayFrame& picture) {
   const base::Stopwatch stopwatch;
   response_.set_width_px(static_cast<std::uint32_t>(picture.width_px));
   response_.set_height_px(static_cast<std::uint32_t>(picture.height_px));
   if (request_.format() == v1::IMAGE_FORMAT_EXR) {
-    const volume::StormInfoPtr storm = engine_.store.Find(response_.scene().storm_id());
+    const storm_store::StormInfoPtr storm = engine_.store.Find(response_.scene().storm_id());
     THUNDERHEAD_ASSIGN_OR_RETURN(*response_.mutable_image(),
                                  EncodeLight(picture, *fields_, storm.get(), response_));
     response_.set_format(v1::IMAGE_FORMAT_EXR);
@@ -136,7 +136,7 @@ absl::Status PictureJob::EncodeTimed(session::DisplayFrame& picture) {
   return absl::OkStatus();
 }
 
-void PictureJob::Drawn(const absl::StatusOr<session::DisplayFrame>& picture) {
+void PictureJob::Drawn(const absl::StatusOr<drawing::DisplayFrame>& picture) {
   if (!picture.ok()) return End(OfScene(picture.status()));
   memory_ = picture->memory;
   Describe(*picture, encode_ms_, response_);

@@ -18,7 +18,7 @@ namespace thunderhead::service {
 class PictureListener {
  public:
   // Progress of tracing light. Must not block.
-  virtual void Progressed(const session::ImageProgress& /*progress*/) {}
+  virtual void Progressed(const drawing::ImageProgress& /*progress*/) {}
   // Called once, and last. If `status` is OK the response is complete.
   virtual void Ended(const absl::Status& status) = 0;
 
@@ -49,9 +49,9 @@ class PictureJob {
 
  private:
   absl::Status CompleteScene();
-  absl::StatusOr<session::ImageInput> Read();
-  absl::Status EncodeTimed(session::DisplayFrame& picture);
-  void Drawn(const absl::StatusOr<session::DisplayFrame>& picture);
+  absl::StatusOr<drawing::ImageInput> Read();
+  absl::Status EncodeTimed(drawing::DisplayFrame& picture);
+  void Drawn(const absl::StatusOr<drawing::DisplayFrame>& picture);
   void End(const absl::Status& status);
 
   Engine& engine_;

@@ -19,7 +19,7 @@ namespace {
 struct Asked {
   v1::ProbeRayRequest request;
   ReadScene scene;  // without a session at revision 0
-  volume::StormInfoPtr storm;
+  storm_store::StormInfoPtr storm;
 };
 
 absl::StatusOr<ReadScene> SceneOf(Engine& engine, const v1::ProbeRayRequest& request) {

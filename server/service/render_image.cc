@@ -74,7 +74,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   static constexpr double kMinInterval_ms = 200.0;
   static constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 
-  void Progressed(const session::ImageProgress& progress) override {
+  void Progressed(const drawing::ImageProgress& progress) override {
     {
       const std::lock_guard lock(mutex_);
       const bool too_soon =

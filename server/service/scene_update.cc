@@ -138,11 +138,11 @@ absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session) {
   return Read(newest->revision, *newest->serialized);
 }
 
-bool ShowScene(const volume::StormStore& store, session::Session& session, std::uint64_t revision,
-               const v1::Scene& scene) {
-  const volume::StormInfoPtr storm = store.Find(scene.storm_id());
+bool ShowScene(const storm_store::StormStore& store, session::Session& session,
+               std::uint64_t revision, const v1::Scene& scene) {
+  const storm_store::StormInfoPtr storm = store.Find(scene.storm_id());
   std::optional<std::string> domain;
-  if (storm != nullptr) domain = volume::DomainOf(*storm);
+  if (storm != nullptr) domain = storm_store::DomainOf(*storm);
   return session.Show(revision, ToScene(scene), scene.SerializeAsString(), domain);
 }
 

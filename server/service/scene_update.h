@@ -33,8 +33,8 @@ struct ReadScene {
 absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session);
 
 // As Session::Show, of a scene that is complete.
-bool ShowScene(const volume::StormStore& store, session::Session& session, std::uint64_t revision,
-               const v1::Scene& scene);
+bool ShowScene(const storm_store::StormStore& store, session::Session& session,
+               std::uint64_t revision, const v1::Scene& scene);
 
 // Completes the changed scene and shows it, then calls `done` with its revision: at once, or on
 // another thread if the storm must be read to place the camera. `may` says whether who asks may

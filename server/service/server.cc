@@ -87,7 +87,7 @@ void RefuseCompression(grpc::ServerBuilder& builder) {
 
 class RunningServer final : public Server {
  public:
-  RunningServer(const ServerOptions& options, std::shared_ptr<volume::StormStore> store)
+  RunningServer(const ServerOptions& options, std::shared_ptr<storm_store::StormStore> store)
       : store_(std::move(store)),
         session_store_(options.session_store),
         door_(options.door != nullptr ? options.door : OpenDoor()),
@@ -101,11 +101,11 @@ class RunningServer final : public Server {
 
   ~RunningServer() override { RunningServer::Shutdown(); }
 
-  absl::Status StartLoop(session::RenderLoopOptions options,
-                         const session::FrameSourceFactory& make_source) {
+  absl::Status StartLoop(drawing::RenderLoopOptions options,
+                         const drawing::FrameSourceFactory& make_source) {
     options.serialize_frame = SerializedFrame;
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        loop_, session::RenderLoop::Start(options, *store_, sessions_, wake_, make_source));
+        loop_, drawing::RenderLoop::Start(options, *store_, sessions_, wake_, make_source));
     return absl::OkStatus();
   }
 
@@ -185,7 +185,7 @@ class RunningServer final : public Server {
   }
 
   int Port() const override { return port_ != nullptr ? port_->Port() : 0; }
-  const session::DeviceInfo& Device() const override { return loop_->Device(); }
+  const drawing::DeviceInfo& Device() const override { return loop_->Device(); }
 
   std::shared_ptr<grpc::Channel> LocalChannel() override {
     grpc::ChannelArguments arguments;
@@ -263,7 +263,7 @@ class RunningServer final : public Server {
  private:
   base::WakeSignal wake_;
   base::WakeSignal due_;
-  const std::shared_ptr<volume::StormStore> store_;
+  const std::shared_ptr<storm_store::StormStore> store_;
   const std::shared_ptr<session::SessionStore> session_store_;
   const std::shared_ptr<access::Door> door_;
   const Limits limits_;
@@ -275,7 +275,7 @@ class RunningServer final : public Server {
   session::Upkeep upkeep_{sessions_, *store_, due_};
   base::Executor executor_;
   CloudStore clouds_;
-  std::unique_ptr<session::RenderLoop> loop_;
+  std::unique_ptr<drawing::RenderLoop> loop_;
   std::unique_ptr<session::SessionKeeper> keeper_;
   std::unique_ptr<CatalogueFollower> catalogue_;
   std::unique_ptr<Engine> engine_;
@@ -291,8 +291,8 @@ class RunningServer final : public Server {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Server>> Server::Start(
-    const ServerOptions& options, std::shared_ptr<volume::StormStore> store,
-    const session::FrameSourceFactory& make_source) {
+    const ServerOptions& options, std::shared_ptr<storm_store::StormStore> store,
+    const drawing::FrameSourceFactory& make_source) {
   auto server = std::make_unique<RunningServer>(options, std::move(store));
   THUNDERHEAD_RETURN_IF_ERROR(server->StartLoop(options.render_loop, make_source));
   THUNDERHEAD_RETURN_IF_ERROR(server->StartKeeper());

@@ -14,14 +14,14 @@
 #include "access/door.h"
 #include "base/executor.h"
 #include "base/time_source.h"
+#include "drawing/frame_source.h"
+#include "drawing/render_loop.h"
 #include "jobs/jobs.h"
 #include "service/job_files.h"
 #include "service/limits.h"
-#include "session/frame_source.h"
-#include "session/render_loop.h"
 #include "session/session_store.h"
 #include "session/sessions.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -43,7 +43,7 @@ struct ServerOptions {
   std::string clouds_folder;  // for generated clouds; empty: none can be generated
   session::SessionsOptions sessions;
   std::shared_ptr<session::SessionStore> session_store;  // null: sessions end with the server
-  session::RenderLoopOptions render_loop;
+  drawing::RenderLoopOptions render_loop;
   jobs::JobsOptions jobs;
   JobFiles job_files;
   // Of blocking work: reading fields, making clouds. The storm store reads one after another, so a
@@ -73,14 +73,14 @@ class Server {
  public:
   // Returns when the frame source is ready and the port is open.
   static absl::StatusOr<std::unique_ptr<Server>> Start(
-      const ServerOptions& options, std::shared_ptr<volume::StormStore> store,
-      const session::FrameSourceFactory& make_source);
+      const ServerOptions& options, std::shared_ptr<storm_store::StormStore> store,
+      const drawing::FrameSourceFactory& make_source);
   virtual ~Server() = default;
 
   // The listening port, 0 if none.
   virtual int Port() const = 0;
   // The device that the server draws on.
-  virtual const session::DeviceInfo& Device() const = 0;
+  virtual const drawing::DeviceInfo& Device() const = 0;
   // A channel to this server from its own process, through a local socket.
   virtual std::shared_ptr<grpc::Channel> LocalChannel() = 0;
   virtual ServerLoad Load() const = 0;

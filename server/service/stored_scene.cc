@@ -9,7 +9,7 @@
 namespace thunderhead::service {
 
 absl::StatusOr<session::DecodedScene> DecodeStoredScene(
-    const volume::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
+    const storm_store::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
     const std::string& serialized) {
   v1::Scene scene;
   if (!scene.ParseFromString(serialized) || NeedsFraming(scene)) {
@@ -18,14 +18,14 @@ absl::StatusOr<session::DecodedScene> DecodeStoredScene(
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
-  const volume::StormInfoPtr storm = store.Find(scene.storm_id());
+  const storm_store::StormInfoPtr storm = store.Find(scene.storm_id());
   if (storm != nullptr && scene.time_index() < storm->times.size()) {
     FillSceneDefaults(scene, *storm);
   } else {
     FillDefaults(scene);
   }
   session::DecodedScene decoded{ToScene(scene), scene.SerializeAsString(), std::nullopt};
-  if (storm != nullptr) decoded.domain = volume::DomainOf(*storm);
+  if (storm != nullptr) decoded.domain = storm_store::DomainOf(*storm);
   return decoded;
 }
 

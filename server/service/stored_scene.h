@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "session/frame_source.h"
+#include "drawing/frame_source.h"
 #include "session/session_keeper.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::service {
 
 // Checks the scene as a client's, and fills in the defaults of fields that its writer did not know.
 // The storm may be gone, which whoever looks at the session is told.
 absl::StatusOr<session::DecodedScene> DecodeStoredScene(
-    const volume::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
+    const storm_store::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
     const std::string& serialized);
 
 }  // namespace thunderhead::service

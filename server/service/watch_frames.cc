@@ -22,7 +22,7 @@ using FramesReactor = grpc::ServerWriteReactor<v1::WatchFramesResponse>;
 // One viewer's stream. It lives until both gRPC and the hub have released it. There is at most one
 // pending write; Finish is called once, when there is none.
 class FrameStream : public FramesReactor,
-                    public session::Viewer,
+                    public delivery::Viewer,
                     public std::enable_shared_from_this<FrameStream> {
  public:
   // The session counts its onlooker already.
@@ -52,7 +52,7 @@ class FrameStream : public FramesReactor,
         delivery_(std::in_place, context, limits) {}
 
   void Wake() override {
-    std::optional<session::FrameEvent> event;
+    std::optional<delivery::FrameEvent> event;
     std::optional<grpc::Status> end;
     {
       const std::lock_guard lock(mutex_);
@@ -109,13 +109,13 @@ class FrameStream : public FramesReactor,
   }
 
   // `writing_` is set, so no other thread accesses the response.
-  void SetResponse(const session::FrameEvent& event) {
+  void SetResponse(const delivery::FrameEvent& event) {
     response_.set_viewer_id(viewer_id_);
-    if (const auto* frame = std::get_if<std::shared_ptr<const session::EncodedFrame>>(&event)) {
+    if (const auto* frame = std::get_if<std::shared_ptr<const delivery::EncodedFrame>>(&event)) {
       response_.clear_event();
       ToMessage(**frame, *response_.mutable_frame());
     } else {
-      ToMessage(std::get<session::Problem>(event), *response_.mutable_problem());
+      ToMessage(std::get<delivery::Problem>(event), *response_.mutable_problem());
     }
     SetScene();
   }

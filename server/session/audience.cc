@@ -21,7 +21,7 @@ Audience::Audience(const AudienceFormat& format, const Rules& rules, Board board
       board_(std::move(board)) {}
 
 std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
-                                            std::shared_ptr<Viewer> member, Time now,
+                                            std::shared_ptr<delivery::Viewer> member, Time now,
                                             std::size_t most, const std::string& owner_key,
                                             bool answers_checks) {
   std::unique_lock lock(mutex_);
@@ -30,7 +30,7 @@ std::optional<std::uint64_t> Audience::Join(Role role, const std::string& name,
     return std::nullopt;
   }
   const std::uint64_t id = roster_.Join(role, name, now, owner_key, answers_checks);
-  std::vector<std::shared_ptr<Viewer>> doubted;
+  std::vector<std::shared_ptr<delivery::Viewer>> doubted;
   for (const Person& person : roster_.people()) {
     if (person.doubted_at == now) doubted.push_back(members_.at(person.id).viewer);
   }
@@ -273,7 +273,7 @@ Told Audience::Scene() const {
 
 std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   std::unique_lock lock(mutex_);
-  std::vector<std::shared_ptr<Viewer>> gone;
+  std::vector<std::shared_ptr<delivery::Viewer>> gone;
   for (const std::uint64_t id : roster_.Advance(now)) {
     gone.push_back(members_.at(id).viewer);
     Forget(id);
@@ -305,7 +305,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   wait_for(!rays_.empty() || board_.pointers_revision() > pointers_.told_revision,
            pointers_.told_at + kPointersPause);
   if (const auto deadline = roster_.NextDeadline(); deadline.has_value()) wait_for(true, *deadline);
-  const auto members = told ? Members() : std::vector<std::shared_ptr<Viewer>>();
+  const auto members = told ? Members() : std::vector<std::shared_ptr<delivery::Viewer>>();
   lock.unlock();
   for (const auto& member : members) member->Wake();
   for (const auto& member : gone) member->Wake();
@@ -359,14 +359,14 @@ void Audience::Settle(std::unique_lock<std::mutex> lock, Time now) {
       !rays_.empty() || roster_.revision() > presence_.told_revision ||
       board_.marks_revision() > marks_.told_revision || scene_revision_ > scene_.told_revision ||
       board_.pointers_revision() > pointers_.told_revision || roster_.NextDeadline().has_value();
-  const auto members = told ? Members() : std::vector<std::shared_ptr<Viewer>>();
+  const auto members = told ? Members() : std::vector<std::shared_ptr<delivery::Viewer>>();
   lock.unlock();
   for (const auto& member : members) member->Wake();
   if (due) on_due_();
 }
 
-std::vector<std::shared_ptr<Viewer>> Audience::Members() const {
-  std::vector<std::shared_ptr<Viewer>> members;
+std::vector<std::shared_ptr<delivery::Viewer>> Audience::Members() const {
+  std::vector<std::shared_ptr<delivery::Viewer>> members;
   for (const auto& [id, member] : members_) members.push_back(member.viewer);
   return members;
 }

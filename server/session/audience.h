@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "delivery/frame_hub.h"
 #include "session/board.h"
-#include "session/frame_hub.h"
 #include "session/roster.h"
 
 namespace thunderhead::session {
@@ -75,7 +75,7 @@ class Audience {
   // any, become the newcomer's. None for a viewer where `most` people are, onlookers included; who
   // comes back may be one more, as the lost connection may not have ended yet.
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
-                                    std::shared_ptr<Viewer> member, Time now,
+                                    std::shared_ptr<delivery::Viewer> member, Time now,
                                     std::size_t most = std::numeric_limits<std::size_t>::max(),
                                     const std::string& owner_key = "", bool answers_checks = true);
   void Leave(std::uint64_t id, Time now);
@@ -148,7 +148,7 @@ class Audience {
   };
 
   struct Member {
-    std::shared_ptr<Viewer> viewer;
+    std::shared_ptr<delivery::Viewer> viewer;
     std::uint64_t joined_at = 0;  // the roster's revision
   };
 
@@ -161,7 +161,7 @@ class Audience {
   bool IsDue(const Subject& subject, std::uint64_t revision, std::chrono::milliseconds pause,
              Time now);
   void Settle(std::unique_lock<std::mutex> lock, Time now);
-  std::vector<std::shared_ptr<Viewer>> Members() const;  // needs mutex_
+  std::vector<std::shared_ptr<delivery::Viewer>> Members() const;  // needs mutex_
 
   const AudienceFormat format_;
   const std::function<void()> on_due_;

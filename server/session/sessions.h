@@ -18,12 +18,12 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/time_source.h"
+#include "delivery/frame_hub.h"
+#include "delivery/video_encoders.h"
 #include "scene/scene.h"
 #include "session/audience.h"
 #include "session/change_rhythm.h"
-#include "session/frame_hub.h"
 #include "session/session_record.h"
-#include "session/video_encoders.h"
 
 namespace thunderhead::session {
 
@@ -84,8 +84,8 @@ class Session {
   const std::string& owner() const { return owner_; }
   // True for what an OwnView draws, which nobody finds by a key.
   bool IsOwnView() const { return keys_.viewer.empty(); }
-  FrameHub& hub() { return hub_; }
-  VideoEncoders& video() { return video_; }
+  delivery::FrameHub& hub() { return hub_; }
+  delivery::VideoEncoders& video() { return video_; }
   Audience& audience() { return audience_; }
   // The time that the session, its hub and its audience go by.
   Clock::time_point Now() const { return time_.Now(); }
@@ -100,8 +100,8 @@ class Session {
   // The revision was taken for a scene that is not to be shown.
   void Drop(std::uint64_t revision);
   // Replaces the newest scene unless that has a newer revision. `domain` is its storm's
-  // (volume/storm_store.h), if that is known. False if the revision was dropped: changes were made
-  // without it.
+  // (storm_store/storm_store.h), if that is known. False if the revision was dropped: changes were
+  // made without it.
   bool Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "",
             const std::optional<std::string>& domain = std::nullopt);
   std::optional<NewestScene> Newest() const;
@@ -137,8 +137,8 @@ class Session {
   const std::string owner_;
   const SessionSignals signals_;
   const base::TimeSource& time_;
-  FrameHub hub_;
-  VideoEncoders video_;
+  delivery::FrameHub hub_;
+  delivery::VideoEncoders video_;
   Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;

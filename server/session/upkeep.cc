@@ -18,7 +18,7 @@ constexpr std::chrono::seconds kHeldTimesPause{1};
 // Sessions that are due at about the same time are looked after together.
 constexpr std::chrono::milliseconds kShortestPause{10};
 
-void TellOfMemory(Session& session, const volume::StormStore& store, Clock::time_point now) {
+void TellOfMemory(Session& session, const storm_store::StormStore& store, Clock::time_point now) {
   const std::optional<NewestScene> newest = session.Newest();
   if (!newest.has_value()) return;
   const std::string& storm_id = newest->scene->storm_id;
@@ -27,7 +27,7 @@ void TellOfMemory(Session& session, const volume::StormStore& store, Clock::time
 
 }  // namespace
 
-Upkeep::Upkeep(Sessions& sessions, volume::StormStore& store, base::WakeSignal& due)
+Upkeep::Upkeep(Sessions& sessions, storm_store::StormStore& store, base::WakeSignal& due)
     : sessions_(sessions), store_(store), due_(due), thread_([this] { Run(); }) {}
 
 Upkeep::~Upkeep() {
@@ -61,7 +61,7 @@ void Upkeep::Run() {
   }
 }
 
-glm::dvec3 PlaceSeen(const Session& session, volume::StormStore& store, const Ray& ray) {
+glm::dvec3 PlaceSeen(const Session& session, storm_store::StormStore& store, const Ray& ray) {
   const std::optional<NewestScene> newest = session.Newest();
   const auto fields =
       newest.has_value() ? store.Peek(newest->scene->storm_id, newest->scene->time_index) : nullptr;
@@ -72,7 +72,7 @@ glm::dvec3 PlaceSeen(const Session& session, volume::StormStore& store, const Ra
   return ray.origin_m + std::max(0.0, -glm::dot(ray.origin_m, ray.direction)) * ray.direction;
 }
 
-std::vector<glm::dvec3> LineSeen(const Session& session, volume::StormStore& store,
+std::vector<glm::dvec3> LineSeen(const Session& session, storm_store::StormStore& store,
                                  const std::vector<Ray>& rays) {
   std::vector<double> distances_m;
   distances_m.reserve(rays.size());

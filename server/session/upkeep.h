@@ -9,14 +9,14 @@
 
 #include "base/wake_signal.h"
 #include "session/sessions.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::session {
 
 class Upkeep {
  public:
   // `sessions` must notify `due` in their on_due, and give the time; all must outlive it.
-  Upkeep(Sessions& sessions, volume::StormStore& store, base::WakeSignal& due);
+  Upkeep(Sessions& sessions, storm_store::StormStore& store, base::WakeSignal& due);
   ~Upkeep();
   Upkeep(const Upkeep&) = delete;
   Upkeep& operator=(const Upkeep&) = delete;
@@ -25,7 +25,7 @@ class Upkeep {
   void Run();
 
   Sessions& sessions_;
-  volume::StormStore& store_;
+  storm_store::StormStore& store_;
   base::WakeSignal& due_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
@@ -33,10 +33,10 @@ class Upkeep {
 
 // Where the ray meets what the session shows: storm, ground, or near the storm's middle in the
 // clear sky and while the storm is not in memory.
-glm::dvec3 PlaceSeen(const Session& session, volume::StormStore& store, const Ray& ray);
+glm::dvec3 PlaceSeen(const Session& session, storm_store::StormStore& store, const Ray& ray);
 // A line along the rays, of which there must be one: at the middle of the distances to what they
 // meet, so that it keeps its shape when the camera turns.
-std::vector<glm::dvec3> LineSeen(const Session& session, volume::StormStore& store,
+std::vector<glm::dvec3> LineSeen(const Session& session, storm_store::StormStore& store,
                                  const std::vector<Ray>& rays);
 
 }  // namespace thunderhead::session

@@ -10,9 +10,9 @@
 #include "gtest/gtest.h"
 #include "renderers/scene_renderer.h"
 #include "scene/drawn_fields.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
-#include "volume/storm_store.h"
 #include "volume/strongest_core.h"
 
 namespace thunderhead {
@@ -20,7 +20,7 @@ namespace {
 
 std::shared_ptr<const volume::HydrometeorFields> Sample() {
   const auto store =
-      *volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc"}, {});
+      *storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc"}, {});
   return *store->Get(store->Storms().front()->id, 0, {});
 }
 

@@ -13,10 +13,10 @@
 #include "reference/scene_problem.h"
 #include "reference/trace_rays.h"
 #include "reference/trace_scene.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
-#include "volume/storm_store.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead::device_paths {
@@ -25,7 +25,7 @@ namespace {
 using Fields = std::shared_ptr<const volume::HydrometeorFields>;
 
 Fields SampleStorm() {
-  auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+  auto store = storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   EXPECT_TRUE(store.ok()) << store.status();
   auto fields = (*store)->Get((*store)->Storms().front()->id, 1, {});
   EXPECT_TRUE(fields.ok()) << fields.status();

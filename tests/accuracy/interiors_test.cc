@@ -10,9 +10,9 @@
 #include "gl/context.h"
 #include "gtest/gtest.h"
 #include "renderers/scene_renderer.h"
+#include "storm_store/storm_store.h"
 #include "tests/accuracy/slab_view.h"
 #include "tests/support/gl_context.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -40,7 +40,7 @@ class InteriorsTest : public testing::Test {
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     auto store =
-        volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc"}, {});
+        storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc"}, {});
     ASSERT_TRUE(store.ok()) << store.status();
     auto fields = (*store)->Get((*store)->Storms().front()->id, 2, {});
     ASSERT_TRUE(fields.ok()) << fields.status();

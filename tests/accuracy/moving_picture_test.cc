@@ -20,8 +20,8 @@
 #include "measure/image_error.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/gl_context.h"
-#include "volume/storm_store.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead::accuracy {
@@ -33,7 +33,7 @@ constexpr glm::ivec2 kSize_px(480, 270);
 constexpr FrameQuality kMoving{.sparse = true};
 
 Fields FieldsOf(const std::string& path, int time) {
-  auto store = volume::StormStore::Open({path}, {});
+  auto store = storm_store::StormStore::Open({path}, {});
   EXPECT_TRUE(store.ok()) << store.status();
   auto fields = (*store)->Get((*store)->Storms().front()->id, time, {});
   EXPECT_TRUE(fields.ok()) << fields.status();

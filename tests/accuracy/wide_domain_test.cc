@@ -10,9 +10,9 @@
 #include "gtest/gtest.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/wide_domain.h"
-#include "volume/storm_store.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead {
@@ -24,7 +24,8 @@ class WideDomainTest : public testing::Test {
     auto context = test_support::OpenContext();
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
-    auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+    auto store =
+        storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
     ASSERT_TRUE(store.ok()) << store.status();
     const auto storm = (*store)->Get((*store)->Storms().front()->id, 2, {});
     ASSERT_TRUE(storm.ok()) << storm.status();

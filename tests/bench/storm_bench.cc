@@ -8,8 +8,8 @@
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
 #include "spdlog/spdlog.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/techniques.h"
-#include "volume/storm_store.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead::bench {
@@ -21,7 +21,7 @@ constexpr int kWarmFrames = 2;  // the first also compiles shaders
 Sample Open() {
   Sample sample;
   auto context = gl::Context::Create("auto");
-  auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+  auto store = storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   if (!context.ok() || !store.ok()) {
     spdlog::error("{} {}", context.status().ToString(), store.status().ToString());
     std::exit(1);

@@ -48,11 +48,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   close(ends[1]);
   Receiver reply(ends[0], std::chrono::minutes(10), kAllowance);
   if (data[0] % 2 == 0) {
-    volume::StormFile file;
+    storm_files::StormFile file;
     Visit(reply, file);
     if (reply.Ok()) static_cast<void>(CheckPlausible(file));
   } else {
-    volume::StormFile file;
+    storm_files::StormFile file;
     volume::HydrometeorFields fields;
     Visit(reply, fields);
     file.cells = fields.grid.cells;

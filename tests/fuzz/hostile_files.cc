@@ -24,15 +24,15 @@
 #include "absl/strings/match.h"
 #include "base/guarded.h"
 #include "base/status.h"
+#include "netcdf/netcdf_file.h"
 #include "sandbox/confinement.h"
 #include "spdlog/spdlog.h"
+#include "storm_store/storm_catalogue.h"
 #include "tests/fuzz/dice.h"
 #include "tests/fuzz/foreign_storage.h"
 #include "tests/support/synthetic_cf.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
-#include "volume/netcdf_file.h"
-#include "volume/storm_catalogue.h"
 
 namespace {
 
@@ -185,9 +185,11 @@ void Damage(Dice& dice, std::string& bytes) {
 }
 
 absl::Status ReadStorm(const std::string& path) {
-  const volume::StormFormats formats = volume::StormFormats::BuiltIn();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormFile file, volume::DescribeFile(path, formats));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::VerticalGrid grid, file.reader->ReadVerticalGrid(0));
+  const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const storm_files::StormFile file,
+                               storm_store::DescribeFile(path, formats));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const storm_files::VerticalGrid grid,
+                               file.reader->ReadVerticalGrid(0));
   return file.reader->Read(file.times.size() - 1, grid, {}).status();
 }
 
@@ -269,7 +271,7 @@ int OutcomeOf(const std::string& path, const std::string& bytes) {
   if (child == 0) {
     spdlog::set_level(spdlog::level::off);
     NoteSignals();
-    volume::NetcdfFile::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
+    netcdf::NetcdfFile::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
     if (!sandbox::Confine({kMemory, 10}).ok()) _exit(kNotConfined);
     const absl::Status status = base::Guarded([&] { return ReadStorm(path); });
     const std::string message(status.message());

@@ -13,16 +13,16 @@
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/technique_infos.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::fuzz {
 
 // One storm of a few cells, without a file.
-class FixedStore final : public volume::StormStore {
+class FixedStore final : public storm_store::StormStore {
  public:
   FixedStore() {
-    auto info = std::make_shared<volume::StormInfo>();
+    auto info = std::make_shared<storm_store::StormInfo>();
     info->id = "storm";
     info->title = "A storm";
     info->times = {{"2013-05-20T20:00:00Z", 0.0}, {"2013-05-20T20:10:00Z", 600.0}};
@@ -43,13 +43,13 @@ class FixedStore final : public volume::StormStore {
     fields->condensate = {{0, 0, 0}, {4, 3, 2}};
     fields_ = std::move(fields);
   }
-  std::vector<volume::StormInfoPtr> Storms() const override { return {info_}; }
-  absl::StatusOr<volume::StormInfoPtr> Add(const std::string&) override {
+  std::vector<storm_store::StormInfoPtr> Storms() const override { return {info_}; }
+  absl::StatusOr<storm_store::StormInfoPtr> Add(const std::string&) override {
     return absl::UnimplementedError("");
   }
   absl::Status Remove(std::string_view) override { return absl::UnimplementedError(""); }
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
-      std::string_view, int, const volume::ReadProgress&) override {
+      std::string_view, int, const storm_store::ReadProgress&) override {
     return fields_;
   }
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view, int) override {
@@ -59,7 +59,7 @@ class FixedStore final : public volume::StormStore {
   std::size_t CachedBytes() const override { return 0; }
 
  private:
-  volume::StormInfoPtr info_;
+  storm_store::StormInfoPtr info_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
 };
 

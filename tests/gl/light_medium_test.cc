@@ -12,9 +12,9 @@
 #include "gtest/gtest.h"
 #include "scene/detailed_medium.h"
 #include "scene/drawn_fields.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::renderers {
 namespace {
@@ -26,7 +26,7 @@ class LightMediumTest : public testing::Test {
     ASSERT_TRUE(context.ok()) << context.status();
     context_ = *std::move(context);
     const auto store =
-        *volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+        *storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
     fields_ = *store->Get(store->Storms().front()->id, 1, {});
     scene_ = test_support::PlainScene();
     programs_ = std::make_shared<gl::ProgramCache>();

@@ -15,9 +15,9 @@
 #include "gtest/gtest.h"
 #include "renderers/scene_renderer.h"
 #include "scene/view.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead {
 namespace {
@@ -109,8 +109,8 @@ class PiecesTest : public testing::Test {
   };
 
   static void SetUpTestSuite() {
-    auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"},
-                                          {.read_ahead = 0});
+    auto store = storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"},
+                                               {.read_ahead = 0});
     ASSERT_TRUE(store.ok()) << store.status();
     auto fields = (*store)->Get("supercell", 1, {});
     ASSERT_TRUE(fields.ok()) << fields.status();

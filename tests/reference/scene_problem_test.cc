@@ -12,9 +12,9 @@
 #include "physics/sky.h"
 #include "reference/path_tracer.h"
 #include "scene/detailed_medium.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/techniques.h"
 #include "volume/extinction.h"
-#include "volume/storm_store.h"
 #include "volume/visible_box.h"
 
 namespace thunderhead::reference {
@@ -276,7 +276,8 @@ TEST(SurroundingsOf, SunBelowTheHorizonGivesNoSunlight) {
 // The sample storm under sunlight alone: all values are finite, and the middle of its sunlit side,
 // optically thick, is brighter than that of the other.
 TEST(Scene, SampleStorm) {
-  const auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+  const auto store =
+      storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   ASSERT_TRUE(store.ok()) << store.status();
   const auto fields = (*store)->Get((*store)->Storms().front()->id, 1, {});
   ASSERT_TRUE(fields.ok()) << fields.status();

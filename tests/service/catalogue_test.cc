@@ -14,31 +14,33 @@ using service::StormPlace;
 using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
 
-volume::StormInfoPtr StormOfHours(const std::string& id, const std::vector<int>& hours) {
-  volume::StormInfo storm;
+storm_store::StormInfoPtr StormOfHours(const std::string& id, const std::vector<int>& hours) {
+  storm_store::StormInfo storm;
   storm.id = id;
   for (const int hour : hours) storm.times.push_back({"2013-05-20T0" + std::to_string(hour), 0.0});
-  return std::make_shared<const volume::StormInfo>(storm);
+  return std::make_shared<const storm_store::StormInfo>(storm);
 }
 
 TEST(PlaceAfter, KeepsTheTimeAndFollowsTheNewest) {
-  const volume::StormChange grown{StormOfHours("file", {2, 4}),
-                                  StormOfHours("series", {1, 2, 4, 5})};
+  const storm_store::StormChange grown{StormOfHours("file", {2, 4}),
+                                       StormOfHours("series", {1, 2, 4, 5})};
   EXPECT_EQ(PlaceAfter(grown, 0), (StormPlace{"series", 1}));
   EXPECT_EQ(PlaceAfter(grown, 1), (StormPlace{"series", 3}));
 }
 
 TEST(PlaceAfter, GoesToTheTimeBeforeOneThatIsGone) {
-  const volume::StormChange shrunk{StormOfHours("a", {1, 2, 3, 4}), StormOfHours("a", {1, 3, 4})};
+  const storm_store::StormChange shrunk{StormOfHours("a", {1, 2, 3, 4}),
+                                        StormOfHours("a", {1, 3, 4})};
   EXPECT_EQ(PlaceAfter(shrunk, 1), (StormPlace{"a", 0}));
   EXPECT_EQ(PlaceAfter(shrunk, 2), (StormPlace{"a", 1}));
-  const volume::StormChange first_gone{StormOfHours("a", {1, 2, 3}), StormOfHours("a", {2, 3})};
+  const storm_store::StormChange first_gone{StormOfHours("a", {1, 2, 3}),
+                                            StormOfHours("a", {2, 3})};
   EXPECT_EQ(PlaceAfter(first_gone, 0), (StormPlace{"a", 0}));
   EXPECT_EQ(PlaceAfter({StormOfHours("a", {1}), nullptr}, 0), std::nullopt);
 }
 
 TEST(PlaceAfter, IsInAStormThatComesBackAtTheSameIndexOrTheLast) {
-  const volume::StormChange back{nullptr, StormOfHours("a", {1, 2})};
+  const storm_store::StormChange back{nullptr, StormOfHours("a", {1, 2})};
   EXPECT_EQ(PlaceAfter(back, 0), (StormPlace{"a", 0}));
   EXPECT_EQ(PlaceAfter(back, 4), (StormPlace{"a", 1}));
 }
@@ -57,9 +59,9 @@ class ChangingCatalogue : public ::testing::Test {
   }
 
   void AddTime(const std::string& valid_time) {
-    service_.store->Become("anvil", [&](volume::StormInfo& storm) {
+    service_.store->Become("anvil", [&](storm_store::StormInfo& storm) {
       storm.times.push_back({valid_time, 0.0});
-      std::ranges::sort(storm.times, {}, &volume::StormTime::valid_time);
+      std::ranges::sort(storm.times, {}, &storm_store::StormTime::valid_time);
     });
   }
 
@@ -111,7 +113,7 @@ TEST_F(ChangingCatalogue, ATimeWhoseFileIsReplacedIsDrawnAgainWhereItIsShown) {
   Interacting elsewhere(service_.stub(), key);
   const std::uint64_t before = there.AwaitNewest(Response::kFrame).frame().scene_revision();
   const std::uint64_t kept = elsewhere.AwaitNewest(Response::kFrame).frame().scene_revision();
-  service_.store->Become("anvil", [](volume::StormInfo& storm) { ++storm.times[1].version; });
+  service_.store->Become("anvil", [](storm_store::StormInfo& storm) { ++storm.times[1].version; });
   EXPECT_TRUE(there.Await([&](const Interacting::Messages& messages) {
     return std::ranges::any_of(messages, [&](const Response& message) {
       return message.has_frame() && message.frame().scene_revision() > before;
@@ -134,7 +136,8 @@ TEST_F(ChangingCatalogue, TellsOnlyWhatIsNew) {
 }
 
 TEST_F(ChangingCatalogue, DescribesWhichTimesAreDeleted) {
-  service_.store->Become("anvil", [](volume::StormInfo& storm) { storm.times[2].deleted = true; });
+  service_.store->Become("anvil",
+                         [](storm_store::StormInfo& storm) { storm.times[2].deleted = true; });
   v1::DescribeStormRequest request;
   request.set_storm_id("anvil");
   v1::DescribeStormResponse response;

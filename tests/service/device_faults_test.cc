@@ -6,12 +6,12 @@
 
 #include "base/error_details.h"
 #include "base/guarded.h"
+#include "drawing/gl_frame_source.h"
 #include "gl/context.h"
 #include "gl/device_faults.h"
 #include "gl/objects.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "session/gl_frame_source.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/slab.h"
 #include "tests/support/techniques.h"
@@ -87,9 +87,9 @@ class ToldWatch final : public DeviceWatch {
 
 class FaultySource : public ::testing::Test {
  protected:
-  void Open(session::GlSourceOptions options = {}) {
+  void Open(drawing::GlSourceOptions options = {}) {
     options.watch_device = [faults = faults_] { return std::make_unique<ToldWatch>(faults); };
-    auto source = session::GlFrameSources(test_support::Device(), std::move(options))(nullptr);
+    auto source = drawing::GlFrameSources(test_support::Device(), std::move(options))(nullptr);
     ASSERT_TRUE(source.ok()) << source.status();
     source_ = *std::move(source);
     scene_.output = {32, 16, 90};
@@ -99,7 +99,7 @@ class FaultySource : public ::testing::Test {
   absl::Status Draw() { return source_->Draw(scene_, fields_, {}).status(); }
 
   const std::shared_ptr<std::deque<Fault>> faults_ = std::make_shared<std::deque<Fault>>();
-  std::unique_ptr<session::FrameSource> source_;
+  std::unique_ptr<drawing::FrameSource> source_;
   scene::Scene scene_ = test_support::PlainScene();
   const std::shared_ptr<const volume::HydrometeorFields> fields_ =
       support::MakeSlab(4000.0, 2000.0, 0.01);

@@ -18,8 +18,8 @@
 namespace thunderhead::testing {
 namespace {
 
-volume::StormInfoPtr Storm(const std::string& id, int time_count) {
-  volume::StormInfo storm;
+storm_store::StormInfoPtr Storm(const std::string& id, int time_count) {
+  storm_store::StormInfo storm;
   storm.id = id;
   storm.title = "A storm called " + id;
   for (int i = 0; i < time_count; ++i) {
@@ -27,7 +27,7 @@ volume::StormInfoPtr Storm(const std::string& id, int time_count) {
   }
   storm.file_cells = {20, 10, 5};
   storm.fields = {physics::Hydrometeor::kCloud, physics::Hydrometeor::kRain};
-  return std::make_shared<const volume::StormInfo>(std::move(storm));
+  return std::make_shared<const storm_store::StormInfo>(std::move(storm));
 }
 
 std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
@@ -76,7 +76,7 @@ bool TakeOne(std::atomic<int>& left) {
   return count > 0;
 }
 
-class FakePreparation final : public session::Preparation {
+class FakePreparation final : public renderers::Preparation {
  public:
   explicit FakePreparation(std::shared_ptr<FakeMachine> machine) : machine_(std::move(machine)) {}
 
@@ -103,12 +103,12 @@ class FakePreparation final : public session::Preparation {
   const std::shared_ptr<FakeMachine> machine_;
 };
 
-class FakeFrameSource final : public session::FrameSource {
+class FakeFrameSource final : public drawing::FrameSource {
  public:
   FakeFrameSource(std::shared_ptr<FakeMachine> machine, base::DeviceTurn* turn)
       : machine_(std::move(machine)), turn_(turn) {}
 
-  const session::DeviceInfo& Device() const override { return info_; }
+  const drawing::DeviceInfo& Device() const override { return info_; }
 
   std::vector<scene::TechniqueInfo> Techniques() const override {
     return {{std::string(scene::LightVolume::kName), scene::LightVolume::kCapabilities},
@@ -118,13 +118,13 @@ class FakeFrameSource final : public session::FrameSource {
             {"toy", {}}};
   }
 
-  std::shared_ptr<session::Preparation> PreparationOfScenes() const override {
+  std::shared_ptr<renderers::Preparation> PreparationOfScenes() const override {
     return std::make_shared<FakePreparation>(machine_);
   }
 
-  absl::StatusOr<session::DisplayFrame> Draw(
+  absl::StatusOr<drawing::DisplayFrame> Draw(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
-      const session::FrameQuality& quality) override {
+      const accuracy::FrameQuality& quality) override {
     THUNDERHEAD_CHECK(fields != nullptr, "drawn without fields");
     THUNDERHEAD_CHECK(FakePreparation(machine_).IsDone(scene, fields), "drawn unprepared");
     const double ms = machine_->ms_per_mega_sample * accuracy::MegaSamples(scene, quality);
@@ -156,12 +156,12 @@ class FakeFrameSource final : public session::FrameSource {
     return Paint(scene, quality, ms);
   }
 
-  absl::StatusOr<session::CheckedFrame> DrawChecked(
+  absl::StatusOr<drawing::CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
     ++machine_->checked;
-    THUNDERHEAD_ASSIGN_OR_RETURN(session::DisplayFrame frame, Draw(scene, fields, {}));
-    return session::CheckedFrame{std::move(frame), 1.0 / SlicesOf(scene)};
+    THUNDERHEAD_ASSIGN_OR_RETURN(drawing::DisplayFrame frame, Draw(scene, fields, {}));
+    return drawing::CheckedFrame{std::move(frame), 1.0 / SlicesOf(scene)};
   }
 
   absl::StatusOr<accuracy::LightProgress> TraceLight(
@@ -203,9 +203,9 @@ class FakeFrameSource final : public session::FrameSource {
     return progress;
   }
 
-  absl::StatusOr<session::DisplayFrame> Tone(const picture::LinearPicture& picture,
+  absl::StatusOr<drawing::DisplayFrame> Tone(const picture::LinearPicture& picture,
                                              const scene::Scene& scene) override {
-    session::DisplayFrame frame;
+    drawing::DisplayFrame frame;
     frame.width_px = picture.size_px.x;
     frame.height_px = picture.size_px.y;
     const double exposure = std::exp2(scene.display.exposure_ev.value_or(0.0));
@@ -227,9 +227,9 @@ class FakeFrameSource final : public session::FrameSource {
     }
   }
 
-  session::DisplayFrame Paint(const scene::Scene& scene, const session::FrameQuality& quality,
+  drawing::DisplayFrame Paint(const scene::Scene& scene, const accuracy::FrameQuality& quality,
                               double ms) const {
-    session::DisplayFrame frame;
+    drawing::DisplayFrame frame;
     frame.width_px = scene.output.width_px;
     frame.height_px = scene.output.height_px;
     for (int i = 0; i < frame.width_px * frame.height_px; ++i) {
@@ -250,10 +250,10 @@ class FakeFrameSource final : public session::FrameSource {
 
   const std::shared_ptr<FakeMachine> machine_;
   base::DeviceTurn* const turn_;  // null: draws whole
-  const session::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
+  const drawing::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
 };
 
-class FakeTruthSource final : public session::TruthSource {
+class FakeTruthSource final : public drawing::TruthSource {
  public:
   explicit FakeTruthSource(std::shared_ptr<FakeTruth> truth) : truth_(std::move(truth)) {
     ++truth_->sources;
@@ -273,8 +273,8 @@ class FakeTruthSource final : public session::TruthSource {
     return absl::OkStatus();
   }
 
-  session::Refinement Refine(int until_samples, double seconds,
-                             const std::stop_token& stop) override {
+  delivery::Refinement Refine(int until_samples, double seconds,
+                              const std::stop_token& stop) override {
     double left_ms = 1e3 * seconds;
     while (samples_ < until_samples && left_ms > 0.0) {
       if (stop.stop_requested()) break;
@@ -285,7 +285,7 @@ class FakeTruthSource final : public session::TruthSource {
       ++samples_;
       ++truth_->samples;
     }
-    session::Refinement refinement;
+    delivery::Refinement refinement;
     refinement.samples_per_pixel = samples_;
     if (samples_ > 1) refinement.relative_error = 1.0 / std::sqrt(samples_);
     return refinement;
@@ -314,7 +314,7 @@ void FakeTruth::Add(Begun begun) {
   log_.push_back(std::move(begun));
 }
 
-session::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth) {
+drawing::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth) {
   return [truth] { return std::make_unique<FakeTruthSource>(truth); };
 }
 
@@ -361,40 +361,40 @@ int Gate::Waiting() {
 
 FakeStormStore::FakeStormStore() : storms_{Storm("anvil", 4), Storm("clear", 1)} {}
 
-void FakeStormStore::Listen(volume::CatalogueListener listener) {
+void FakeStormStore::Listen(storm_store::CatalogueListener listener) {
   const std::lock_guard lock(listening_);
   listener_ = std::move(listener);
 }
 
 void FakeStormStore::Become(const std::string& id,
-                            const std::function<void(volume::StormInfo&)>& change) {
+                            const std::function<void(storm_store::StormInfo&)>& change) {
   const std::lock_guard listening(listening_);
-  volume::StormChange changed;
+  storm_store::StormChange changed;
   {
     const std::lock_guard lock(mutex_);
-    for (volume::StormInfoPtr& storm : storms_) {
+    for (storm_store::StormInfoPtr& storm : storms_) {
       if (storm->id != id) continue;
       changed.before = storm;
-      volume::StormInfo renewed = *storm;
+      storm_store::StormInfo renewed = *storm;
       change(renewed);
-      storm = std::make_shared<const volume::StormInfo>(std::move(renewed));
+      storm = std::make_shared<const storm_store::StormInfo>(std::move(renewed));
       changed.after = storm;
     }
   }
   if (listener_) listener_({changed});
 }
 
-std::vector<volume::StormInfoPtr> FakeStormStore::Storms() const {
+std::vector<storm_store::StormInfoPtr> FakeStormStore::Storms() const {
   if (throws) throw std::runtime_error(kThrownByStore);
   const std::lock_guard lock(mutex_);
-  std::vector<volume::StormInfoPtr> storms;
-  for (const volume::StormInfoPtr& storm : storms_) {
+  std::vector<storm_store::StormInfoPtr> storms;
+  for (const storm_store::StormInfoPtr& storm : storms_) {
     if (!removed_.contains(storm->id)) storms.push_back(storm);
   }
   return storms;
 }
 
-absl::StatusOr<volume::StormInfoPtr> FakeStormStore::Add(const std::string& path) {
+absl::StatusOr<storm_store::StormInfoPtr> FakeStormStore::Add(const std::string& path) {
   if (!std::filesystem::exists(path)) return absl::NotFoundError(path + " is not there");
   const std::lock_guard lock(mutex_);
   return storms_.emplace_back(Storm(std::filesystem::path(path).stem(), 1));
@@ -408,7 +408,7 @@ absl::Status FakeStormStore::Remove(std::string_view id) {
 }
 
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> FakeStormStore::Get(
-    std::string_view id, int time_index, const volume::ReadProgress& /*progress*/) {
+    std::string_view id, int time_index, const storm_store::ReadProgress& /*progress*/) {
   if (Find(id) == nullptr) return absl::NotFoundError("there is no such storm");
   if (auto cached = Peek(id, time_index); cached != nullptr) return cached;
   reading.Pass();
@@ -505,9 +505,9 @@ void FakeMachine::Add(Drawn drawn) {
   log_.push_back(std::move(drawn));
 }
 
-session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
+drawing::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
   return
-      [machine](base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+      [machine](base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<drawing::FrameSource>> {
         machine->opening.Pass();
         if (TakeOne(machine->cannot_open)) return absl::UnavailableError("there is no device");
         ++machine->opened;

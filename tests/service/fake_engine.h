@@ -15,10 +15,10 @@
 #include <utility>
 #include <vector>
 
-#include "session/frame_source.h"
-#include "session/truth_source.h"
+#include "drawing/frame_source.h"
+#include "drawing/truth_source.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/manual_time.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::testing {
 
@@ -51,25 +51,25 @@ inline constexpr char kThrownByStore[] = "/storms/anvil is not what it seemed";
 
 // "anvil" has four times with cloud and rain in part of the domain; "clear" has one time without
 // condensate.
-class FakeStormStore final : public volume::StormStore {
+class FakeStormStore final : public storm_store::StormStore {
  public:
   FakeStormStore();
 
-  std::vector<volume::StormInfoPtr> Storms() const override;
+  std::vector<storm_store::StormInfoPtr> Storms() const override;
   // Adds a storm with the file's name, if the file exists.
-  absl::StatusOr<volume::StormInfoPtr> Add(const std::string& path) override;
+  absl::StatusOr<storm_store::StormInfoPtr> Add(const std::string& path) override;
   absl::Status Remove(std::string_view id) override;
   bool IsSearching() const override { return searching; }
   absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
-      std::string_view id, int time_index, const volume::ReadProgress& progress) override;
+      std::string_view id, int time_index, const storm_store::ReadProgress& progress) override;
   std::shared_ptr<const volume::HydrometeorFields> Peek(std::string_view id,
                                                         int time_index) override;
   std::vector<int> TimesInMemory(std::string_view id) const override;
   std::size_t CachedBytes() const override { return 0; }
-  void Listen(volume::CatalogueListener listener) override;
+  void Listen(storm_store::CatalogueListener listener) override;
 
   // Changes a storm as if its files had changed.
-  void Become(const std::string& id, const std::function<void(volume::StormInfo&)>& change);
+  void Become(const std::string& id, const std::function<void(storm_store::StormInfo&)>& change);
 
   std::atomic<bool> without_memory{false};  // reads throw bad_alloc
   std::atomic<bool> throws{false};          // looking for a storm throws kThrownByStore
@@ -85,9 +85,9 @@ class FakeStormStore final : public volume::StormStore {
   std::atomic<bool> searching = false;
 
  private:
-  std::deque<volume::StormInfoPtr> storms_;
+  std::deque<storm_store::StormInfoPtr> storms_;
   std::mutex listening_;
-  volume::CatalogueListener listener_;
+  storm_store::CatalogueListener listener_;
   std::set<std::string> removed_;  // ids
   mutable std::mutex mutex_;
   std::map<int, absl::Status> failures_;
@@ -101,7 +101,7 @@ class FakeStormStore final : public volume::StormStore {
 struct FakeMachine {
   struct Drawn {
     scene::Scene scene;
-    session::FrameQuality quality;
+    accuracy::FrameQuality quality;
     int niceness = 0;  // of the thread that drew it
   };
 
@@ -161,7 +161,7 @@ struct FakeMachine {
 // In turns, their pictures are cut into pieces of so long.
 inline constexpr double kFakePiece_ms = 10.0;
 
-session::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
+drawing::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
 
 // The behaviour of fake references, shared with the test: each sample takes `ms_per_sample`, and
 // the error is one over the square root of the samples. Their pictures have uniform radiance.
@@ -186,7 +186,7 @@ struct FakeTruth {
   std::vector<Begun> log_;
 };
 
-session::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth);
+drawing::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth);
 
 // The colour that the fake source paints a scene in: red from the time, green from the sun's
 // azimuth.

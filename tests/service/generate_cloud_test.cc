@@ -141,7 +141,7 @@ TEST(CloudStore, KnowsTheCloudsOfAnEarlierServerFromOtherFiles) {
   ASSERT_TRUE(shape.ok()) << shape.status();
   ASSERT_TRUE(
       clouds::WriteGenerated(*shape, {"fair-weather-cumulus", 1}, path + "/kept.nc", {}, {}).ok());
-  auto store = volume::StormStore::Open({path + "/other.nc", path + "/kept.nc"}, {});
+  auto store = storm_store::StormStore::Open({path + "/other.nc", path + "/kept.nc"}, {});
   ASSERT_TRUE(store.ok()) << store.status();
   service::CloudStore clouds(path, **store);
   EXPECT_TRUE(clouds.Holds("kept"));

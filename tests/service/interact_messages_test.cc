@@ -29,7 +29,7 @@ const void* LargestPartOf(const grpc::ByteBuffer& message) {
 }
 
 TEST(InteractMessagesTest, FramesOfAllViewersAreTheSameBytes) {
-  auto frame = std::make_shared<session::EncodedFrame>();
+  auto frame = std::make_shared<delivery::EncodedFrame>();
   frame->jpeg.assign(50'000, 'x');
   frame->width_px = 640;
   frame->serialized = SerializedFrame(*frame);

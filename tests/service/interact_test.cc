@@ -888,7 +888,7 @@ TEST(InteractTest, ViewersMarkIfAllowedAndEraseTheirOwn) {
 
 TEST(InteractTest, MarksAreSeenOverTheStormsOfTheDomainThatTheyWereDrawnOn) {
   Class group;
-  group.service.store->Become("clear", [](volume::StormInfo& storm) {
+  group.service.store->Become("clear", [](storm_store::StormInfo& storm) {
     storm.file_cells = {30, 10, 5};
   });
   const auto has = [](Interacting& person, int count) {
@@ -909,7 +909,7 @@ TEST(InteractTest, MarksAreSeenOverTheStormsOfTheDomainThatTheyWereDrawnOn) {
   EXPECT_TRUE(has(*group.ana, 1));
   EXPECT_TRUE(has(late, 1));
   // Another run over the same domain.
-  group.service.store->Become("clear", [](volume::StormInfo& storm) {
+  group.service.store->Become("clear", [](storm_store::StormInfo& storm) {
     storm.file_cells = {20, 10, 7};
   });
   ASSERT_TRUE(show("clear"));

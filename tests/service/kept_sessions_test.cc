@@ -593,7 +593,7 @@ TEST_F(KeptSessionsTest, AStoreThatHangsRefusesWhatItWouldHaveToKeep) {
 }
 
 TEST(SessionRecordTest, AWatchedSessionIsInUse) {
-  struct SilentViewer : session::Viewer {
+  struct SilentViewer : delivery::Viewer {
     void Wake() override {}
   };
   ManualTime time;

@@ -1,6 +1,6 @@
 // A lane that draws with GL while others give it turns: that it draws in pieces, and ends when its
 // picture is no longer wanted.
-#include "session/lane.h"
+#include "drawing/lane.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,22 +12,22 @@
 
 #include "base/error_details.h"
 #include "base/stopwatch.h"
+#include "drawing/gl_frame_source.h"
 #include "gtest/gtest.h"
-#include "session/gl_frame_source.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/figure.h"
 #include "tests/support/gl_context.h"
 #include "tests/support/techniques.h"
-#include "volume/storm_store.h"
 
-namespace thunderhead::session {
+namespace thunderhead::drawing {
 namespace {
 
 class LaneTest : public ::testing::Test {
  protected:
   void SetUp() override {
     lane_ = std::make_unique<Lane>(GlFrameSources(test_support::Device()), 0, [] {});
-    auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"},
-                                          {.read_ahead = 0});
+    auto store = storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"},
+                                               {.read_ahead = 0});
     ASSERT_TRUE(store.ok()) << store.status();
     auto fields = (*store)->Get("supercell", 1, {});
     ASSERT_TRUE(fields.ok()) << fields.status();
@@ -199,4 +199,4 @@ TEST_F(LaneTest, MoreTimeThanItsLimitEndsTheWork) {
 }
 
 }  // namespace
-}  // namespace thunderhead::session
+}  // namespace thunderhead::drawing

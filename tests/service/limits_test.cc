@@ -193,7 +193,7 @@ TEST(SceneMessages, LightsAreWhatTheMessageSaysAndWhiteWhereItIsSilent) {
   v1::Scene message = SceneFrom(
       R"({"lights": [{}, {"azimuthDeg": -30, "elevationDeg": -5, "irradiance": 0.25,
           "color": {"red": 0.5, "blue": 1}}]})");
-  volume::StormInfo storm;
+  storm_store::StormInfo storm;
   storm.id = "a";
   service::FillSceneDefaults(message, storm);
   EXPECT_EQ(Complaint(message), "");

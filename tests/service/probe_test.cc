@@ -69,7 +69,7 @@ v1::Scene SceneFromAbove() {
 
 // Puts "anvil" on a map of Mercator's, 40 N 100 W in its middle.
 void GiveAPlace(FakeService& service) {
-  service.store->Become("anvil", [](volume::StormInfo& storm) {
+  service.store->Become("anvil", [](storm_store::StormInfo& storm) {
     storm.latitude_deg = 40.0;
     storm.longitude_deg = -100.0;
     storm.projection =

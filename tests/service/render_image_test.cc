@@ -37,7 +37,7 @@ TEST(RenderImageTest, PngHoldsEveryPixelAtFullQuality) {
   EXPECT_EQ(response.stages(response.stages_size() - 1).stage(), v1::STAGE_ENCODE);
   EXPECT_EQ(response.scene().storm_id(), "anvil");
   EXPECT_TRUE(response.scene().camera().orbit().has_distance_m());
-  EXPECT_EQ(service.machine->Log().at(0).quality, session::FrameQuality{});
+  EXPECT_EQ(service.machine->Log().at(0).quality, accuracy::FrameQuality{});
 }
 
 TEST(RenderImageTest, JpegOnRequest) {

@@ -302,7 +302,7 @@ TEST_F(RenderJobTest, ATimeIsFoundAgainWhereItStandsNow) {
   const v1::RenderJob job =
       jobs.Create({Picture(0), Picture(0), Picture(0), Picture(0), Picture(2)});
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
-  service.store->Become("anvil", [](volume::StormInfo& storm) {
+  service.store->Become("anvil", [](storm_store::StormInfo& storm) {
     storm.times.insert(storm.times.begin(), {"0001-01-01T00:00:00Z", -600.0});
   });
   service.machine->drawing.Open();
@@ -327,7 +327,7 @@ TEST_F(RenderJobTest, AStorageThatHangsHoldsUpOnlyItsOwnPictures) {
     return base::FileStamp{};
   };
   FakeService service(options);
-  service.store->Become("anvil", [](volume::StormInfo& storm) {
+  service.store->Become("anvil", [](storm_store::StormInfo& storm) {
     for (std::size_t i = 0; i < storm.times.size(); ++i) {
       storm.times[i].file = absl::StrCat(i == 1 ? "/gone/" : "/data/", i);
     }

@@ -112,7 +112,7 @@ TEST(ServerTest, TakenPortIsAnError) {
 TEST(ServerTest, FrameSourceThatCannotBeMadeIsAnError) {
   const auto server = service::Server::Start(
       {}, std::make_shared<FakeStormStore>(),
-      [](base::DeviceTurn*) -> absl::StatusOr<std::unique_ptr<session::FrameSource>> {
+      [](base::DeviceTurn*) -> absl::StatusOr<std::unique_ptr<drawing::FrameSource>> {
         return absl::NotFoundError("there is no GPU 3");
       });
   ASSERT_FALSE(server.ok());

@@ -217,7 +217,7 @@ TEST(SessionsTest, AClockWithoutADateIsRefused) {
 }
 
 TEST(SunMessages, ARealStormsSunFollowsItsTimeAndPlace) {
-  volume::StormInfo storm;
+  storm_store::StormInfo storm;
   storm.times = {{"2013-05-20T19:00:00Z", 0.0}, {"2013-05-20T20:00:00Z", 3600.0}};
   storm.latitude_deg = 35.3;
   storm.longitude_deg = -97.6;

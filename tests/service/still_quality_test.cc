@@ -9,6 +9,7 @@
 
 #include "base/stopwatch.h"
 #include "codec/avif.h"
+#include "drawing/gl_frame_source.h"
 #include "frame/image_codec.h"
 #include "gtest/gtest.h"
 #include "renderers/technique_registry.h"
@@ -16,8 +17,7 @@
 #include "service/messages/camera_messages.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"
-#include "session/gl_frame_source.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead {
 namespace {
@@ -60,7 +60,7 @@ class StillQuality : public ::testing::Test {
     if (const char* const size = std::getenv("THUNDERHEAD_SIZE"); size != nullptr) {
       ASSERT_EQ(std::sscanf(size, "%dx%d", &width, &height), 2);
     }
-    const auto store = volume::StormStore::Open(
+    const auto store = storm_store::StormStore::Open(
         {std::string(THUNDERHEAD_SOURCE_DIR) + "/samples/supercell.nc"}, {});
     ASSERT_TRUE(store.ok()) << store.status();
     v1::Scene message;
@@ -74,13 +74,13 @@ class StillQuality : public ::testing::Test {
     ASSERT_TRUE(fields.ok()) << fields.status();
     service::FrameCondensate(message, **fields);
     const scene::Scene scene = service::ToScene(message);
-    const auto source = session::GlFrameSources("auto")(nullptr);
+    const auto source = drawing::GlFrameSources("auto")(nullptr);
     ASSERT_TRUE(source.ok()) << source.status();
     auto drawn = (*source)->Draw(scene, *fields, {});
     ASSERT_TRUE(drawn.ok()) << drawn.status();
     auto fine = (*source)->Fine();
     ASSERT_TRUE(fine.ok()) << fine.status();
-    drawn_ = new session::DisplayFrame(*std::move(drawn));
+    drawn_ = new drawing::DisplayFrame(*std::move(drawn));
     fine_ = new frame::FineImage(*std::move(fine));
     truth_ = new Pixels(LevelsOf(fine_->rgb));
   }
@@ -162,12 +162,12 @@ class StillQuality : public ::testing::Test {
     return {avif->size(), Banding(pixels)};
   }
 
-  static session::DisplayFrame* drawn_;
+  static drawing::DisplayFrame* drawn_;
   static frame::FineImage* fine_;
   static Pixels* truth_;
 };
 
-session::DisplayFrame* StillQuality::drawn_ = nullptr;
+drawing::DisplayFrame* StillQuality::drawn_ = nullptr;
 frame::FineImage* StillQuality::fine_ = nullptr;
 Pixels* StillQuality::truth_ = nullptr;
 

@@ -187,7 +187,7 @@ TEST(WatchFramesTest, CoarseWhileChangingRefinedAtRest) {
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   const auto log = service.machine->Log();
   const auto& last = log.back();
-  EXPECT_EQ(last.quality, session::FrameQuality{});
+  EXPECT_EQ(last.quality, accuracy::FrameQuality{});
   const auto& before = log[log.size() - 2];
   EXPECT_LT(before.quality.image_scale, 1.0);
   EXPECT_EQ(before.scene, last.scene);

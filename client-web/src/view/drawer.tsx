@@ -1,6 +1,7 @@
 // Every setting of the scene with its unit, limits, default and meaning, from the schema; found by a search box.
 import type { ComponentType } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+import type { SettingsProps } from "./every_setting";
 import type { Page } from "./page";
 import { withPart } from "./part";
 import { focusRail } from "./tool_rail";
@@ -80,9 +81,4 @@ export function ExpertDrawer({ page }: { page: Page }) {
       )}
     </aside>
   );
-}
-
-export interface SettingsProps {
-  readonly page: Page;
-  readonly query: string;
 }

@@ -6,10 +6,15 @@ import type { PageState } from "../core/state";
 import { formatQuantity } from "../core/units";
 import { COMMENTS } from "../gen/comments";
 import { Choice, Slider, Switch, TextInput } from "./controls";
-import type { SettingsProps } from "./drawer";
+import type { Page } from "./page";
 
 // The page sets these itself.
 const NOT_LISTED = new Set(["storm_id", "time_index"]);
+
+export interface SettingsProps {
+  readonly page: Page;
+  readonly query: string;
+}
 
 export function EverySetting({ page, query }: SettingsProps) {
   const { state } = page;

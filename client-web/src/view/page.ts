@@ -26,6 +26,7 @@ import { type OpenInteract, SessionClient } from "../transport/session_client";
 import { Addresses } from "./addresses";
 import { Comparing } from "./compare/comparing";
 import { learnDecodable } from "./decodable";
+import { toggleFullScreen } from "./full_screen";
 import { Keeper } from "./keep/keeper";
 import { attachKeyboard } from "./keyboard";
 import { readLink } from "./link";
@@ -37,7 +38,6 @@ import { SessionActions } from "./session_actions";
 import { SessionLife } from "./session_life";
 import { StormMap } from "./storm_map";
 import { StormsOnServer } from "./storms_on_server";
-import { toggleFullScreen } from "./top_bar";
 import { Viewpoint } from "./viewpoint";
 import { followZones } from "./zones";
 

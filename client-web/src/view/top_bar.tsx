@@ -3,6 +3,7 @@
 
 import type { PanelName } from "../core/tools";
 import { formatElapsed } from "../core/units";
+import { toggleFullScreen } from "./full_screen";
 import { Icon, type IconName } from "./icons";
 import { workInWords } from "./keep/keeper";
 import type { Page } from "./page";
@@ -169,9 +170,4 @@ function FullScreen() {
       <Icon name="expand" />
     </button>
   );
-}
-
-export function toggleFullScreen(): void {
-  if (document.fullscreenElement !== null) void document.exitFullscreen();
-  else void document.documentElement.requestFullscreen();
 }

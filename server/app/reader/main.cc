@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include "sandbox/reader_main.h"
-#include "volume/storm_format.h"
+#include "storm_files/storm_format.h"
 
 int main() {
-  _exit(thunderhead::sandbox::ReadStormFile(thunderhead::volume::StormFormats::BuiltIn()));
+  _exit(thunderhead::sandbox::ReadStormFile(thunderhead::storm_files::StormFormats::BuiltIn()));
 }

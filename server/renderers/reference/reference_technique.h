@@ -1,5 +1,5 @@
 // The reference as a technique of the registry. It is traced on the CPU beside the renderers, for
-// sessions that choose it (session/truth_source.h).
+// sessions that choose it (drawing/truth_source.h).
 #pragma once
 
 #include <memory>

@@ -11,7 +11,7 @@
 
 namespace thunderhead::service {
 
-PictureTexts TextsOf(const v1::RenderImageResponse& picture, const volume::StormInfo& storm) {
+PictureTexts TextsOf(const v1::RenderImageResponse& picture, const storm_store::StormInfo& storm) {
   std::string scene;
   (void)google::protobuf::util::MessageToJsonString(picture.scene(), &scene);
   PictureTexts texts = {{"Software", absl::StrCat("Thunderhead ", base::Version())},

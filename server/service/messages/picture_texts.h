@@ -5,8 +5,8 @@
 #include <map>
 #include <string>
 
+#include "storm_store/storm_store.h"
 #include "thunderhead/v1/thunderhead.pb.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -35,6 +35,6 @@ using PictureTexts = std::map<std::string, std::string>;
 // The scene, the storm with its time and map projection, the camera's pose, the program's version
 // and where it is known the estimated error of a picture of `storm`, whose response is complete but
 // for the picture.
-PictureTexts TextsOf(const v1::RenderImageResponse& picture, const volume::StormInfo& storm);
+PictureTexts TextsOf(const v1::RenderImageResponse& picture, const storm_store::StormInfo& storm);
 
 }  // namespace thunderhead::service

@@ -16,21 +16,21 @@ namespace {
 // Names in an error message: enough to recognise a typing error; there may be thousands of storms.
 constexpr std::size_t kMaxNamesListed = 10;
 
-std::string NamesOf(const std::vector<volume::StormInfoPtr>& storms) {
+std::string NamesOf(const std::vector<storm_store::StormInfoPtr>& storms) {
   const std::size_t listed = std::min(storms.size(), kMaxNamesListed);
   std::string names = absl::StrJoin(
       storms.begin(), storms.begin() + static_cast<std::ptrdiff_t>(listed), ", ",
-      [](std::string* out, const volume::StormInfoPtr& storm) { out->append(storm->id); });
+      [](std::string* out, const storm_store::StormInfoPtr& storm) { out->append(storm->id); });
   if (listed < storms.size()) absl::StrAppend(&names, " and ", storms.size() - listed, " more");
   return names;
 }
 
 }  // namespace
 
-absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
-                                               const std::string& id) {
+absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStore& store,
+                                                    const std::string& id) {
   const bool searching = store.IsSearching();
-  const std::vector<volume::StormInfoPtr> storms = store.Storms();
+  const std::vector<storm_store::StormInfoPtr> storms = store.Storms();
   const auto at = std::ranges::find(storms, id, [](const auto& storm) { return storm->id; });
   if (at != storms.end()) return *at;
   if (searching) {
@@ -49,7 +49,7 @@ absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
                            {.reason = kStormNotFound, .metadata = {{"storm_id", id}}});
 }
 
-absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
+absl::Status CheckTime(const storm_store::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path) {
   if (time_index < storm.times.size()) return absl::OkStatus();
   const std::size_t last = storm.times.size() - 1;
@@ -58,13 +58,13 @@ absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
       "VALUE_OUT_OF_RANGE", {{"minimum", "0"}, {"maximum", absl::StrCat(last)}});
 }
 
-absl::Status PrepareScene(const volume::StormStore& store,
+absl::Status PrepareScene(const storm_store::StormStore& store,
                           const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene) {
   // They would be kept, and sent to every viewer.
   scene.DiscardUnknownFields();
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::StormInfoPtr storm,
+  THUNDERHEAD_ASSIGN_OR_RETURN(const storm_store::StormInfoPtr storm,
                                FindStorm(store, scene.storm_id()));
   if (!scene.has_time_index()) {
     scene.set_time_index(static_cast<std::uint32_t>(storm->times.size() - 1));

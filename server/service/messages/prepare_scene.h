@@ -8,8 +8,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "scene/technique_info.h"
+#include "storm_store/storm_store.h"
 #include "thunderhead/v1/scene.pb.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -17,16 +17,16 @@ namespace thunderhead::service {
 inline constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
 
 // The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
-absl::StatusOr<volume::StormInfoPtr> FindStorm(const volume::StormStore& store,
-                                               const std::string& id);
+absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStore& store,
+                                                    const std::string& id);
 
 // INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
-absl::Status CheckTime(const volume::StormInfo& storm, std::uint32_t time_index,
+absl::Status CheckTime(const storm_store::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path);
 
 // Checks a scene (whose limits were checked) and fills in every default that needs no fields.
 // `techniques` are the available ones.
-absl::Status PrepareScene(const volume::StormStore& store,
+absl::Status PrepareScene(const storm_store::StormStore& store,
                           const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene);
 
 }  // namespace thunderhead::service

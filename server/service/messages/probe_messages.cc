@@ -76,7 +76,8 @@ void SetFieldMaximum(const volume::FieldPeak& peak, const StormPlaces& places,
 
 }  // namespace
 
-StormPlaces::StormPlaces(const volume::StormInfo& storm, const volume::HydrometeorFields& fields)
+StormPlaces::StormPlaces(const storm_store::StormInfo& storm,
+                         const volume::HydrometeorFields& fields)
     : storm_(storm), fields_(fields) {
   if (!storm.latitude_deg.has_value() || !storm.longitude_deg.has_value()) return;
   projection_ =

@@ -8,11 +8,11 @@
 #include "scene/ray_probe.h"
 #include "scene/storm_ray.h"
 #include "scene/view.h"
+#include "storm_store/storm_store.h"
 #include "thunderhead/v1/probe.pb.h"
 #include "volume/hydrometeor_fields.h"
 #include "volume/map_projection.h"
 #include "volume/storm_map.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -20,7 +20,7 @@ namespace thunderhead::service {
 class StormPlaces {
  public:
   // Both must outlive it.
-  StormPlaces(const volume::StormInfo& storm, const volume::HydrometeorFields& fields);
+  StormPlaces(const storm_store::StormInfo& storm, const volume::HydrometeorFields& fields);
 
   // Nothing where the storm has no projection.
   std::optional<v1::EarthPlace> OnEarth(const glm::dvec2& place_m) const;
@@ -35,7 +35,7 @@ class StormPlaces {
   const volume::HydrometeorFields& fields() const { return fields_; }
 
  private:
-  const volume::StormInfo& storm_;
+  const storm_store::StormInfo& storm_;
   const volume::HydrometeorFields& fields_;
   std::optional<volume::MapProjection> projection_;
 };

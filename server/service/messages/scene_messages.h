@@ -8,8 +8,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "scene/scene.h"
+#include "storm_store/storm_store.h"
 #include "thunderhead/v1/thunderhead.pb.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -22,7 +22,7 @@ absl::Status CheckScene(const v1::Scene& scene);
 void FillSizesDefault(v1::Scene& scene);
 
 // Fills in every default except those that depend on the storm's fields.
-void FillSceneDefaults(v1::Scene& scene, const volume::StormInfo& storm);
+void FillSceneDefaults(v1::Scene& scene, const storm_store::StormInfo& storm);
 
 // Where the particles' sizes of a scene come from whose defaults are filled in.
 physics::SizeSource SizesOf(const v1::Scene& scene);
@@ -32,9 +32,9 @@ scene::Scene ToScene(const v1::Scene& message);
 
 v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor);
 void ToMessage(const scene::Ground& ground, v1::Ground& message);
-void ToMessage(const volume::StormInfo& storm, v1::StormSummary& message);
+void ToMessage(const storm_store::StormInfo& storm, v1::StormSummary& message);
 // Looks at the files of its times.
-void ToMessage(const volume::StormInfo& storm, const volume::HydrometeorFields& fields,
+void ToMessage(const storm_store::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message);
 // The file at `path`, as it is now; false if there is none.
 bool ToMessage(const std::string& path, v1::StormFile& message);

@@ -26,7 +26,7 @@ bool IsReal(const std::string& valid_time) {
   return time.has_value() && absl::ToCivilYear(*time, absl::UTCTimeZone()).year() >= kFirstRealYear;
 }
 
-bool HasPlace(const volume::StormInfo& storm) {
+bool HasPlace(const storm_store::StormInfo& storm) {
   return storm.latitude_deg.has_value() && storm.longitude_deg.has_value();
 }
 
@@ -41,7 +41,7 @@ absl::Status CheckSun(const v1::Sun& sun) {
       "DATE_TIME_MALFORMED");
 }
 
-void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_index) {
+void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time_index) {
   if (sun.source() == v1::Sun::SOURCE_UNSPECIFIED) {
     const bool given = sun.has_azimuth_deg() || sun.has_elevation_deg();
     const bool real = HasPlace(storm) && IsReal(storm.times.front().valid_time);
@@ -60,7 +60,7 @@ void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_inde
   sun.set_elevation_deg(static_cast<float>(position.elevation_deg));
 }
 
-void FillClockDefaults(v1::SunClock& clock, const volume::StormInfo& storm) {
+void FillClockDefaults(v1::SunClock& clock, const storm_store::StormInfo& storm) {
   const std::string& first = storm.times.front().valid_time;
   if (clock.date_time().empty()) clock.set_date_time(IsReal(first) ? first : kStormSeason);
   if (!clock.has_latitude_deg()) {

@@ -4,8 +4,8 @@
 
 #include "absl/status/status.h"
 #include "scene/scene.h"
+#include "storm_store/storm_store.h"
 #include "thunderhead/v1/scene.pb.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::service {
 
@@ -14,10 +14,10 @@ absl::Status CheckSun(const v1::Sun& sun);
 
 // Fills in the source, and for a sun that follows the clock its time, place and direction at
 // `time_index`, replacing the message's direction.
-void FillSunDefaults(v1::Sun& sun, const volume::StormInfo& storm, int time_index);
+void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time_index);
 
 // Fills in the time and place of the storm where absent.
-void FillClockDefaults(v1::SunClock& clock, const volume::StormInfo& storm);
+void FillClockDefaults(v1::SunClock& clock, const storm_store::StormInfo& storm);
 
 void ToMessage(const scene::Sun& sun, v1::Sun& message);
 

@@ -9,9 +9,9 @@
 
 #include "clouds/presets.h"
 #include "glm/geometric.hpp"
+#include "storm_files/cf_writer.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/temporary_folder.h"
-#include "volume/cf_writer.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::clouds {
 namespace {
@@ -193,26 +193,26 @@ TEST(WriteCfCloud, ReadsBackAsItWas) {
   const CloudShape shape = Ball();
   const std::vector<float> water = Made(shape);
   ASSERT_TRUE(
-      volume::WriteCfCloud(
+      storm_files::WriteCfCloud(
           {shape.grid, volume::Quantity::kMassConcentration, water, "ball", "test", "none"}, path)
           .ok());
-  auto store = volume::StormStore::Open({path}, {.read_ahead = 0});
+  auto store = storm_store::StormStore::Open({path}, {.read_ahead = 0});
   ASSERT_TRUE(store.ok()) << store.status();
   const auto fields = (*store)->Get("ball", 0, {});
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_NEAR(glm::length((*fields)->grid.spacing_m - shape.grid.spacing_m), 0.0, 1e-9);
   EXPECT_NEAR(glm::length((*fields)->grid.low_corner_m - shape.grid.low_corner_m), 0.0, 1e-9);
   EXPECT_EQ((*fields)->fields[0].concentration_kg_per_m3, water);
-  ASSERT_TRUE(volume::WriteCfCloud(
+  ASSERT_TRUE(storm_files::WriteCfCloud(
                   {shape.grid, volume::Quantity::kExtinction, water, "ball", "test", "none"}, path)
                   .ok());
-  store = volume::StormStore::Open({path}, {.read_ahead = 0});
+  store = storm_store::StormStore::Open({path}, {.read_ahead = 0});
   ASSERT_TRUE(store.ok()) << store.status();
   const auto extinction = (*store)->Get("ball", 0, {});
   ASSERT_TRUE(extinction.ok()) << extinction.status();
   EXPECT_EQ((*extinction)->fields[0].quantity, volume::Quantity::kExtinction);
   EXPECT_EQ((*extinction)->fields[0].concentration_kg_per_m3, water);
-  const absl::Status nowhere = volume::WriteCfCloud(
+  const absl::Status nowhere = storm_files::WriteCfCloud(
       {shape.grid, volume::Quantity::kExtinction, water, "", "", ""}, folder.File("none/ball.nc"));
   EXPECT_THAT(std::string(nowhere.message()), HasSubstr("none/ball.nc"));
 }

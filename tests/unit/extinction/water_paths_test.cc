@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "storm_store/storm_store.h"
 #include "volume/detail_control.h"
-#include "volume/storm_store.h"
 #include "volume/water_path_memo.h"
 
 namespace thunderhead::volume {
@@ -238,8 +238,8 @@ class WaterPathsOfStorm : public WaterPathsTest, public testing::WithParamInterf
       detail_.layers[0].tile = &tile_;
       return;
     }
-    auto store = StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/" + GetParam() + ".nc"},
-                                  {.read_ahead = 0});
+    auto store = storm_store::StormStore::Open(
+        {THUNDERHEAD_SOURCE_DIR "/samples/" + GetParam() + ".nc"}, {.read_ahead = 0});
     ASSERT_TRUE(store.ok()) << store.status();
     const auto storm = (*store)->Get((*store)->Storms().front()->id, 1, {});
     ASSERT_TRUE(storm.ok()) << storm.status();

@@ -16,8 +16,8 @@
 #include "physics/optics.h"
 #include "scene/detailed_medium.h"
 #include "scene/drawn_fields.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/temporary_folder.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::interchange {
 namespace {
@@ -54,8 +54,8 @@ std::shared_ptr<HydrometeorFields> SmallStorm() {
   return fields;
 }
 
-volume::StormInfo Info() {
-  volume::StormInfo storm;
+storm_store::StormInfo Info() {
+  storm_store::StormInfo storm;
   storm.id = "small";
   storm.title = "a small storm";
   storm.files = {"small_1.nc", "small_2.nc"};
@@ -189,7 +189,7 @@ TEST_F(StormExportTest, MetadataSaysWhatWhenAndWhere) {
 }
 
 TEST_F(StormExportTest, AnIdealisedStormHasNoPlace) {
-  volume::StormInfo storm = Info();
+  storm_store::StormInfo storm = Info();
   storm.latitude_deg.reset();
   storm.longitude_deg.reset();
   const auto file = ExportOf(SecondTime(), SmallStorm(), storm, {});
@@ -229,8 +229,8 @@ TEST_F(StormExportTest, AnEmptyStormIsAFileWithoutGrids) {
 
 TEST_F(StormExportTest, ColumnsOfTheSampleKeepTheirOpticalDepth) {
   const auto store =
-      *volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
-  const volume::StormInfo& storm = *store->Storms().front();
+      *storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+  const storm_store::StormInfo& storm = *store->Storms().front();
   const auto fields = *store->Get(storm.id, 1, {});
   const ReadBack read = Export(SecondTime(), fields);
   ASSERT_EQ(read.grids.size(), 5U);
@@ -293,7 +293,7 @@ TEST_F(StormExportTest, DetailIsThatOfTheDrawnMedium) {
 // can.
 TEST_F(StormExportTest, DetailKeepsTheWaterOfTheSample) {
   const auto store =
-      *volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+      *storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   const auto fields = *store->Get(store->Storms().front()->id, 0, {});
   scene::Scene scene;
   const ReadBack with = Export(scene, fields, {.detail = true});

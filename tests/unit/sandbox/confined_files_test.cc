@@ -20,6 +20,7 @@
 #include "base/error_details.h"
 #include "base/stopwatch.h"
 #include "sandbox/messages.h"
+#include "storm_store/storm_store.h"
 #include "telemetry/metrics.h"
 #include "tests/support/figure.h"
 #include "tests/support/manual_time.h"
@@ -28,7 +29,6 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait_for.h"
 #include "tests/unit/sandbox/misbehaving_format.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -42,12 +42,12 @@ constexpr const char* kWhyNot =
     "AddressSanitizer's operator new ends the program where others throw std::bad_alloc";
 
 using std::chrono::milliseconds;
+using storm_files::StormFile;
 using ::testing::HasSubstr;
 using testing::ManualTime;
 using ::testing::Not;
 using testing::WaitFor;
 using volume::HydrometeorFields;
-using volume::StormFile;
 
 constexpr std::uint64_t kMemory = std::uint64_t{256} << 20;
 
@@ -131,7 +131,7 @@ testing::SyntheticWrf Storm() {
 
 // The same by the program itself and by a confined reader, every record.
 void ExpectSameStorm(ConfinedFiles& files, const std::string& path) {
-  const auto own = volume::StormFormats::BuiltIn().Describe(path);
+  const auto own = storm_files::StormFormats::BuiltIn().Describe(path);
   const auto confined = files.Describe(path);
   ASSERT_TRUE(own.ok()) << own.status();
   ASSERT_TRUE(confined.ok()) << confined.status();
@@ -203,7 +203,7 @@ TEST_F(ConfinedFilesTest, TheWindComesThrough) {
 TEST(ConfinedFilesBenchmark, Cost) {
   const std::string path = THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc";
   const auto files = std::make_shared<ConfinedFiles>();
-  const auto own = volume::StormFormats::BuiltIn().Describe(path);
+  const auto own = storm_files::StormFormats::BuiltIn().Describe(path);
   const auto confined = files->Describe(path);
   ASSERT_TRUE(own.ok() && confined.ok());
   const auto milliseconds_of = [](const auto& work) {
@@ -215,8 +215,8 @@ TEST(ConfinedFilesBenchmark, Cost) {
     }
     return best;
   };
-  const double own_describe =
-      milliseconds_of([&] { EXPECT_TRUE(volume::StormFormats::BuiltIn().Describe(path).ok()); });
+  const double own_describe = milliseconds_of(
+      [&] { EXPECT_TRUE(storm_files::StormFormats::BuiltIn().Describe(path).ok()); });
   const double describe = milliseconds_of([&] { EXPECT_TRUE(files->Describe(path).ok()); });
   const double own_read =
       milliseconds_of([&] { EXPECT_TRUE(own->reader->Read(0, std::nullopt, {}).ok()); });
@@ -462,7 +462,7 @@ TEST_F(ConfinedFilesTest, AnErrorOfTheFileIsThatOfTheProgramItself) {
        {std::string("notes on a storm, and not the storm"), std::string("note"), std::string(),
         std::string("CDF\1 notes"), std::string(2000, 'n')}) {
     std::ofstream(path, std::ios::trunc) << text;
-    const absl::Status own = volume::StormFormats::BuiltIn().Describe(path).status();
+    const absl::Status own = storm_files::StormFormats::BuiltIn().Describe(path).status();
     const absl::Status confined = Files()->Describe(path).status();
     EXPECT_EQ(confined.code(), own.code());
     EXPECT_EQ(std::string(confined.message()), std::string(own.message()));
@@ -491,14 +491,14 @@ TEST_F(ConfinedFilesTest, AStoreGoesOnBesideHostileFiles) {
   Bad("crash");
   Bad("hang");
   Bad("noise");
-  volume::StormStoreOptions options;
+  storm_store::StormStoreOptions options;
   options.read_ahead = 0;
   options.formats = FormatsWithMisbehaving();
   options.formats.LeaveTo([this, files = Files()](const std::string& path) {
     const bool hangs = absl::StrContains(path, "hang.bad");
     return hangs ? DescribeInTime(*files, path) : files->Describe(path);
   });
-  const auto store = volume::StormStore::Open({folder_.Path().string()}, options);
+  const auto store = storm_store::StormStore::Open({folder_.Path().string()}, options);
   ASSERT_TRUE(store.ok()) << store.status();
   ASSERT_EQ((*store)->Storms().size(), 1U);
   EXPECT_TRUE((*store)->Get("wrfout_d01", 0, {}).ok());

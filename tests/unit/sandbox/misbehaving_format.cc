@@ -20,9 +20,9 @@
 namespace thunderhead::sandbox {
 namespace {
 
+using storm_files::StormFile;
 using volume::HydrometeorField;
 using volume::HydrometeorFields;
-using volume::StormFile;
 
 // Tries all that a process would which a file has taken over; returns the names of what succeeded.
 std::string TryEverything() {
@@ -139,12 +139,13 @@ void Spoil(const std::string& how, HydrometeorFields& fields) {
   if (const auto way = ways.find(how); way != ways.end()) way->second();
 }
 
-class MisbehavingReader final : public volume::RecordReader {
+class MisbehavingReader final : public storm_files::RecordReader {
  public:
   explicit MisbehavingReader(std::string name) : name_(std::move(name)) {}
 
-  absl::StatusOr<HydrometeorFields> Read(std::size_t, const std::optional<volume::VerticalGrid>&,
-                                         const volume::ReadCheckpoint& checkpoint) const override {
+  absl::StatusOr<HydrometeorFields> Read(
+      std::size_t, const std::optional<storm_files::VerticalGrid>&,
+      const storm_files::ReadCheckpoint& checkpoint) const override {
     if (checkpoint) static_cast<void>(checkpoint(0.5));
     HydrometeorFields fields = SoundFields();
     Spoil(name_, fields);
@@ -162,25 +163,26 @@ class MisbehavingReader final : public volume::RecordReader {
     return fields;
   }
 
-  absl::StatusOr<volume::VerticalGrid> ReadVerticalGrid(std::size_t) const override {
-    return volume::VerticalGrid{0.0, name_ == "grid" ? std::nan("") : 500.0, 4};
+  absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(std::size_t) const override {
+    return storm_files::VerticalGrid{0.0, name_ == "grid" ? std::nan("") : 500.0, 4};
   }
 
  private:
   const std::string name_;
 };
 
-class MisbehavingFormat final : public volume::StormFormat {
+class MisbehavingFormat final : public storm_files::StormFormat {
  public:
   std::string_view Name() const override { return "a misbehaving file"; }
   std::string_view Example() const override { return "FILE.bad"; }
   std::string_view Requirement() const override { return "a misbehaving file"; }
 
-  volume::FormatFit Sniff(const volume::UnknownFile& file) const override {
-    return file.path.ends_with(".bad") ? volume::FormatFit::kModelLayout : volume::FormatFit::kNone;
+  storm_files::FormatFit Sniff(const storm_files::UnknownFile& file) const override {
+    return file.path.ends_with(".bad") ? storm_files::FormatFit::kModelLayout
+                                       : storm_files::FormatFit::kNone;
   }
 
-  absl::StatusOr<StormFile> Describe(const volume::UnknownFile& unknown) const override {
+  absl::StatusOr<StormFile> Describe(const storm_files::UnknownFile& unknown) const override {
     const std::string name = std::filesystem::path(unknown.path).stem();
     if (absl::Status status = MisbehaveWhenDescribed(name); !status.ok()) return status;
     StormFile file;
@@ -198,8 +200,8 @@ class MisbehavingFormat final : public volume::StormFormat {
 
 }  // namespace
 
-volume::StormFormats FormatsWithMisbehaving() {
-  volume::StormFormats formats = volume::StormFormats::BuiltIn();
+storm_files::StormFormats FormatsWithMisbehaving() {
+  storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
   formats.Add(std::make_shared<MisbehavingFormat>());
   return formats;
 }

@@ -2,11 +2,11 @@
 // files that exploit a library, without the exploit.
 #pragma once
 
-#include "volume/storm_format.h"
+#include "storm_files/storm_format.h"
 
 namespace thunderhead::sandbox {
 
 // The formats of this build, and that of files that end in ".bad".
-volume::StormFormats FormatsWithMisbehaving();
+storm_files::StormFormats FormatsWithMisbehaving();
 
 }  // namespace thunderhead::sandbox

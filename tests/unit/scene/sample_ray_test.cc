@@ -9,7 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "scene/ray_probe.h"
-#include "volume/storm_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::scene {
 namespace {
@@ -61,7 +61,7 @@ TEST(SampleRay, GraupelAboveAColumnIsTheFiles) {
     path_kg_per_m2 += graupel[level * kNx * kNy + column] * density * (top_m - bottom_m);
   }
 
-  const auto store = volume::StormStore::Open({kSample}, {.read_ahead = 0});
+  const auto store = storm_store::StormStore::Open({kSample}, {.read_ahead = 0});
   ASSERT_TRUE(store.ok()) << store.status();
   const auto fields = (*store)->Get("supercell", kRecord, {});
   ASSERT_TRUE(fields.ok()) << fields.status();

@@ -6,8 +6,8 @@
 #include "glm/trigonometric.hpp"
 #include "gtest/gtest.h"
 #include "scene/view.h"
+#include "storm_store/storm_store.h"
 #include "volume/core_sight.h"
-#include "volume/storm_store.h"
 
 namespace thunderhead::scene {
 namespace {
@@ -192,7 +192,8 @@ TEST(SpotterPlace, AGivenAzimuthDecidesTheSide) {
 }
 
 TEST(SpotterPlace, ShowsTheTowersOfTheSampleStorm) {
-  const auto store = volume::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
+  const auto store =
+      storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
   ASSERT_TRUE(store.ok());
   for (int time = 0; time < 4; ++time) {
     SCOPED_TRACE(time);

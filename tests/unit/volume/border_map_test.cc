@@ -7,7 +7,7 @@
 #include "glm/geometric.hpp"
 #include "glm/gtc/packing.hpp"
 #include "gtest/gtest.h"
-#include "tests/unit/volume/border_files.h"
+#include "tests/support/border_files.h"
 
 namespace thunderhead::volume {
 namespace {

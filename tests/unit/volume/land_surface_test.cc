@@ -4,10 +4,10 @@
 
 #include "glm/geometric.hpp"
 #include "gtest/gtest.h"
+#include "storm_files/wrf_metadata.h"
+#include "storm_files/wrf_reader.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
-#include "volume/wrf_metadata.h"
-#include "volume/wrf_reader.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -42,9 +42,9 @@ class LandSurfaceTest : public ::testing::Test {
   HydrometeorFields Read(const SyntheticWrf& file, std::size_t record = 0) {
     const std::string path = folder_.File("wrfout.nc");
     WriteWrf(file, path);
-    const auto metadata = ReadWrfMetadata(path);
+    const auto metadata = storm_files::ReadWrfMetadata(path);
     EXPECT_TRUE(metadata.ok()) << metadata.status();
-    auto fields = ReadWrfTime(*metadata, record, std::nullopt, {});
+    auto fields = storm_files::ReadWrfTime(*metadata, record, std::nullopt, {});
     EXPECT_TRUE(fields.ok()) << fields.status();
     return *std::move(fields);
   }

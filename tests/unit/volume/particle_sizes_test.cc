@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "physics/particle_size.h"
+#include "storm_files/wrf_reader.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
-#include "volume/wrf_reader.h"
 
 namespace thunderhead::volume {
 namespace {
@@ -28,9 +28,9 @@ class ParticleSizesTest : public ::testing::Test {
   HydrometeorFields Read(const SyntheticWrf& file) {
     const std::string path = folder_.File("wrfout");
     testing::WriteWrf(file, path);
-    const auto metadata = ReadWrfMetadata(path);
+    const auto metadata = storm_files::ReadWrfMetadata(path);
     EXPECT_TRUE(metadata.ok()) << metadata.status();
-    auto fields = ReadWrfTime(*metadata, 0, std::nullopt, {});
+    auto fields = storm_files::ReadWrfTime(*metadata, 0, std::nullopt, {});
     EXPECT_TRUE(fields.ok()) << fields.status();
     return *std::move(fields);
   }

@@ -1,0 +1,5 @@
+// Shows the page in full screen, or ends that.
+export function toggleFullScreen(): void {
+  if (document.fullscreenElement !== null) void document.exitFullscreen();
+  else void document.documentElement.requestFullscreen();
+}

@@ -1,0 +1,20 @@
+// Checks that the arrays which a file announces fit into memory, before they are allocated: the
+// kernel may promise more memory than there is, and end the process when it is touched.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace thunderhead::base {
+
+// The product of `lengths`. RESOURCE_EXHAUSTED if that many values of `bytes_each` are more than
+// this machine's memory, or this process's limit; `what` begins the message, e.g. "wrfout_d01:
+// QCLOUD".
+absl::StatusOr<std::size_t> CountThatFits(const std::string& what,
+                                          const std::vector<std::size_t>& lengths,
+                                          std::size_t bytes_each);
+
+}  // namespace thunderhead::base

@@ -1,0 +1,37 @@
+// What a frame shows and how it was made. Plain values that travel with it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "accuracy/accuracy_report.h"
+#include "renderers/content.h"
+#include "scene/frame_stage.h"
+
+namespace thunderhead::delivery {
+
+using accuracy::AccuracyReport;
+using scene::StageTime;
+
+// The content of a frame and the technique that drew it.
+struct Modelled {
+  std::string technique;  // its name
+  renderers::Content content;
+  int slices = 0;
+  std::uint64_t device_bytes = 0;
+  std::int64_t traced_paths = 0;  // that corrected the light
+  double exposure_ev = 0.0;
+};
+
+// Progress of a picture by the reference.
+struct Refinement {
+  int samples_per_pixel = 0;  // of every pixel
+  // Root of the mean squared standard error over the mean radiance; none if there are too few
+  // samples.
+  std::optional<double> relative_error;
+
+  bool operator==(const Refinement&) const = default;
+};
+
+}  // namespace thunderhead::delivery

@@ -1,0 +1,72 @@
+// Encodes sessions' frames as JPEG and video on other threads than the render loop's, and publishes
+// them in the order in which they were drawn; stills of higher quality follow (still_maker.h). The
+// render loop submits at most two frames of a session at a time, which bounds the queue.
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/time_source.h"
+#include "drawing/frame_source.h"
+#include "drawing/still_maker.h"
+#include "scene/view.h"
+#include "session/sessions.h"
+
+namespace thunderhead::drawing {
+
+// A frame drawn for a session.
+struct DrawnFrame {
+  std::shared_ptr<session::Session> session;
+  std::uint64_t scene_revision = 0;
+  scene::Scene scene;
+  bool refined = false;
+  session::Clock::time_point rests_at;  // unless the scene changes before
+  DisplayFrame picture;
+  std::optional<frame::FineImage> fine;            // where viewers take stills of higher quality
+  std::optional<delivery::Refinement> refinement;  // of a picture by the reference
+  scene::View view;
+};
+
+class FrameEncoder {
+ public:
+  static constexpr int kMaxPending = 2;
+
+  // `on_encoded` is called on an encoding thread when a frame has been published. Encoders of video
+  // take their room in `memory`.
+  FrameEncoder(int threads, SerializeFrame serialize, std::shared_ptr<base::MemoryBudget> memory,
+               std::function<void()> on_encoded, const base::TimeSource& time = base::SteadyTime());
+  // Waits for the frames being encoded and drops the queued ones.
+  ~FrameEncoder();
+  FrameEncoder(const FrameEncoder&) = delete;
+  FrameEncoder& operator=(const FrameEncoder&) = delete;
+
+  void Encode(DrawnFrame frame);
+  // True if the session has the maximum number of pending frames.
+  bool IsFullFor(const session::Session& session);
+
+ private:
+  void Run();
+  std::deque<DrawnFrame>::iterator NextFrame();  // needs mutex_
+
+  const SerializeFrame serialize_;
+  const std::shared_ptr<base::MemoryBudget> memory_;
+  const std::function<void()> on_encoded_;
+  const base::TimeSource& time_;
+  StillMaker stills_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  std::deque<DrawnFrame> waiting_;
+  std::vector<const session::Session*>
+      encoding_;  // sessions with a frame being encoded: at most one each, which keeps the order
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace thunderhead::drawing

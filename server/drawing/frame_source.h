@@ -1,0 +1,130 @@
+// The interface between the render loop and the engine that draws: a scene and a storm's fields in,
+// display pixels out. The GL engine implements it; service tests use a fake one. A FrameSource is
+// created, used and destroyed on one thread; there is one for each thread that draws.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "accuracy/accuracy_report.h"
+#include "accuracy/error_meters.h"
+#include "accuracy/frame_quality.h"
+#include "accuracy/light_progress.h"
+#include "base/device_turn.h"
+#include "base/memory_budget.h"
+#include "delivery/frame_content.h"
+#include "frame/fine_image.h"
+#include "glm/vec2.hpp"
+#include "glm/vec3.hpp"
+#include "physics/hydrometeors.h"
+#include "picture/linear_picture.h"
+#include "renderers/content.h"
+#include "renderers/preparation.h"
+#include "scene/frame_stage.h"
+#include "scene/scene.h"
+#include "scene/technique_info.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::drawing {
+
+using accuracy::AccuracyReport;
+using accuracy::FrameQuality;
+using scene::StageTime;
+
+// A finished picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.
+struct DisplayFrame {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::uint8_t> rgb;
+  std::vector<StageTime> stages;
+  delivery::Modelled modelled;
+  std::optional<AccuracyReport> accuracy;
+  std::shared_ptr<const base::MemoryReservation> memory;  // that it counts in
+  std::optional<picture::LinearPicture> linear;  // before the tone map; where it was asked for
+};
+
+// A picture at full quality, and its difference from one with half the slices.
+struct CheckedFrame {
+  DisplayFrame frame;
+  double discretisation_error = 0.0;  // accuracy::DiscretisationError
+};
+
+// The device that the source draws on.
+struct DeviceInfo {
+  std::string device;       // "software" or "gpu 0"
+  std::string gl_renderer;  // OpenGL's renderer string
+  std::string gl_version;
+};
+
+using renderers::Preparation;
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  virtual const DeviceInfo& Device() const = 0;
+
+  // In the order in which to offer them.
+  virtual std::vector<scene::TechniqueInfo> Techniques() const = 0;
+
+  // Null if no scene needs preparation.
+  virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }
+
+  // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ
+  // from the frame drawn before.
+  virtual absl::StatusOr<DisplayFrame> Draw(
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      const FrameQuality& quality) = 0;
+
+  // Draws at full quality and with half the slices; a scene of one slice cannot be checked.
+  virtual absl::StatusOr<CheckedFrame> DrawChecked(
+      const scene::Scene& scene,
+      const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
+
+  // Traces paths for a scene with traced light for about a tenth of a second, which improves what
+  // any of the sources made by one factory draws of it: now and then, and once `wanted_paths` are
+  // traced. RESOURCE_EXHAUSTED while light is traced for too many other scenes. `claim`, which may
+  // be null, is given a claim on what is traced for the scene.
+  virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
+      const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
+      std::int64_t wanted_paths, accuracy::LightClaim* claim) = 0;
+
+  // Measures the error of the scene's picture at full quality, with the light traced so far, for
+  // some tenths of a second more: traces paths, or draws the picture where its light has become
+  // much better. RESOURCE_EXHAUSTED while too many other scenes are measured.
+  virtual absl::StatusOr<accuracy::ErrorProgress> MeasureError(
+      const scene::Scene& /*scene*/,
+      const std::shared_ptr<const volume::HydrometeorFields>& /*fields*/) {
+    return accuracy::ErrorProgress{.ended = true};
+  }
+
+  // Tone maps a picture of `scene` computed elsewhere. Does not disturb the stages that Draw keeps.
+  virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
+                                            const scene::Scene& scene) = 0;
+
+  // The picture that Draw, DrawChecked or Tone has just given, with more than 8 bits; none if it
+  // cannot be had.
+  virtual absl::StatusOr<frame::FineImage> Fine() {
+    return absl::UnimplementedError("this frame source has pictures of 8 bits only");
+  }
+
+  // The picture that Draw, DrawChecked or Tone has just given as light, with the storm's opacity.
+  virtual absl::StatusOr<picture::LinearPicture> Linear() {
+    return absl::UnimplementedError("this frame source has tone-mapped pictures only");
+  }
+
+  // Gives back the memory of what it keeps for further pictures and has not drawn for so long.
+  virtual void FreeUnused(double /*unused_s*/) {}
+};
+
+// Makes a source on the thread that will use it. It takes `turn`, which must outlive it, for each
+// piece that it draws; null: it draws in one piece, and whoever calls it has the turn.
+using FrameSourceFactory =
+    std::function<absl::StatusOr<std::unique_ptr<FrameSource>>(base::DeviceTurn* turn)>;
+
+}  // namespace thunderhead::drawing

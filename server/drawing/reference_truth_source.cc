@@ -1,0 +1,59 @@
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include "drawing/truth_source.h"
+#include "reference/scene_tracer.h"
+#include "reference/trace_scene.h"
+
+namespace thunderhead::drawing {
+namespace {
+
+int DefaultThreads() {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::max(cores - std::max(cores / 4, 1), 1);
+}
+
+class ReferenceTruthSource final : public TruthSource {
+ public:
+  explicit ReferenceTruthSource(int threads)
+      : tracer_(reference::kPeakCut_deg, {.threads = threads}) {}
+
+  absl::Status Begin(const scene::Scene& scene,
+                     const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                     const glm::ivec2& size_px) override {
+    return tracer_.Begin(scene, fields, size_px);
+  }
+
+  delivery::Refinement Refine(int until_samples, double seconds,
+                              const std::stop_token& stop) override {
+    reference::RefineLimits limits;
+    limits.samples_per_pixel = until_samples;
+    limits.pause_s = seconds;
+    const reference::ImageProgress progress = tracer_.Refine(limits, stop).progress;
+    delivery::Refinement refinement;
+    refinement.samples_per_pixel = progress.samples_per_pixel;
+    if (std::isfinite(progress.relative_error)) {
+      refinement.relative_error = progress.relative_error;
+    }
+    return refinement;
+  }
+
+  picture::LinearPicture Snapshot() override {
+    picture::LinearPicture picture = tracer_.Snapshot();
+    picture.standard_error = {};  // sessions show only its mean (Refinement)
+    return picture;
+  }
+
+ private:
+  reference::SceneTracer tracer_;
+};
+
+}  // namespace
+
+std::unique_ptr<TruthSource> MakeReferenceTruthSource(int threads) {
+  return std::make_unique<ReferenceTruthSource>(threads > 0 ? threads : DefaultThreads());
+}
+
+}  // namespace thunderhead::drawing

@@ -1,0 +1,332 @@
+#include "drawing/render_loop.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "base/error_details.h"
+#include "base/status.h"
+#include "base/thread_priority.h"
+#include "drawing/guarded_source.h"
+#include "drawing/image_drawer.h"
+#include "drawing/lane.h"
+#include "drawing/light_tracer.h"
+#include "drawing/measured_source.h"
+#include "drawing/session_drawer.h"
+#include "drawing/session_lane.h"
+#include "drawing/turns.h"
+#include "gl/device_faults.h"
+#include "spdlog/spdlog.h"
+#include "telemetry/metrics.h"
+
+namespace thunderhead::drawing {
+namespace {
+
+// Behind whoever waits, but before tracing, which could use all processors for ever.
+constexpr int kImageNiceness = 5;
+// Frames at rest, behind those that move.
+constexpr int kSessionNiceness = 1;
+
+// Those who draw beside the render loop.
+class Lanes {
+ public:
+  struct Entry {
+    std::string name;  // before every session's
+    TurnClass turn_class;
+    Lane& lane;
+  };
+
+  Lanes(const FrameSourceFactory& make_source, bool yield, const std::function<void()>& wake,
+        const base::TimeSource& time)
+      : sessions(make_source, yield ? kSessionNiceness : 0, wake, time),
+        tracing(make_source, yield ? base::kLowestPriority : 0, wake, time),
+        quick_images(make_source, yield ? kImageNiceness : 0, wake, time),
+        images(make_source, yield ? kImageNiceness : 0, wake, time),
+        all_{{"/tracing", TurnClass::kRefining, tracing},
+             {"/quick images", TurnClass::kBatch, quick_images},
+             {"/images", TurnClass::kBatch, images}} {}
+
+  // Those that compete for turns themselves; sessions' does for the session whose frame it draws.
+  const std::vector<Entry>& All() const { return all_; }
+
+  Lane sessions;
+  Lane tracing;
+  Lane quick_images;
+  Lane images;
+
+ private:
+  const std::vector<Entry> all_;
+};
+
+// A scene looked at again within this time should find it as it was.
+constexpr double kUnused_s = 3.0;
+constexpr std::chrono::milliseconds kBetweenAnswers{500};
+
+RenderLoopOptions WithBudget(RenderLoopOptions options) {
+  if (options.memory == nullptr) options.memory = base::MemoryBudget::Unlimited();
+  return options;
+}
+
+// Asks for what is unused to be given back when a budget has no room. Sees the budgets' refusals as
+// long as it lives.
+class MemoryPressure {
+ public:
+  using Budgets = std::vector<std::shared_ptr<base::MemoryBudget>>;
+
+  MemoryPressure(const Budgets& budgets, base::WakeSignal& wake, const base::TimeSource& time)
+      : budgets_(budgets), time_(time), seen_(budgets.size()) {
+    for (const auto& budget : budgets_) budget->OnPressure([&wake] { wake.Notify(); });
+  }
+  ~MemoryPressure() {
+    for (const auto& budget : budgets_) budget->OnPressure({});
+  }
+  MemoryPressure(const MemoryPressure&) = delete;
+  MemoryPressure& operator=(const MemoryPressure&) = delete;
+
+  template <typename FreeUnused>
+  void Answer(const FreeUnused& free_unused) {
+    bool has_grown = false;
+    for (std::size_t i = 0; i < budgets_.size(); ++i) {
+      const std::uint64_t refusals = budgets_[i]->Refusals();
+      has_grown = has_grown || std::exchange(seen_[i], refusals) != refusals;
+    }
+    if (!has_grown) return;
+    if (time_.Now() >= next_) {
+      free_unused();
+      next_ = time_.Now() + kBetweenAnswers;
+    }
+    for (std::size_t i = 0; i < budgets_.size(); ++i) budgets_[i]->Answer(seen_[i]);
+  }
+
+ private:
+  const Budgets& budgets_;
+  const base::TimeSource& time_;
+  std::vector<std::uint64_t> seen_;
+  session::Clock::time_point next_{};
+};
+
+std::optional<session::Clock::time_point> Earlier(
+    const std::optional<session::Clock::time_point>& a,
+    const std::optional<session::Clock::time_point>& b) {
+  if (!a.has_value()) return b;
+  if (!b.has_value()) return a;
+  return std::min(*a, *b);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<RenderLoop>> RenderLoop::Start(
+    const RenderLoopOptions& options, storm_store::StormStore& store, session::Sessions& sessions,
+    base::WakeSignal& wake, const FrameSourceFactory& make_source) {
+  std::unique_ptr<RenderLoop> loop(new RenderLoop(options, store, sessions, wake));
+  std::promise<absl::Status> started;
+  std::future<absl::Status> status = started.get_future();
+  loop->thread_ =
+      std::thread([raw = loop.get(), make_source, promise = std::move(started)]() mutable {
+        raw->Run(make_source, std::move(promise));
+      });
+  THUNDERHEAD_RETURN_IF_ERROR(status.get());
+  return loop;
+}
+
+RenderLoop::RenderLoop(const RenderLoopOptions& options, storm_store::StormStore& store,
+                       session::Sessions& sessions, base::WakeSignal& wake)
+    : options_(WithBudget(options)),
+      store_(store),
+      sessions_(sessions),
+      wake_(wake),
+      time_(sessions.time()),
+      losses_(options.losses),
+      images_(options.max_waiting_images, options.max_waiting_images_each),
+      reader_(std::make_unique<FieldsReader>(store, [&wake] { wake.Notify(); })),
+      encoder_(std::make_unique<FrameEncoder>(
+          options.encoder_threads, options.serialize_frame, options_.memory,
+          [&wake] { wake.Notify(); }, time_)),
+      tracer_(std::make_unique<TruthTracer>(
+          options.make_truth_source, options.max_traced_sessions, options_.memory,
+          [&wake] { wake.Notify(); }, time_)) {}
+
+RenderLoop::~RenderLoop() { Stop(); }
+
+double RenderLoop::TurnSeconds() const {
+  const session::Clock::rep began = turn_began_;
+  if (began == 0) return 0.0;
+  const session::Clock::duration took =
+      time_.Now().time_since_epoch() - session::Clock::duration(began);
+  return std::chrono::duration<double>(took).count();
+}
+
+void RenderLoop::NoteLanes(std::vector<const Lane*> lanes) {
+  const std::lock_guard lock(lanes_mutex_);
+  lanes_ = std::move(lanes);
+}
+
+double RenderLoop::StalledSeconds() const {
+  const std::lock_guard lock(lanes_mutex_);
+  double stalled_s = 0.0;
+  for (const Lane* lane : lanes_) stalled_s = std::max(stalled_s, lane->StalledSeconds());
+  return stalled_s;
+}
+
+void RenderLoop::RequestStop() {
+  stopping_ = true;
+  wake_.Notify();
+}
+
+void RenderLoop::Stop() {
+  RequestStop();
+  if (thread_.joinable()) thread_.join();
+  reader_.reset();
+  tracer_.reset();
+  encoder_.reset();
+}
+
+void RenderLoop::RenderImage(ImageJob job) {
+  if (images_.Add(std::move(job))) wake_.Notify();
+}
+
+void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl::Status> started) {
+  const FrameSourceFactory make_source =
+      GuardedSources(make_unguarded, {.memory = options_.memory,
+                                      .generation = device_generation_,
+                                      .on_device_lost = [this](std::uint64_t generation) {
+                                        if (generation != device_generation_)
+                                          return;  // that is known
+                                        device_lost_ = true;
+                                        wake_.Notify();
+                                      }});
+  auto source = make_source(nullptr);
+  if (source.ok()) {
+    device_ = (*source)->Device();
+    techniques_ = (*source)->Techniques();
+    preparation_ = (*source)->PreparationOfScenes();
+  }
+  started.set_value(source.status());
+  if (source.ok()) DrawWith(*std::move(source), make_source);
+  images_.RefuseAll();
+}
+
+void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
+                          const FrameSourceFactory& make_source) {
+  MeasuredSource measured(std::move(source), options_.offer_tables(), time_);
+  const auto wake = [this] { wake_.Notify(); };
+  auto lanes = std::make_unique<Lanes>(make_source, options_.lanes_yield, wake, time_);
+  LightTracer light_tracer(lanes->tracing);
+  SessionLane session_lane(lanes->sessions, [this](std::uint64_t bytes) {
+    return std::ranges::all_of(options_.device_memory,
+                               [bytes](const auto& budget) { return budget->HasRoom(bytes); });
+  });
+  SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
+                       *tracer_, light_tracer, session_lane,
+                       {.picture_bytes = options_.memory->Bytes() / 2,
+                        .references = std::max<std::size_t>(1, options_.max_traced_sessions / 2)},
+                       time_);
+  ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
+                           {lanes->quick_images, lanes->images}, time_);
+  Turns turns;
+  MemoryPressure pressure(options_.device_memory, wake_, time_);
+  const std::vector<Lane*> all_lanes{&lanes->sessions, &lanes->tracing, &lanes->quick_images,
+                                     &lanes->images};
+  NoteLanes({all_lanes.begin(), all_lanes.end()});
+  while (!stopping_) {
+    BeginTurn();
+    if (device_lost_.exchange(false)) {
+      if (!Recover(make_source, all_lanes, measured)) break;
+      drawer.DeviceReplaced();
+    }
+    pressure.Answer([&] {
+      // The sessions' lane draws what the render loop can draw as well: its copy goes first.
+      if (session_lane.IsFree() && session_lane.Last().has_value()) {
+        session_lane.Forget();
+        lanes->sessions.FreeUnused(0.0);
+        return base::GiveBackFreedMemory();
+      }
+      drawer.YieldMemory(sessions_.AllDrawn());
+      measured.FreeUnused(kUnused_s);
+      for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
+      base::GiveBackFreedMemory();
+    });
+    BeginTurn();
+    const std::vector<std::shared_ptr<session::Session>> sessions = sessions_.AllDrawn();
+    drawer.ReleaseUnwatched(sessions);
+    drawer.TakeDrawn(sessions);
+    light_tracer.TakeOutcome(time_.Now());
+    image_drawer.Attend();
+    std::optional<session::Clock::time_point> look_again_at;
+    std::vector<Contender> contenders;
+    contenders.reserve(sessions.size() + lanes->All().size());
+    for (const auto& session : sessions) {
+      const SessionDrawer::Wish wish = drawer.Look(session);
+      contenders.push_back({session->id(), session->IsOwnView(), wish.work});
+      look_again_at = Earlier(look_again_at, wish.look_again_at);
+    }
+    // After the sessions, some of whom may just have asked for light.
+    look_again_at = Earlier(look_again_at, light_tracer.Begin(time_.Now()));
+    for (const Lanes::Entry& entry : lanes->All()) {
+      contenders.push_back({entry.name, false, std::nullopt});
+      if (entry.lane.WantsTurn()) contenders.back().work = entry.turn_class;
+    }
+    const std::optional<std::size_t> next = turns.Next(contenders);
+    if (!next.has_value()) {
+      turn_began_ = 0;
+      if (!look_again_at.has_value() || *look_again_at > time_.Now()) {
+        wake_.Wait(look_again_at, time_);
+      }
+      continue;
+    }
+    const session::Clock::time_point given_at = time_.Now();
+    if (*next < sessions.size()) {
+      drawer.TakeTurn(sessions[*next]);
+    } else {
+      lanes->All()[*next - sessions.size()].lane.GiveTurn();
+    }
+    turns.Used(contenders[*next], base::MsSince(time_, given_at));
+    turn_began_ = 0;
+  }
+  NoteLanes({});
+  lanes.reset();
+  image_drawer.EndAll(base::ShuttingDown());
+}
+
+bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
+                         MeasuredSource& source) {
+  recovering_ = true;
+  absl::Status why = gl::DeviceLost();
+  while (!stopping_) {
+    telemetry::Counted().device_losses.Add();
+    const std::optional<session::Clock::time_point> at = losses_.Lost(time_.Now());
+    if (!at.has_value()) {
+      why = absl::UnavailableError(
+          absl::StrCat("the device was lost too often and is given up: ", why.message()));
+      spdlog::critical("{}", std::string(why.message()));
+      if (options_.on_device_given_up) options_.on_device_given_up(why);
+      return false;
+    }
+    // Objects of a lost context are deleted before there is another.
+    ++device_generation_;
+    for (Lane* lane : lanes) lane->RenewSource();
+    source.Replace(nullptr);
+    const double pause_s = std::chrono::duration<double>(*at - time_.Now()).count();
+    spdlog::error("the device was lost; opening it again in {:.1f} s", std::max(pause_s, 0.0));
+    turn_began_ = 0;
+    while (!stopping_ && time_.Now() < *at) wake_.Wait(*at, time_);
+    if (stopping_) return false;
+    // A driver may hang here as well as in a picture.
+    BeginTurn();
+    auto made = make_source(nullptr);
+    if (made.ok()) {
+      source.Replace(*std::move(made));
+      recovering_ = false;
+      return true;
+    }
+    why = made.status();
+    spdlog::error("the device cannot be opened: {}", std::string(why.message()));
+  }
+  return false;
+}
+
+}  // namespace thunderhead::drawing

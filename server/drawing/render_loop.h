@@ -1,0 +1,136 @@
+// The render loop: one thread draws the sessions that have a viewer ready for a frame, and gives
+// turns on the device to them and to its lanes, in which their long frames and single pictures are
+// drawn and light is traced. Reads, encoding and the reference run on other threads. Knows no GL
+// (only the frame sources do) and no messages.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "accuracy/offer_tables.h"
+#include "base/memory_budget.h"
+#include "base/time_source.h"
+#include "base/wake_signal.h"
+#include "drawing/device_losses.h"
+#include "drawing/fields_reader.h"
+#include "drawing/frame_encoder.h"
+#include "drawing/frame_planner.h"
+#include "drawing/frame_source.h"
+#include "drawing/image_drawer.h"
+#include "drawing/image_queue.h"
+#include "drawing/truth_source.h"
+#include "drawing/truth_tracer.h"
+#include "session/sessions.h"
+
+namespace thunderhead::drawing {
+
+class Lane;
+class MeasuredSource;
+
+struct RenderLoopOptions {
+  PlannerTargets targets;
+  std::size_t max_waiting_images = 1000;
+  std::size_t max_waiting_images_each = 600;  // of one owner
+  ImageLimits image_limits;
+  int encoder_threads = 1;
+  // Lanes, and the threads that they start, run at a lower priority than frames that move. False
+  // where no session is served: other programs of the machine would come before them.
+  bool lanes_yield = true;
+  SerializeFrame serialize_frame = [](const delivery::EncodedFrame&) { return ""; };
+  // Sessions that show the reference; each takes some hundred bytes a pixel and the medium.
+  std::size_t max_traced_sessions = 8;
+  std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
+  TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
+  // The budget of pictures; null: nothing is refused.
+  std::shared_ptr<base::MemoryBudget> memory;
+  // The budget of GL objects; where it refuses, sources give back what they keep.
+  std::vector<std::shared_ptr<base::MemoryBudget>> device_memory;
+  LossLimits losses;
+  // Called once, on the loop's thread, when the device was lost too often: nothing is drawn any
+  // more.
+  std::function<void(const absl::Status& why)> on_device_given_up;
+};
+
+class RenderLoop {
+ public:
+  // Returns once the frame source is created, or its error. `sessions` must call `wake.Notify()`
+  // when there is work; the store, the sessions and the signal must outlive the loop.
+  static absl::StatusOr<std::unique_ptr<RenderLoop>> Start(const RenderLoopOptions& options,
+                                                           storm_store::StormStore& store,
+                                                           session::Sessions& sessions,
+                                                           base::WakeSignal& wake,
+                                                           const FrameSourceFactory& make_source);
+  ~RenderLoop();
+  RenderLoop(const RenderLoop&) = delete;
+  RenderLoop& operator=(const RenderLoop&) = delete;
+
+  const DeviceInfo& Device() const { return device_; }
+  // In the order in which to offer them.
+  const std::vector<scene::TechniqueInfo>& Techniques() const { return techniques_; }
+
+  void RenderImage(ImageJob job);
+
+  // Since the turn of drawing under way began, or a lost device is being opened again; 0 while the
+  // loop waits for work.
+  double TurnSeconds() const;
+
+  // The device was lost, and is not ready again.
+  bool IsRecovering() const { return recovering_; }
+  std::size_t WaitingImages() const { return images_.Waiting(); }
+
+  // For how long a lane has worked without drawing a piece or waiting for one; 0 while none works.
+  double StalledSeconds() const;
+
+  // Stops drawing after the current frame or piece. Returns at once.
+  void RequestStop();
+  // Waits for the current frame or piece, refuses the waiting pictures and ends every thread.
+  void Stop();
+
+ private:
+  RenderLoop(const RenderLoopOptions& options, storm_store::StormStore& store,
+             session::Sessions& sessions, base::WakeSignal& wake);
+
+  void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
+  void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
+  void NoteLanes(std::vector<const Lane*> lanes);
+  // From now on TurnSeconds counts.
+  void BeginTurn() { turn_began_ = time_.Now().time_since_epoch().count(); }
+  // After a loss of the device: returns when there is one again, false if it is given up.
+  bool Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
+               MeasuredSource& source);
+
+  const RenderLoopOptions options_;
+  storm_store::StormStore& store_;
+  session::Sessions& sessions_;
+  base::WakeSignal& wake_;
+  const base::TimeSource& time_;  // the sessions'
+  DeviceInfo device_;             // like the next two, constant after Start
+  std::vector<scene::TechniqueInfo> techniques_;
+  std::shared_ptr<Preparation> preparation_;
+  std::atomic<bool> stopping_{false};
+  std::atomic<std::uint64_t> device_generation_{0};  // devices made ready so far
+  std::atomic<bool> device_lost_{false};
+  std::atomic<bool> recovering_{false};
+  DeviceLosses losses_;
+  std::atomic<session::Clock::rep> turn_began_{0};  // since the clock's epoch; 0: none is under way
+
+  mutable std::mutex lanes_mutex_;
+  std::vector<const Lane*> lanes_;  // that exist
+
+  ImageQueue images_;
+  std::unique_ptr<FieldsReader> reader_;
+  std::unique_ptr<FrameEncoder> encoder_;
+  std::unique_ptr<TruthTracer> tracer_;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::drawing

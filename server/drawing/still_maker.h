@@ -1,0 +1,68 @@
+// Makes stills of higher quality of frames that stay: AVIF, on a thread of its own with low
+// priority, so that nobody's moving pictures wait for them. A newer frame of a session drops the
+// still of the older one, unless that is being encoded, which takes about a tenth of a second.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "base/time_source.h"
+#include "delivery/encoded_frame.h"
+#include "delivery/picture_sizes.h"
+#include "frame/fine_image.h"
+#include "session/sessions.h"
+
+namespace thunderhead::drawing {
+
+// Makes the bytes of a frame that every viewer is sent.
+using SerializeFrame = std::function<std::string(const delivery::EncodedFrame&)>;
+
+// A published frame that may become a still.
+struct StillToMake {
+  std::weak_ptr<session::Session> session;
+  std::uint64_t sequence = 0;
+  delivery::EncodedFrame described;  // without a picture
+  session::Clock::time_point rests_at;
+  // Null where nobody takes stills of higher quality.
+  std::shared_ptr<delivery::PictureSizes<frame::FineImage>> fine;
+};
+
+class StillMaker {
+ public:
+  // A frame that was drawn in motion rests after so long without a newer one, or later.
+  static constexpr std::chrono::milliseconds kRestsAfter{150};
+
+  explicit StillMaker(SerializeFrame serialize, const base::TimeSource& time = base::SteadyTime());
+  // Waits for the still being made and drops the others.
+  ~StillMaker();
+  StillMaker(const StillMaker&) = delete;
+  StillMaker& operator=(const StillMaker&) = delete;
+
+  void Make(StillToMake still);
+
+ private:
+  using Time = session::Clock::time_point;
+  struct Waiting {
+    StillToMake still;
+    Time due;
+  };
+
+  void Run();
+  absl::StatusOr<delivery::EncodedFrame> Encoded(const StillToMake& still, int tier) const;
+  void MakeNow(const StillToMake& still) const;
+
+  const SerializeFrame serialize_;
+  const base::TimeSource& time_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  std::map<const session::Session*, Waiting> waiting_;  // the newest of each session
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::drawing

@@ -1,0 +1,40 @@
+// Refines a picture towards the truth for the render loop: the Monte Carlo reference, or a fake in
+// service tests. A TruthSource is used by one thread at a time. Knows no sessions.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <stop_token>
+
+#include "absl/status/status.h"
+#include "drawing/frame_source.h"
+#include "glm/vec2.hpp"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::drawing {
+
+class TruthSource {
+ public:
+  virtual ~TruthSource() = default;
+
+  // Begins a picture of `size_px`, which overrides the scene's size, without any samples.
+  virtual absl::Status Begin(const scene::Scene& scene,
+                             const std::shared_ptr<const volume::HydrometeorFields>& fields,
+                             const glm::ivec2& size_px) = 0;
+
+  // Adds samples until every pixel has `until_samples`, for at most `seconds` or until `stop` is
+  // requested. Another call continues.
+  virtual delivery::Refinement Refine(int until_samples, double seconds,
+                                      const std::stop_token& stop) = 0;
+
+  virtual picture::LinearPicture Snapshot() = 0;
+};
+
+using TruthSourceFactory = std::function<std::unique_ptr<TruthSource>()>;
+
+// The reference on `threads` threads; 0: all cores except a quarter of them, at least one, for
+// everything else.
+std::unique_ptr<TruthSource> MakeReferenceTruthSource(int threads = 0);
+
+}  // namespace thunderhead::drawing

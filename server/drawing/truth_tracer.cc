@@ -1,0 +1,200 @@
+#include "drawing/truth_tracer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/guarded.h"
+#include "base/status.h"
+#include "base/stopwatch.h"
+#include "base/thread_priority.h"
+#include "drawing/truth_schedule.h"
+#include "reference/scene_problem.h"
+
+namespace thunderhead::drawing {
+namespace {
+
+// Length of a turn.
+constexpr double kTurn_s = 0.25;
+
+// Mean and variance of radiance, opacity, distance, and a picture that waits to be shown.
+constexpr std::size_t kTracedBytesPerPixel = 160;
+
+std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& size_px) {
+  return static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y) *
+             kTracedBytesPerPixel +
+         reference::MediumBytes(fields, false);
+}
+
+}  // namespace
+
+// A picture being traced. Used by the tracing thread, except for `stop`.
+struct TruthTracer::Job {
+  Job(std::string of_owner, std::shared_ptr<const scene::Scene> of_scene,
+      std::shared_ptr<const volume::HydrometeorFields> of_fields, const Owned& of,
+      const base::TimeSource& by_time)
+      : owner(std::move(of_owner)),
+        scene(std::move(of_scene)),
+        fields(std::move(of_fields)),
+        source(of.source),
+        reserved(of.reserved),
+        time(by_time),
+        schedule({scene->output.width_px, scene->output.height_px}),
+        shown_at(by_time.Now()) {}
+
+  // A picture if one is due, and whether it is the last.
+  struct Turn {
+    Found found;
+    bool ended = false;
+  };
+  // Refines for a turn. An error ends the picture.
+  absl::StatusOr<Turn> Refine(base::MemoryBudget& memory);
+
+  const std::string owner;
+  const std::shared_ptr<const scene::Scene> scene;
+  const std::shared_ptr<const volume::HydrometeorFields> fields;
+  const std::shared_ptr<TruthSource> source;
+  const std::shared_ptr<base::MemoryReservation> reserved;
+  const base::TimeSource& time;
+  std::stop_source stop;
+  TruthSchedule schedule;
+  bool begun = false;
+  double trace_ms = 0.0;
+  base::TimeSource::Clock::time_point shown_at;
+};
+
+absl::StatusOr<TruthTracer::Job::Turn> TruthTracer::Job::Refine(base::MemoryBudget& memory) {
+  const base::Stopwatch stopwatch;
+  if (!begun) {
+    THUNDERHEAD_RETURN_IF_ERROR(memory.Resize(*reserved, BytesFor(*fields, schedule.SizePx()),
+                                              "a picture by the reference"));
+    THUNDERHEAD_RETURN_IF_ERROR(source->Begin(*scene, fields, schedule.SizePx()));
+    begun = true;
+  }
+  const delivery::Refinement refinement =
+      source->Refine(schedule.UntilSamples(), kTurn_s, stop.get_token());
+  trace_ms += stopwatch.ElapsedMs();
+  if (stop.stop_requested()) return Turn{std::nullopt, true};
+  Found found;
+  const bool full_size = schedule.IsFull();
+  if (schedule.ShowNow(refinement, base::MsSince(time, shown_at) * 1e-3)) {
+    found = std::make_shared<const TruthPicture>(
+        TruthPicture{source->Snapshot(), refinement, trace_ms, full_size});
+    shown_at = time.Now();
+  }
+  if (schedule.GrowAt(refinement)) begun = false;
+  return Turn{std::move(found), full_size && schedule.Finished(refinement)};
+}
+
+TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
+                         std::shared_ptr<base::MemoryBudget> memory,
+                         std::function<void()> on_picture, const base::TimeSource& time)
+    : make_source_(std::move(make_source)),
+      max_owners_(max_owners),
+      memory_(std::move(memory)),
+      on_picture_(std::move(on_picture)),
+      time_(time),
+      thread_([this] { Run(); }) {}
+
+TruthTracer::~TruthTracer() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    for (auto& [owner, owned] : owned_) {
+      if (owned.job != nullptr) owned.job->stop.request_stop();
+    }
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
+                                std::shared_ptr<const volume::HydrometeorFields> fields) {
+  Stop(owner);
+  {
+    const std::lock_guard lock(mutex_);
+    if (owned_.count(owner) == 0 && owned_.size() >= max_owners_) {
+      return absl::ResourceExhaustedError(
+          absl::StrCat("the server is already tracing ", owned_.size(),
+                       " pictures by the reference; choose another renderer"));
+    }
+    Owned& owned = owned_[owner];
+    if (owned.source == nullptr) {
+      owned.source = make_source_();
+      owned.reserved = std::make_shared<base::MemoryReservation>(
+          *memory_->Reserve(base::MemoryUse::kTracing, 0, "a picture by the reference"));
+    }
+    owned.job = std::make_shared<Job>(owner, std::move(scene), std::move(fields), owned, time_);
+  }
+  changed_.notify_one();
+  return absl::OkStatus();
+}
+
+std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> TruthTracer::Take(
+    const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  const auto found = owned_.find(owner);
+  if (found == owned_.end()) return std::nullopt;
+  return std::exchange(found->second.found, std::nullopt);
+}
+
+void TruthTracer::Stop(const std::string& owner) {
+  const std::lock_guard lock(mutex_);
+  const auto found = owned_.find(owner);
+  if (found == owned_.end()) return;
+  found->second.found.reset();
+  const std::shared_ptr<Job> job = std::exchange(found->second.job, nullptr);
+  if (job != nullptr) job->stop.request_stop();
+}
+
+void TruthTracer::Forget(const std::string& owner) {
+  Stop(owner);
+  const std::lock_guard lock(mutex_);
+  owned_.erase(owner);
+}
+
+// Round robin: the job of the owner after the one served last.
+std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
+  const auto after_last = owned_.upper_bound(last_served_);
+  const auto has_job = [](const auto& entry) { return entry.second.job != nullptr; };
+  auto next = std::find_if(after_last, owned_.end(), has_job);
+  if (next == owned_.end()) next = std::find_if(owned_.begin(), owned_.end(), has_job);
+  return next == owned_.end() ? nullptr : next->second.job;
+}
+
+// Keeps the result unless the job has been replaced.
+void TruthTracer::Keep(Job& job, Found found, bool ended) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto entry = owned_.find(job.owner);
+    if (entry == owned_.end() || entry->second.job.get() != &job) return;
+    if (ended) entry->second.job.reset();
+    if (!found.has_value()) return;
+    entry->second.found = std::move(found);
+  }
+  on_picture_();
+}
+
+void TruthTracer::Run() {
+  // Threads that it starts inherit that.
+  base::LowerPriority(base::kLowestPriority);
+  std::unique_lock lock(mutex_);
+  while (true) {
+    std::shared_ptr<Job> job;
+    changed_.wait(lock, [&] { return stopping_ || (job = NextJob()) != nullptr; });
+    if (stopping_) return;
+    last_served_ = job->owner;
+    lock.unlock();
+    auto turn = base::Guarded([&] { return job->Refine(*memory_); });
+    if (turn.ok()) {
+      Keep(*job, std::move(turn->found), turn->ended);
+    } else {
+      Keep(*job, turn.status(), true);
+    }
+    // Frees its fields and pictures, maybe many megabytes, before taking the lock.
+    job.reset();
+    lock.lock();
+  }
+}
+
+}  // namespace thunderhead::drawing

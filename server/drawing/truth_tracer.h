@@ -1,0 +1,87 @@
+// Refines sessions' pictures towards the truth on a thread of its own, in short turns. A request
+// replaces the owner's earlier one and ends it at once, so nothing queues; a picture that was not
+// taken is replaced by the next.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "base/memory_budget.h"
+#include "base/time_source.h"
+#include "drawing/frame_source.h"
+#include "drawing/truth_source.h"
+#include "scene/scene.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::drawing {
+
+// A picture so far.
+struct TruthPicture {
+  picture::LinearPicture picture;
+  delivery::Refinement refinement;
+  double trace_ms = 0.0;  // since the request
+  bool full_size = false;
+};
+
+class TruthTracer {
+ public:
+  // Each owner has a source of its own, which keeps its buffers; they count in `memory`, and there
+  // are at most `max_owners`.
+  // `on_picture` is called on the tracing thread when a picture can be taken.
+  TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
+              std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture,
+              const base::TimeSource& time = base::SteadyTime());
+  // Ends tracing at once.
+  ~TruthTracer();
+  TruthTracer(const TruthTracer&) = delete;
+  TruthTracer& operator=(const TruthTracer&) = delete;
+
+  // Begins the owner's picture; RESOURCE_EXHAUSTED if there are too many owners.
+  absl::Status Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
+                     std::shared_ptr<const volume::HydrometeorFields> fields);
+  // Takes the owner's newest picture, or its error, if there is one.
+  std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> Take(const std::string& owner);
+  // Stops tracing the owner's picture; keeps its source for the next.
+  void Stop(const std::string& owner);
+  // Stops tracing and frees the owner's source.
+  void Forget(const std::string& owner);
+
+ private:
+  struct Job;
+  using Found = std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>>;
+  // Only the tracing thread uses the source.
+  struct Owned {
+    std::shared_ptr<TruthSource> source;
+    std::shared_ptr<base::MemoryReservation> reserved;  // for the source's buffers
+    std::shared_ptr<Job> job;
+    Found found;
+  };
+
+  void Run();
+  std::shared_ptr<Job> NextJob();  // needs mutex_
+  void Keep(Job& job, Found found, bool ended);
+
+  const TruthSourceFactory make_source_;
+  const std::size_t max_owners_;
+  const std::shared_ptr<base::MemoryBudget> memory_;
+  const std::function<void()> on_picture_;
+  const base::TimeSource& time_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stopping_ = false;
+  std::map<std::string, Owned> owned_;
+  std::string last_served_;
+  std::thread thread_;
+};
+
+}  // namespace thunderhead::drawing

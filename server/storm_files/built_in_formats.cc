@@ -1,0 +1,15 @@
+// The list of storm formats. A new one is a file of its own, and a line here.
+#include "storm_files/cf_format.h"
+#include "storm_files/storm_format.h"
+#include "storm_files/wrf_format.h"
+
+namespace thunderhead::storm_files {
+
+StormFormats StormFormats::BuiltIn() {
+  StormFormats formats;
+  formats.Add(MakeWrfFormat());
+  formats.Add(MakeCfFormat());
+  return formats;
+}
+
+}  // namespace thunderhead::storm_files

@@ -1,0 +1,330 @@
+#include "storm_files/cf_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+constexpr std::size_t kMaxCells = 100'000;
+
+// Coordinates are often stored as floats, and rounded when written.
+constexpr double kEvenTolerance = 1e-2;
+constexpr double kLatticeTolerance = 1e-4;
+
+// Limit of the number of cells that uneven layers become, over the number of layers.
+constexpr int kMaxRefinement = 16;
+
+struct Coordinate {
+  std::vector<double> centres_m;  // as in the file
+  std::vector<double> faces_m;    // one more, from bounds; empty if the file gives none
+  std::optional<double> middle_deg;
+};
+
+// Faces from CF bounds, two for each cell; nothing if absent or not contiguous.
+absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
+                                               const std::string& dimension, std::size_t cells) {
+  const auto name = file.TextAttribute(dimension, "bounds");
+  std::vector<double> faces;
+  if (!name.has_value() || !file.HasVariable(*name)) return faces;
+  // Bounds are in the units of their coordinate, and CF files usually leave theirs out.
+  const std::string units = file.TextOrEmpty(*name, "units");
+  if (!units.empty() && units != file.TextOrEmpty(dimension, "units")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", *name, " has units '", units, "', and ", dimension,
+                     ", whose bounds they are, others; give both the same"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(*name));
+  if (shape != std::vector<std::size_t>{cells, 2}) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
+                                                   dimension, ", must have dimensions (", cells,
+                                                   ", 2)"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(*name));
+  // Pairs may be in descending order on an ascending axis, and the other way round.
+  if (cells > 1 && (pairs[0] < pairs[1]) != (pairs[0] < pairs[2])) {
+    for (std::size_t i = 0; i < cells; ++i) std::swap(pairs[2 * i], pairs[2 * i + 1]);
+  }
+  for (std::size_t i = 0; i < cells; ++i) {
+    const double slack = kEvenTolerance * std::abs(pairs[2 * i + 1] - pairs[2 * i]);
+    if (i > 0 && !(std::abs(pairs[2 * i] - pairs[2 * i - 1]) <= slack)) {
+      return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
+                                                     dimension, ", leave a gap before cell ", i));
+    }
+    faces.push_back(pairs[2 * i]);
+  }
+  faces.push_back(pairs.back());
+  return faces;
+}
+
+// True for longitudes and latitudes by their names, which may lack units.
+bool IsAngle(const CfDescription& coordinate) {
+  const std::string name = absl::AsciiStrToLower(
+      coordinate.standard_name.empty() ? coordinate.name : coordinate.standard_name);
+  return name == "lon" || name == "lat" || name.ends_with("longitude") ||
+         name.ends_with("latitude");
+}
+
+absl::StatusOr<double> MetresPerUnit(const netcdf::NetcdfFile& file,
+                                     const CfDescription& coordinate, CfDirection direction,
+                                     double metres_per_degree) {
+  if (IsDegrees(coordinate.units, direction)) return metres_per_degree;
+  const auto metres = MetresIn(coordinate.units);
+  const bool assumed = PlainUnits(coordinate.units).empty();
+  if (assumed && IsAngle(coordinate)) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ",
+                                                   coordinate.name,
+                                                   " has no units; add them: degrees, m or km"));
+  }
+  if (assumed) spdlog::warn("{}: {} has no units; taken to be in m", file.Path(), coordinate.name);
+  if (metres.has_value()) return *metres;
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": the coordinate ", coordinate.name, " has units '", coordinate.units,
+      direction == CfDirection::kZ
+          ? "'; heights in m or km are needed: interpolate to heights first"
+          : "'; m, km or degrees are needed"));
+}
+
+// 1, or -1 for depths.
+absl::StatusOr<double> UpwardSign(const netcdf::NetcdfFile& file, const CfDescription& coordinate) {
+  const std::string positive = absl::AsciiStrToLower(coordinate.positive);
+  if (positive.empty() || positive == "up") return 1.0;
+  if (positive == "down") return -1.0;
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": the coordinate ", coordinate.name, " has the attribute positive '",
+      coordinate.positive, "'; it must be 'up' or 'down'"));
+}
+
+absl::StatusOr<Coordinate> ReadCoordinate(const netcdf::NetcdfFile& file,
+                                          const std::string& dimension, CfDirection direction,
+                                          double metres_per_degree) {
+  if (!file.HasVariable(dimension)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the dimension ", dimension, " has no coordinate variable ",
+                     dimension, ", so its cells have no size; add one, in metres"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> dimensions,
+                               file.Dimensions(dimension));
+  if (dimensions != std::vector<std::string>{dimension}) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the coordinate ", dimension,
+                     " must have its own dimension only; interpolate to a rectangular grid first"));
+  }
+  const CfDescription description = DescribeCf(file, dimension);
+  THUNDERHEAD_ASSIGN_OR_RETURN(double scale,
+                               MetresPerUnit(file, description, direction, metres_per_degree));
+  Coordinate coordinate;
+  THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.centres_m, file.ReadDoubles(dimension));
+  THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.faces_m,
+                               ReadBounds(file, dimension, coordinate.centres_m.size()));
+  if (IsDegrees(description.units, direction)) {
+    coordinate.middle_deg = 0.5 * (coordinate.centres_m.front() + coordinate.centres_m.back());
+  }
+  if (direction == CfDirection::kZ) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const double sign, UpwardSign(file, description));
+    scale *= sign;
+  }
+  for (double& centre : coordinate.centres_m) centre *= scale;
+  for (double& face : coordinate.faces_m) face *= scale;
+  return coordinate;
+}
+
+absl::Status CheckMonotonic(const netcdf::NetcdfFile& file, const std::string& dimension,
+                            const std::vector<double>& rising_m) {
+  for (std::size_t i = 0; i < rising_m.size(); ++i) {
+    if (std::isfinite(rising_m[i]) && (i == 0 || rising_m[i] > rising_m[i - 1])) continue;
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ", dimension,
+                                                   " neither rises nor falls all along (see value ",
+                                                   i, "); write it in order"));
+  }
+  return absl::OkStatus();
+}
+
+// True if the steps of `rising` are equal up to rounding.
+bool IsEven(const std::vector<double>& rising) {
+  const auto steps = static_cast<double>(rising.size() - 1);
+  const double step = (rising.back() - rising.front()) / steps;
+  for (std::size_t i = 0; i < rising.size(); ++i) {
+    const double expected = rising.front() + static_cast<double>(i) * step;
+    if (std::abs(rising[i] - expected) > kEvenTolerance * step) return false;
+  }
+  return true;
+}
+
+struct Faces {
+  std::vector<double> faces_m;  // empty if there are none
+  double max_change = 1.0;      // of thickness from one cell to the next, as a factor
+};
+
+// The faces of cells with centres `centres_m` and lowest face `low_m`; none unless thicknesses are
+// positive and change by at most a factor of two from cell to cell.
+Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
+  constexpr double kMaxChange = 2.001;
+  Faces faces{{low_m}, 1.0};
+  double before_m = 0.0;
+  for (const double centre_m : centres_m) {
+    const double thickness_m = 2.0 * (centre_m - faces.faces_m.back());
+    if (!(thickness_m > 0.0)) return {};
+    const double change = before_m > 0.0 ? thickness_m / before_m : 1.0;
+    faces.max_change = std::max({faces.max_change, change, 1.0 / change});
+    if (faces.max_change > kMaxChange) return {};
+    before_m = thickness_m;
+    faces.faces_m.push_back(faces.faces_m.back() + thickness_m);
+  }
+  return faces;
+}
+
+// The faces of two or more cells around `centres_m`: such that these are the cells' exact centres,
+// starting at the ground if possible; else half-way between neighbours.
+std::vector<double> FacesAround(const std::vector<double>& centres_m) {
+  const double even_low_m = 1.5 * centres_m[0] - 0.5 * centres_m[1];
+  std::vector<double> faces_m;
+  if (IsEven(centres_m)) {
+    const auto steps = static_cast<double>(centres_m.size() - 1);
+    const double step_m = (centres_m.back() - centres_m.front()) / steps;
+    for (const double centre_m : centres_m) faces_m.push_back(centre_m - 0.5 * step_m);
+    faces_m.push_back(centres_m.back() + 0.5 * step_m);
+    return faces_m;
+  }
+  const Faces even = FacesFrom(even_low_m, centres_m);
+  const Faces grounded = FacesFrom(0.0, centres_m);
+  const bool prefer_even = grounded.faces_m.empty() || even.max_change < grounded.max_change;
+  if (!even.faces_m.empty() && prefer_even) return even.faces_m;
+  if (!grounded.faces_m.empty()) return grounded.faces_m;
+  faces_m.push_back(even_low_m);
+  for (std::size_t i = 1; i < centres_m.size(); ++i) {
+    faces_m.push_back(0.5 * (centres_m[i - 1] + centres_m[i]));
+  }
+  faces_m.push_back(2.0 * centres_m.back() - faces_m.back());
+  return faces_m;
+}
+
+// A single cell without bounds is assumed to begin at 0, like a layer on the ground.
+absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file,
+                                               const std::string& dimension, CfDirection direction,
+                                               double centre_m, double size_without_bounds_m) {
+  double size_m = 2.0 * std::abs(centre_m);
+  double low_m = std::min(0.0, 2.0 * centre_m);
+  if (size_m == 0.0 && direction != CfDirection::kZ) {
+    size_m = size_without_bounds_m;
+    low_m = -0.5 * size_m;
+  }
+  if (!(size_m > 0.0)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": ", dimension, " has one cell at 0 and no bounds, so it has no size; add ",
+        dimension, ":bounds"));
+  }
+  spdlog::warn("{}: {} has one cell and no bounds; taken to be {} m wide", file.Path(), dimension,
+               size_m);
+  return std::vector<double>{low_m, low_m + size_m};
+}
+
+double Thinnest_m(const std::vector<double>& faces_m) {
+  double thinnest_m = faces_m[1] - faces_m[0];
+  for (std::size_t i = 1; i < faces_m.size(); ++i) {
+    thinnest_m = std::min(thinnest_m, faces_m[i] - faces_m[i - 1]);
+  }
+  return thinnest_m;
+}
+
+// The least number of cells per thinnest layer such that all layers' faces are faces of cells; 0 if
+// there is none.
+int CommonDivisor(const std::vector<double>& faces_m, int max_cells) {
+  const double thinnest_m = Thinnest_m(faces_m);
+  const double depth_m = faces_m.back() - faces_m.front();
+  for (int divisor = 1; divisor <= kMaxRefinement; ++divisor) {
+    const double spacing_m = thinnest_m / divisor;
+    if (depth_m / spacing_m > max_cells + 0.5) return 0;
+    const bool fits = std::ranges::all_of(faces_m, [&](double face_m) {
+      const double steps = (face_m - faces_m.front()) / spacing_m;
+      return std::abs(steps - std::round(steps)) <= kLatticeTolerance * std::max(steps, 1.0);
+    });
+    if (fits) return divisor;
+  }
+  return 0;
+}
+
+}  // namespace
+
+CfDescription DescribeCf(const netcdf::NetcdfFile& file, const std::string& variable) {
+  const auto text = [&](const char* attribute) { return file.TextOrEmpty(variable, attribute); };
+  return {variable, text("standard_name"), text("units"), text("axis"), text("positive")};
+}
+
+void EvenOut(const std::vector<double>& faces_m, CfAxis* axis) {
+  const int layers = static_cast<int>(faces_m.size()) - 1;
+  const double depth_m = faces_m.back() - faces_m.front();
+  const int max_cells = std::max(kMaxRefinement * layers, 256);
+  const int divisor = CommonDivisor(faces_m, max_cells);
+  axis->exact = divisor > 0;
+  const double thinnest_m = Thinnest_m(faces_m);
+  const double wanted = axis->exact ? std::round(depth_m * divisor / thinnest_m)
+                                    : std::min(std::ceil(depth_m / thinnest_m), 2.0 * layers);
+  axis->cells = static_cast<int>(wanted);
+  axis->low_m = faces_m.front();
+  axis->spacing_m = depth_m / axis->cells;
+  axis->shares.assign(static_cast<std::size_t>(axis->cells), {});
+  int lowest = 0;  // of the layers that reach into this cell or above
+  for (int cell = 0; cell < axis->cells; ++cell) {
+    const double low_m = axis->low_m + cell * axis->spacing_m;
+    while (lowest + 1 < layers && faces_m[static_cast<std::size_t>(lowest) + 1] <= low_m) ++lowest;
+    for (int layer = lowest; layer < layers; ++layer) {
+      const auto at = static_cast<std::size_t>(layer);
+      if (faces_m[at] >= low_m + axis->spacing_m) break;
+      const double overlap_m =
+          std::min(faces_m[at + 1], low_m + axis->spacing_m) - std::max(faces_m[at], low_m);
+      const double share = overlap_m / axis->spacing_m;
+      if (share > kLatticeTolerance) {
+        axis->shares[static_cast<std::size_t>(cell)].push_back({layer, std::min(share, 1.0)});
+      }
+    }
+  }
+}
+
+absl::StatusOr<CfAxis> ReadCfAxis(const netcdf::NetcdfFile& file, const std::string& dimension,
+                                  CfDirection direction, const CfSizes& sizes) {
+  const std::size_t length = file.DimensionLength(dimension).value_or(0);
+  if (length < 1 || length > kMaxCells) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": dimension ", dimension, " is ",
+                                                   length, "; 1 to ", kMaxCells, " can be read"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(Coordinate coordinate,
+                               ReadCoordinate(file, dimension, direction, sizes.metres_per_degree));
+  CfAxis axis;
+  axis.dimension = dimension;
+  axis.file_cells = static_cast<int>(length);
+  axis.cells = axis.file_cells;
+  axis.middle_deg = coordinate.middle_deg;
+  std::vector<double>& centres_m = coordinate.centres_m;
+  std::vector<double>& faces_m = coordinate.faces_m;
+  axis.reversed = centres_m.front() > centres_m.back();
+  if (axis.reversed) std::ranges::reverse(centres_m);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, dimension, centres_m));
+  if (faces_m.empty()) {
+    if (centres_m.size() > 1) {
+      faces_m = FacesAround(centres_m);
+    } else {
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          faces_m, FacesOfOne(file, dimension, direction, centres_m[0], sizes.single_cell_m));
+    }
+  }
+  if (faces_m.front() > faces_m.back()) std::ranges::reverse(faces_m);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, dimension, faces_m));
+  axis.low_m = faces_m.front();
+  axis.spacing_m = (faces_m.back() - faces_m.front()) / axis.cells;
+  if (IsEven(faces_m)) return axis;
+  if (direction != CfDirection::kZ) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the coordinate ", dimension,
+                     " is not evenly spaced; interpolate to even spacing first"));
+  }
+  EvenOut(faces_m, &axis);
+  return axis;
+}
+
+}  // namespace thunderhead::storm_files

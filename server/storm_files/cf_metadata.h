@@ -1,0 +1,71 @@
+// Metadata of a CF netCDF file: its axes in metres, times, hydrometeors or extinction, and state of
+// the air. Reads no fields. Knows no cache and no series.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "netcdf/netcdf_file.h"
+#include "storm_files/cf_axes.h"
+#include "storm_files/cf_names.h"
+
+namespace thunderhead::storm_files {
+
+// A variable on x, y and z, in any order.
+struct CfVariable {
+  std::string name;
+  // Index of each axis among its dimensions; `time` is -1 if it has none.
+  int x = -1;
+  int y = -1;
+  int z = -1;
+  int time = -1;
+  int dimensions = 0;
+};
+
+struct CfField {
+  CfVariable variable;
+  CfQuantity quantity;
+};
+
+struct CfAirField {
+  CfVariable variable;
+  CfAir air;
+};
+
+struct CfWindField {
+  CfVariable variable;
+  WindVariable wind;
+};
+
+// The height of the ground on y, x.
+struct CfSurface {
+  std::string variable;
+  double metres = 1.0;  // in one of its units
+};
+
+// Radius of the sphere on which degrees become metres.
+inline constexpr double kCfEarthRadius_m = 6.371e6;
+
+struct CfMetadata {
+  std::string path;
+  std::array<CfAxis, 3> axes;     // x, y, z
+  std::vector<absl::Time> times;  // at least one; year 1 if the file gives none
+  std::vector<CfField> fields;    // in the order of physics::kHydrometeors, or the extinction alone
+  std::vector<CfAirField> air;    // only the variables that mixing ratios need
+  // Turbulent energy, and either all three components of the wind or none.
+  std::vector<CfWindField> wind;
+  std::optional<CfSurface> surface;
+  std::string source;  // the file's title, else its source
+};
+
+// True if a variable's name or standard name is that of a quantity that can be drawn.
+bool LooksLikeCf(const netcdf::NetcdfFile& file);
+
+// Reads and checks the metadata. Errors name the file, the variable and what is missing.
+absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& file);
+
+}  // namespace thunderhead::storm_files

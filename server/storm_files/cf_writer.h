@@ -1,0 +1,26 @@
+// Writes a field on a regular grid as a CF netCDF storm file; reading it back gives the same
+// values. Writes to a temporary name and renames, so that a reader never sees half a file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "volume/hydrometeor_fields.h"
+
+namespace thunderhead::storm_files {
+
+struct CfCloud {
+  volume::RegularGrid grid;
+  volume::Quantity quantity =
+      volume::Quantity::kMassConcentration;  // cloud water (kg/m3), or extinction (1/m)
+  std::vector<float> values;                 // grid.CellCount() values, x fastest
+  std::string title;
+  std::string source;   // the program that made it
+  std::string comment;  // its parameters
+};
+
+// The variable `lwc` (kg m-3) or `extinction` (m-1) on z, y, x in metres, compressed.
+absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path);
+
+}  // namespace thunderhead::storm_files

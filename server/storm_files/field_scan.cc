@@ -1,0 +1,102 @@
+#include "storm_files/field_scan.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "glm/common.hpp"
+
+namespace thunderhead::storm_files {
+namespace {
+
+constexpr float kSmallestNormal = std::numeric_limits<float>::min();
+
+// Advection undershoots by 1e-13 or so; values below this are codes for "missing", such as -999.
+constexpr float kMinMixingRatio = -0.5F;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct ScanRange {
+  float minimum = kInfinity;
+  float maximum = -kInfinity;
+};
+
+// One level: `values` in place, mass per area added to `water_path`.
+void ScanLevel(const LayerAir& air, int level, float* values, volume::FieldStatistics& statistics,
+               ScanRange& range, std::vector<double>& water_path) {
+  const std::size_t offset = level * air.columns;
+  const float* density = air.dry_air_density_kg_per_m3.data() + offset;
+  const float* bottom_m = air.interface_height_m.data() + offset;
+  const float* top_m = bottom_m + air.columns;
+  std::int64_t missing_cells = 0;
+  std::int64_t negative_cells = 0;
+  for (std::size_t i = 0; i < air.columns; ++i) {
+    const float value = values[i];
+    // All comparisons fail for NaN.
+    const bool present = value > kMinMixingRatio && value < kInfinity && density[i] > 0.0F;
+    missing_cells += present ? 0 : 1;
+    negative_cells += present && value < 0.0F ? 1 : 0;
+    range.minimum = present ? std::min(range.minimum, value) : range.minimum;
+    range.maximum = present ? std::max(range.maximum, value) : range.maximum;
+    const float product = present ? value * density[i] : 0.0F;
+    const float concentration = product >= kSmallestNormal ? product : 0.0F;
+    values[i] = concentration;
+    if (concentration > 0.0F) {
+      water_path[i] += static_cast<double>(concentration) * (top_m[i] - bottom_m[i]);
+    }
+  }
+  statistics.missing_cells += missing_cells;
+  statistics.negative_cells += negative_cells;
+}
+
+}  // namespace
+
+volume::FieldStatistics MixingRatioToConcentration(const LayerAir& air,
+                                                   std::vector<float>& values) {
+  volume::FieldStatistics statistics;
+  ScanRange range;
+  std::vector<double> water_path(air.columns, 0.0);
+  for (int level = 0; level < air.levels; ++level) {
+    ScanLevel(air, level, values.data() + level * air.columns, statistics, range, water_path);
+  }
+  if (range.minimum <= range.maximum) {
+    statistics.minimum = range.minimum;
+    statistics.maximum = range.maximum;
+  }
+  const double total = std::accumulate(water_path.begin(), water_path.end(), 0.0);
+  statistics.mean_water_path_kg_per_m2 = total / static_cast<double>(air.columns);
+  statistics.maximum_water_path_kg_per_m2 = *std::ranges::max_element(water_path);
+  return statistics;
+}
+
+volume::CellBox FlushAndBound(const volume::RegularGrid& grid,
+                              std::vector<float>& concentration_kg_per_m3) {
+  volume::CellBox box{grid.cells, glm::ivec3(0)};
+  for (int z = 0; z < grid.cells.z; ++z) {
+    for (int y = 0; y < grid.cells.y; ++y) {
+      float* row = concentration_kg_per_m3.data() + grid.Offset(0, y, z);
+      int first = grid.cells.x;
+      int last = -1;
+      for (int x = 0; x < grid.cells.x; ++x) {
+        if (row[x] < kSmallestNormal) {
+          row[x] = 0.0F;
+          continue;
+        }
+        first = std::min(first, x);
+        last = x;
+      }
+      if (last < 0) continue;
+      box.low = glm::min(box.low, glm::ivec3(first, y, z));
+      box.high = glm::max(box.high, glm::ivec3(last + 1, y + 1, z + 1));
+    }
+  }
+  return box.Empty() ? volume::CellBox{} : box;
+}
+
+volume::CellBox Union(const volume::CellBox& a, const volume::CellBox& b) {
+  if (a.Empty()) return b;
+  if (b.Empty()) return a;
+  return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
+}
+
+}  // namespace thunderhead::storm_files

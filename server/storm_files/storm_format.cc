@@ -1,0 +1,95 @@
+#include "storm_files/storm_format.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/time/civil_time.h"
+#include "base/memory_fit.h"
+#include "base/status.h"
+#include "base/utf8.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+// Checks conditions on files of every format that other rooms rely on.
+absl::Status CheckDescribed(StormFile& file) {
+  const auto& cells = file.cells;
+  THUNDERHEAD_RETURN_IF_ERROR(
+      base::CountThatFits(absl::StrCat(file.path, ": one time of a field"),
+                          {static_cast<std::size_t>(cells.x), static_cast<std::size_t>(cells.y),
+                           static_cast<std::size_t>(cells.z)},
+                          sizeof(float))
+          .status());
+  constexpr double kSmallest_m = 1e-3;
+  constexpr double kLargest_m = 1e6;
+  for (const double spacing_m : {file.dx_m, file.dy_m}) {
+    if (spacing_m >= kSmallest_m && spacing_m <= kLargest_m) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.path, ": its cells are ", spacing_m,
+                     " m wide; 1 mm to 1000 km can be shown: check the grid's spacing"));
+  }
+  static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
+  static const absl::Time kEnd = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
+  for (const absl::Time time : file.times) {
+    if (time >= kFirst && time < kEnd) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.path, ": has a time outside the years 0 to 9999 (",
+                     absl::FormatTime(time, absl::UTCTimeZone()), "); check its units"));
+  }
+  file.about = base::Printable(file.about);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status CheckRecords(const std::string& path, std::size_t records) {
+  if (records <= kMaxTimes) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(path, ": has ", records, " times, and ", kMaxTimes,
+                                                 " are the most; split it, or correct its size"));
+}
+
+absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const {
+  if (elsewhere_) return elsewhere_(path);
+  const UnknownFile file{path, netcdf::NetcdfFile::Open(path)};
+  FormatFit best = FormatFit::kNone;
+  std::vector<const StormFormat*> fitting;  // as well as `best`
+  for (const std::shared_ptr<const StormFormat>& format : formats_) {
+    const FormatFit fit = format->Sniff(file);
+    if (fit == FormatFit::kNone || fit < best) continue;
+    if (fit > best) fitting.clear();
+    best = fit;
+    fitting.push_back(format.get());
+  }
+  if (fitting.empty()) return NoneFits(file);
+  if (fitting.size() == 1) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile described, fitting.front()->Describe(file));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(described));
+    return described;
+  }
+  const auto append_name = [](std::string* out, const StormFormat* format) {
+    out->append(format->Name());
+  };
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, ": could be any of ", absl::StrJoin(fitting, ", ", append_name),
+                   ", which are read differently; give a file with the marks of one only"));
+}
+
+absl::Status StormFormats::NoneFits(const UnknownFile& file) const {
+  if (!file.netcdf.ok()) return file.netcdf.status();
+  std::string message = absl::StrCat(file.path, ": is ");
+  for (std::size_t i = 0; i < formats_.size(); ++i) {
+    const char* first = formats_.size() > 1 ? "neither " : "not ";
+    absl::StrAppend(&message, i == 0 ? first : " nor ", std::string(formats_[i]->Requirement()));
+  }
+  return absl::InvalidArgumentError(absl::StrCat(message, "; give a file that is"));
+}
+
+std::string StormFormats::Examples() const {
+  std::string examples;
+  for (std::size_t i = 0; i < formats_.size(); ++i) {
+    const char* next = i + 1 < formats_.size() ? ", " : ", or ";
+    absl::StrAppend(&examples, i == 0 ? "" : next, std::string(formats_[i]->Example()));
+  }
+  return examples;
+}
+
+}  // namespace thunderhead::storm_files

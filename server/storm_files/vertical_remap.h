@@ -1,0 +1,49 @@
+// Remaps terrain-following layers to a regular height grid, conserving every column's mass: a
+// target cell gets the integral of the layers over it. Within a layer the profile is linear, with
+// the slope limited so that no new extreme appears (van Leer 1977). Pure arithmetic; knows no
+// files.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace thunderhead::storm_files {
+
+struct VerticalGrid {
+  double low_m = 0.0;
+  double spacing_m = 0.0;
+  int cells = 0;
+
+  double High_m() const { return low_m + spacing_m * cells; }
+};
+
+// The layers of a block of columns, all arrays with the column running fastest, then upwards.
+// Heights that are NaN or do not rise mark a missing layer.
+struct Layers {
+  const float* interface_height_m;  // (levels + 1) * stride values
+  const float* concentration;       // levels * stride values, none below zero and none NaN
+  int levels;
+  std::size_t stride;  // from one level of a column to its next
+};
+
+// A grid that reaches from the lowest to the highest interface of `columns` columns with a little
+// room above, as fine as the thinnest layer but with at most 1.25 times as many cells as levels.
+// `cells` is zero if all layers are missing.
+VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
+                                std::size_t columns);
+
+// `grid` extended by whole cells below and above until it contains every interface.
+VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m);
+
+// Adds the column at `column` of `layers` to `target`, `grid.cells` means that start at zero and
+// lie `target_stride` apart. Mass outside the grid goes into its outermost cells.
+void RemapColumn(const Layers& layers, std::size_t column, const VerticalGrid& grid, float* target,
+                 std::size_t target_stride);
+
+// Remaps `columns` columns; the result is `grid.cells` * `columns` values, column fastest, then
+// upwards.
+std::vector<float> RemapColumns(const std::vector<float>& interface_height_m,
+                                const std::vector<float>& concentration, int levels,
+                                std::size_t columns, const VerticalGrid& grid);
+
+}  // namespace thunderhead::storm_files

@@ -1,0 +1,75 @@
+// Metadata of a WRF output file: grid, times, fields, place on Earth; and a check of the variables,
+// dimensions and units that reading needs. Reads no fields. Knows no cache and no series.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "netcdf/netcdf_file.h"
+#include "physics/hydrometeors.h"
+#include "physics/land_use.h"
+#include "physics/size_distributions.h"
+#include "volume/grid.h"
+#include "volume/particle_sizes.h"
+
+namespace thunderhead::storm_files {
+
+// Variables of the ground's cover, by name; empty those that the file does not have.
+struct WrfLand {
+  physics::LandUseScheme scheme = physics::LandUseScheme::kUsgs;
+  std::string land_use;
+  std::string mask;  // XLAND (2 is water) or LANDMASK (0 is water)
+  std::string albedo;
+  std::string green;       // percent
+  std::string snow_share;  // of the cell
+  std::string snow_depth;  // in m, in place of the share
+};
+
+struct WrfMetadata {
+  std::string path;
+  glm::ivec3 cells{0};  // west-east, south-north, bottom-top
+  double dx_m = 0.0;
+  double dy_m = 0.0;
+  std::vector<absl::Time> times;             // of each record of the file, in the file's order
+  std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
+  // Indexed by physics::IndexOf: the variable of the field's particle sizes; without a name if
+  // there is none.
+  std::array<volume::SizeVariable, physics::kHydrometeorCount> sizes;
+  physics::Microphysics microphysics = physics::Microphysics::kUnknown;
+  // The variable of turbulent kinetic energy; no name: none. On interfaces, and doubled, as
+  // boundary layer schemes have it.
+  struct Energy {
+    std::string name;
+    bool at_interfaces = false;
+    bool doubled = false;
+  };
+  Energy energy;
+  bool has_wind = false;  // U, V and W
+  bool has_vapour = false;
+  bool has_terrain = false;
+  WrfLand land;                        // without names for an idealised run
+  std::string model;                   // "WRF V4.7.1"
+  bool idealised = false;              // no place on Earth
+  int domain = 1;                      // GRID_ID, counted from 1
+  std::string simulation_start;        // as in the file; differs between runs
+  std::optional<double> latitude_deg;  // of the middle
+  std::optional<double> longitude_deg;
+  std::string projection;  // as PROJ writes it; empty if it has none
+};
+
+// WRF's name of a hydrometeor's mixing ratio, e.g. "QCLOUD".
+std::string_view WrfVariableOf(physics::Hydrometeor hydrometeor);
+
+// Reads and checks the metadata of the file at `path`. Errors name the file, the variable and what
+// to do.
+absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path);
+
+// The same for an open file.
+absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file);
+
+}  // namespace thunderhead::storm_files

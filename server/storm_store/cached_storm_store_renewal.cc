@@ -1,0 +1,192 @@
+// How the store follows its folders.
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "spdlog/spdlog.h"
+#include "storm_store/cached_storm_store.h"
+#include "storm_store/renewed_storms.h"
+
+namespace thunderhead::storm_store {
+namespace {
+
+// A storage that hangs must not end the catalogue for storms elsewhere.
+constexpr std::chrono::seconds kLongestCourtesy{10};
+
+void Log(const StormChange& change) {
+  const auto times = [](const StormInfoPtr& storm) { return storm->times.size(); };
+  if (change.before == nullptr) {
+    spdlog::info("{} has come, with {} times", change.after->id, times(change.after));
+  } else if (change.after == nullptr) {
+    spdlog::info("{} has gone", change.before->id);
+  } else {
+    spdlog::info("{} has changed: {} times, {} before", change.after->id, times(change.after),
+                 times(change.before));
+  }
+}
+
+}  // namespace
+
+void CachedStormStore::Listen(CatalogueListener listener) {
+  const std::lock_guard lock(listening_);
+  listener_ = std::move(listener);
+}
+
+void CachedStormStore::Follow(std::unique_ptr<CatalogueScan> scan) {
+  searching_ = true;
+  live_ = std::make_unique<LiveCatalogue>(
+      std::move(scan), *options_.live, *options_.time,
+      [weak = weak_from_this()](const CatalogueScan::Result& found) {
+        if (const auto store = weak.lock()) store->TakeFound(found);
+      });
+}
+
+void CachedStormStore::TakeFound(const CatalogueScan::Result& found) {
+  Renew(found.storms);
+  {
+    const std::lock_guard lock(listening_);
+    following_ = true;
+  }
+  // The only storm may be a file that is still being written.
+  if (found.storms.empty() && found.look_again_at.has_value()) return;
+  {
+    const Lock lock(mutex_);
+    searching_ = false;
+  }
+  changed_.notify_all();
+}
+
+bool CachedStormStore::AwaitFirstSearch() {
+  Lock lock(mutex_);
+  return base::WaitUntil(*options_.time, changed_, lock, Now() + options_.live->first_search,
+                         [this] { return !searching_; });
+}
+
+bool CachedStormStore::IsSearching() const {
+  const Lock lock(mutex_);
+  return searching_;
+}
+
+void CachedStormStore::LetReadersGoFirst() {
+  Lock lock(mutex_);
+  base::WaitUntil(*options_.time, changed_, lock, Now() + kLongestCourtesy,
+                  [this] { return ending_ || asked_reads_ == 0; });
+}
+
+void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
+  const std::lock_guard one_at_a_time(listening_);
+  CatalogueChange changes;
+  {
+    const Lock lock(mutex_);
+    std::vector<const CataloguedStorm*> known;
+    std::set<std::string> added;
+    for (const Held& held : storms_) {
+      known.push_back(held.added ? nullptr : held.storm.get());
+      if (held.added && held.storm != nullptr) {
+        added.insert(held.storm->info.files.begin(), held.storm->info.files.end());
+      }
+    }
+    const auto match = MatchStorms(known, found);
+    std::vector<std::optional<std::size_t>> place_of(found.size());
+    const auto take = [&](std::size_t place, std::optional<CataloguedStorm> storm) {
+      const StormChange change = Replace(place, std::move(storm));
+      if (change.before != change.after) changes.push_back(change);
+    };
+    // First those that go, which leave their ids to others.
+    for (std::size_t place = 0; place < known.size(); ++place) {
+      if (match[place].has_value()) place_of[*match[place]] = place;
+      if (known[place] != nullptr && !match[place].has_value()) take(place, std::nullopt);
+    }
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const bool is_added = std::ranges::all_of(
+          found[i].info.files, [&](const std::string& file) { return added.contains(file); });
+      if (is_added) continue;
+      if (!place_of[i].has_value()) {
+        place_of[i] = storms_.size();
+        storms_.emplace_back();
+      }
+      take(*place_of[i], found[i]);
+      order.push_back(*place_of[i]);
+    }
+    // Then those that are only in memory, and those that were added.
+    for (const std::size_t place : order_) {
+      const bool stays = storms_[place].storm != nullptr;
+      if (stays && std::ranges::find(order, place) == order.end()) order.push_back(place);
+    }
+    order_ = std::move(order);
+  }
+  if (changes.empty()) return;
+  changed_.notify_all();
+  for (const StormChange& change : changes) {
+    if (following_) Log(change);
+  }
+  if (listener_) listener_(changes);
+}
+
+// Replaces the storm at `place`, if there is one, by `found`. Times that `found` lacks stay while
+// somebody holds them.
+StormChange CachedStormStore::Replace(std::size_t place, std::optional<CataloguedStorm> found) {
+  Held& held = storms_[place];
+  StormChange change;
+  if (held.storm != nullptr) {
+    change.before = held.Info();
+    const auto in_use = [&](std::size_t time) { return cache_.InUse({place, held.numbers[time]}); };
+    if (found.has_value() && found->info.id != held.storm->info.id) {
+      found->info.id = FreeId(found->info.id, place);
+    }
+    found = Renewed(*held.storm, std::move(found), in_use);
+  } else if (found.has_value()) {
+    found->info.id = FreeId(found->info.id, place);
+  }
+  const bool unchanged =
+      held.storm != nullptr && found.has_value() && IsUnchanged(*held.storm, *found);
+  if (unchanged) {
+    change.after = change.before;
+    return change;
+  }
+  std::vector<int> numbers;
+  std::set<int> kept;
+  for (std::size_t time = 0; found.has_value() && time < found->sources.size(); ++time) {
+    std::optional<int> number;
+    for (std::size_t old = 0; held.storm != nullptr && old < held.numbers.size(); ++old) {
+      if (IsSameTime(*held.storm, old, *found, time)) number = held.numbers[old];
+    }
+    numbers.push_back(number.has_value() ? *number : held.next_number++);
+    kept.insert(numbers.back());
+  }
+  for (const int number : held.numbers) {
+    if (kept.contains(number)) continue;
+    cache_.Remove({place, number});
+    std::erase(wanted_, TimeKey{place, number});
+  }
+  // Another run may have other levels.
+  const auto is_first = [&](const storm_files::StormFile& file) {
+    return file.path == held.grid->path && file.version != held.grid->version;
+  };
+  if (held.grid.has_value() && found.has_value() && std::ranges::any_of(found->files, is_first)) {
+    held.grid.reset();
+  }
+  held.numbers = std::move(numbers);
+  held.storm =
+      found.has_value() ? std::make_shared<const CataloguedStorm>(*std::move(found)) : nullptr;
+  if (held.storm != nullptr) change.after = held.Info();
+  return change;
+}
+
+// The id for the storm at `place`, or one with a number behind it if another storm has it.
+std::string CachedStormStore::FreeId(const std::string& wanted, std::size_t place) const {
+  std::string id = wanted;
+  const auto is_taken = [&] {
+    const std::optional<std::size_t> holder = PlaceOf(id);
+    return holder.has_value() && *holder != place;
+  };
+  for (int copy = 2; is_taken(); ++copy) {
+    id = absl::StrCat(wanted, "-", copy);
+  }
+  return id;
+}
+
+}  // namespace thunderhead::storm_store

@@ -1,0 +1,160 @@
+#include "storm_store/catalogue_scan.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "base/file_stamp.h"
+#include "base/slow_calls.h"
+#include "base/status.h"
+#include "spdlog/spdlog.h"
+
+namespace thunderhead::storm_store {
+namespace {
+
+// True if the same file has got more times. With the same ones it was written anew.
+bool GoesOn(const storm_files::StormFile& before, const storm_files::StormFile& after) {
+  return after.times.size() > before.times.size() &&
+         std::ranges::equal(before.times, std::span(after.times).first(before.times.size()));
+}
+
+}  // namespace
+
+std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& path) {
+  const base::SlowCall call(path);
+  const std::optional<base::FileStamp> found = base::StampOf(path);
+  if (!found.has_value()) return std::nullopt;
+  return Stamp{found->Id(), static_cast<std::uint64_t>(found->size_bytes), found->modified_ns};
+}
+
+absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
+  ++scans_;
+  changed_ = scans_ == 1;
+  look_again_at_.reset();
+  Result result;
+  const StormSearch search{
+      .describe = [this, now](const std::string& path) { return Describe(path, now); },
+      .may_find_nothing = true,
+      .on_unlisted =
+          [this](const std::string& path, const absl::Status& status) {
+            if (!unlisted_.insert(path).second) return;
+            spdlog::warn("left out: {}", std::string(status.message()));
+          },
+      .on_folder = [&result](const std::string& path) { result.folders.push_back(path); },
+      .examples = options_.formats.Examples(),
+      .answers = [this](const std::string& path) { return Answers(path); },
+      .found = &found_,
+      .links = options_.links};
+  THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, FindStorms(options_.paths, search));
+  const std::size_t gone = std::erase_if(known_, [this](const auto& entry) {
+    const auto hangs = [&entry](const std::string& path) { return entry.first.starts_with(path); };
+    return entry.second.scan != scans_ && std::ranges::none_of(hanging_, hangs);
+  });
+  result.changed = changed_ || gone > 0;
+  if (result.changed) LogNotes(result.storms);
+  result.look_again_at = look_again_at_;
+  return result;
+}
+
+void CatalogueScan::LookAtFolder(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::directory_iterator entries(path, error);
+  if (!error && entries != std::filesystem::directory_iterator()) {
+    (void)base::StampOf(entries->path().string());
+  }
+}
+
+bool CatalogueScan::Answers(const std::string& path) {
+  const absl::Status hangs = calls_.Run(path, [path, look = options_.look_at] { look(path); });
+  if (hangs.ok()) {
+    if (hanging_.erase(path) > 0) spdlog::info("{} answers again", path);
+    return true;
+  }
+  if (hanging_.insert(path).second) {
+    spdlog::warn("{}; its storms stay as they were", std::string(hangs.message()));
+  }
+  return false;
+}
+
+absl::StatusOr<storm_files::StormFile> CatalogueScan::Describe(const std::string& path, Time now) {
+  const std::optional<Stamp> stamp = StampOf(path);
+  if (!stamp.has_value()) return absl::CancelledError("it has just gone");
+  Known& known = known_[path];
+  Look(path, *stamp, now, known);
+  known.scan = scans_;
+  if (known.description.has_value()) return *known.description;
+  return absl::CancelledError(known.settled ? "it is no storm" : "it is still being written");
+}
+
+void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, Known& known) {
+  const bool fresh = known.scan == 0;
+  if (fresh || known.stamp != stamp) {
+    const bool same_file = !fresh && known.stamp.file == stamp.file;
+    const bool grows = same_file && known.stamp.size_bytes <= stamp.size_bytes;
+    // The times of a file whose place another has taken are there until that is read. One that is
+    // still being written then was not moved here whole: until it is complete there are none.
+    const bool written = same_file && known.replaces;
+    if ((same_file && !grows) || written) Lose(known);
+    known.replaces = !same_file && known.description.has_value();
+    known.stamp = stamp;
+    known.unchanged_since = now;
+    // A file that was there before the first scan may have rested for long. Those that have not are
+    // all waited for from now on, so that a folder's files settle together: the first of them alone
+    // would be a storm of its own name.
+    known.settled =
+        fresh && scans_ == 1 &&
+        now - base::UnchangedSince(stamp.changed_ns, Time::min(), now) >= options_.settle;
+    known.tried_at.reset();
+  }
+  if (!known.settled && now - known.unchanged_since < options_.settle) {
+    return LookAgainAt(known.unchanged_since + options_.settle);
+  }
+  known.settled = true;
+  Open(path, now, known);
+}
+
+void CatalogueScan::Open(const std::string& path, Time now, Known& known) {
+  const bool failed = known.tried_at.has_value() && !known.complaint.empty();
+  if (known.tried_at.has_value() && !(failed && now - *known.tried_at >= options_.retry)) return;
+  known.tried_at = now;
+  options_.before_file();
+  absl::StatusOr<storm_files::StormFile> file = DescribeFile(path, options_.formats);
+  // Read while it was written: not what it will be.
+  if (StampOf(path) != known.stamp) {
+    known.tried_at.reset();
+    known.settled = false;
+    known.unchanged_since = now;
+    return LookAgainAt(now + options_.settle);
+  }
+  if (file.ok()) {
+    const bool goes_on =
+        known.description.has_value() && !known.replaces && GoesOn(*known.description, *file);
+    file->version = goes_on ? known.description->version : ++versions_;
+    file->id = known.stamp.file;
+    known.description = *std::move(file);
+    known.replaces = false;
+    known.complaint.clear();
+    changed_ = true;
+    return;
+  }
+  if (std::exchange(known.replaces, false)) Lose(known);
+  const std::string complaint(file.status().message());
+  if (complaint == known.complaint) return;
+  known.complaint = complaint;
+  // A file of another kind, such as a read-me, is normal.
+  const bool other = absl::IsInvalidArgument(file.status());
+  spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}", complaint);
+}
+
+void CatalogueScan::Lose(Known& known) {
+  changed_ = changed_ || known.description.has_value();
+  known.description.reset();
+}
+
+void CatalogueScan::LookAgainAt(Time time) {
+  look_again_at_ = std::min(look_again_at_.value_or(time), time);
+}
+
+}  // namespace thunderhead::storm_store

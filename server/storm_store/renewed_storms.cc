@@ -1,0 +1,102 @@
+#include "storm_store/renewed_storms.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+namespace thunderhead::storm_store {
+namespace {
+
+absl::Time TimeOf(const CataloguedStorm& storm, std::size_t time) {
+  return FileOf(storm, time).times[storm.sources[time].record];
+}
+
+// Inserts a time of another storm, whose file is gone.
+void InsertDeleted(const CataloguedStorm& from, std::size_t time, CataloguedStorm& storm) {
+  const absl::Time valid = TimeOf(from, time);
+  std::size_t at = 0;
+  while (at < storm.sources.size() && TimeOf(storm, at) < valid) ++at;
+  StormTime kept = from.info.times[time];
+  kept.deleted = true;
+  storm.files.push_back(FileOf(from, time));
+  storm.sources.insert(storm.sources.begin() + static_cast<std::ptrdiff_t>(at),
+                       {storm.files.size() - 1, from.sources[time].record});
+  storm.info.times.insert(storm.info.times.begin() + static_cast<std::ptrdiff_t>(at),
+                          std::move(kept));
+}
+
+}  // namespace
+
+std::vector<std::optional<std::size_t>> MatchStorms(
+    const std::vector<const CataloguedStorm*>& known, const std::vector<CataloguedStorm>& found) {
+  // Most files in common first; of equal ones the earlier.
+  std::vector<std::tuple<std::size_t, std::size_t, std::size_t>> pairs;
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    if (known[k] == nullptr) continue;
+    const std::vector<std::string>& names = known[k]->info.files;
+    const std::set<std::string> files(names.begin(), names.end());
+    for (std::size_t f = 0; f < found.size(); ++f) {
+      const auto common = static_cast<std::size_t>(std::ranges::count_if(
+          found[f].info.files, [&](const std::string& file) { return files.contains(file); }));
+      if (common > 0) pairs.emplace_back(common, k, f);
+    }
+  }
+  std::ranges::stable_sort(
+      pairs, [](const auto& a, const auto& b) { return std::get<0>(a) > std::get<0>(b); });
+  std::vector<std::optional<std::size_t>> match(known.size());
+  std::set<std::size_t> taken;
+  for (const auto& [common, k, f] : pairs) {
+    if (!match[k].has_value() && taken.insert(f).second) match[k] = f;
+  }
+  return match;
+}
+
+bool IsSameTime(const CataloguedStorm& one, std::size_t one_time, const CataloguedStorm& other,
+                std::size_t other_time) {
+  const storm_files::StormFile& a = FileOf(one, one_time);
+  const storm_files::StormFile& b = FileOf(other, other_time);
+  return a.path == b.path && a.version == b.version &&
+         one.sources[one_time].record == other.sources[other_time].record &&
+         TimeOf(one, one_time) == TimeOf(other, other_time);
+}
+
+std::optional<CataloguedStorm> Renewed(const CataloguedStorm& known,
+                                       std::optional<CataloguedStorm> found,
+                                       const std::function<bool(std::size_t time)>& kept) {
+  std::set<std::string> there;
+  if (found.has_value()) {
+    for (const StormTime& time : found->info.times) there.insert(time.valid_time);
+  }
+  CataloguedStorm renewed;
+  if (found.has_value()) {
+    renewed = *std::move(found);
+  } else {
+    renewed.info = known.info;
+    renewed.info.times.clear();
+  }
+  for (std::size_t time = 0; time < known.info.times.size(); ++time) {
+    if (there.contains(known.info.times[time].valid_time) || !kept(time)) continue;
+    InsertDeleted(known, time, renewed);
+  }
+  if (renewed.sources.empty()) return std::nullopt;
+  const absl::Time first = TimeOf(renewed, 0);
+  for (std::size_t time = 0; time < renewed.sources.size(); ++time) {
+    renewed.info.times[time].elapsed_s = absl::ToDoubleSeconds(TimeOf(renewed, time) - first);
+  }
+  return renewed;
+}
+
+bool IsUnchanged(const CataloguedStorm& before, const CataloguedStorm& after) {
+  if (before.info.id != after.info.id || before.info.title != after.info.title ||
+      before.info.times != after.info.times || before.info.files != after.info.files) {
+    return false;
+  }
+  for (std::size_t time = 0; time < before.sources.size(); ++time) {
+    if (!IsSameTime(before, time, after, time)) return false;
+  }
+  return true;
+}
+
+}  // namespace thunderhead::storm_store

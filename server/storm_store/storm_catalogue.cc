@@ -1,0 +1,464 @@
+#include "storm_store/storm_catalogue.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <new>
+#include <set>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "base/file_stamp.h"
+#include "base/slow_calls.h"
+#include "base/status.h"
+#include "base/utf8.h"
+#include "spdlog/spdlog.h"
+#include "storm_files/run_start.h"
+
+namespace thunderhead::storm_store {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Bounds of the walk below one path that the user gave.
+constexpr int kDeepestFolder = 8;
+constexpr std::size_t kMostEntries = 200'000;  // files and folders
+constexpr std::chrono::minutes kLongestWalk{10};
+
+struct NamedStorm {
+  std::string name;
+  std::vector<storm_files::StormFile> files;
+  std::size_t path = 0;  // which of those the user gave
+};
+
+// ISO 8601, e.g. "0001-01-01T00:40:00Z".
+std::string FormatValidTime(absl::Time time) {
+  return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
+}
+
+// An id that is safe in a URL and on a command line: in "wrfout_d01_0001-01-01_00:10:00" colons
+// become hyphens.
+std::string IdFrom(const std::string& name) {
+  constexpr std::size_t kLongest = 128;
+  std::string id = name.substr(0, kLongest);
+  for (char& c : id) {
+    if (!absl::ascii_isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') {
+      c = '-';
+    }
+  }
+  return id.empty() ? "storm" : id;
+}
+
+// The file's name without a netCDF extension. Other dots stay: they may be part of a date.
+std::string NameOfFile(const fs::path& path) {
+  const std::string extension = path.extension().string();
+  const bool known = extension == ".nc" || extension == ".nc4" || extension == ".cdf";
+  return known ? path.stem().string() : path.filename().string();
+}
+
+std::string NameOfFolder(const fs::path& path) {
+  std::error_code error;
+  const fs::path canonical = fs::canonical(path, error);
+  return (error ? path : canonical).filename().string();
+}
+
+// Equal for files that may be parts of one run.
+auto RunKey(const storm_files::StormFile& file) {
+  return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
+                         file.dy_m, file.run, file.fields);
+}
+
+// True for the files of one run, which overlap at most at their ends, as after a restart. Separate
+// runs on the same grid, such as an ensemble's, share most of their times.
+bool ContinueOneAnother(const std::vector<storm_files::StormFile>& files) {
+  std::set<absl::Time> distinct;
+  std::size_t total = 0;
+  for (const storm_files::StormFile& file : files) {
+    distinct.insert(file.times.begin(), file.times.end());
+    total += file.times.size();
+  }
+  return distinct.size() * 2 > total;
+}
+
+// The rules by which a search follows symbolic links. All paths are canonical.
+struct LinkRules {
+  std::vector<fs::path> targets;    // links lead into these alone
+  std::vector<fs::path> untrusted;  // links in these are not followed
+};
+
+// The walk below one path that the user gave.
+struct FolderWalk {
+  const StormSearch& search;
+  const LinkRules& links;
+  std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + kLongestWalk;
+  std::set<std::pair<dev_t, ino_t>> visited = {};  // folders, by device and inode
+  std::size_t entries = 0;
+  absl::Status first_failure = absl::OkStatus();
+};
+
+// Notes why something below the path was left out.
+void LeaveOut(FolderWalk& walk, const fs::path& path, const absl::Status& why) {
+  walk.first_failure.Update(why);
+  if (walk.search.on_unlisted) {
+    walk.search.on_unlisted(path.string(), why);
+  } else {
+    spdlog::warn("left out: {}", std::string(why.message()));
+  }
+}
+
+// Returns whether `path` is `folder` or below it. Both are canonical.
+bool IsWithin(const fs::path& path, const fs::path& folder) {
+  return std::ranges::mismatch(folder, path).in1 == folder.end();
+}
+
+bool IsWithinAny(const fs::path& path, const std::vector<fs::path>& folders) {
+  return std::ranges::any_of(folders, [&](const fs::path& each) { return IsWithin(path, each); });
+}
+
+// PERMISSION_DENIED for a symbolic link that is not followed.
+absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
+  std::error_code error;
+  const fs::path folder = fs::canonical(link.parent_path(), error);
+  if (error || IsWithinAny(folder, rules.untrusted)) {
+    return absl::PermissionDeniedError(
+        absl::StrCat(link.string(),
+                     ": is a symbolic link, which is not followed in an untrusted "
+                     "folder; put the file itself there"));
+  }
+  const fs::path target = fs::canonical(link, error);
+  if (error) {
+    return absl::PermissionDeniedError(
+        absl::StrCat(link.string(), ": is a symbolic link that leads nowhere"));
+  }
+  if (IsWithinAny(target, rules.targets)) return absl::OkStatus();
+  return absl::PermissionDeniedError(
+      absl::StrCat(link.string(), ": is a symbolic link to ", target.string(),
+                   ", outside the data folders; allow it with --allow-links-to ",
+                   (fs::is_directory(target, error) ? target : target.parent_path()).string()));
+}
+
+struct Folder {
+  std::vector<fs::path> files;
+  std::vector<fs::path> folders;
+};
+
+absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
+  const base::SlowCall call(path.string());
+  Folder folder;
+  std::error_code error;
+  fs::directory_iterator entries(path, error);
+  for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    if (++walk.entries > kMostEntries || std::chrono::steady_clock::now() > walk.end) {
+      return absl::ResourceExhaustedError(absl::StrCat(
+          path.string(), ": the search stopped after ", walk.entries - 1,
+          " files and folders; give --data folders farther down, with fewer files below them"));
+    }
+    const fs::path& entry = entries->path();
+    if (entry.filename().string().starts_with('.')) continue;
+    std::error_code ignored;
+    const bool is_folder = fs::is_directory(entry, ignored);
+    if (!is_folder && !fs::is_regular_file(entry, ignored)) continue;
+    if (entries->is_symlink(ignored)) {
+      if (const absl::Status allowed = CheckLink(walk.links, entry); !allowed.ok()) {
+        LeaveOut(walk, entry, allowed);
+        continue;
+      }
+    }
+    (is_folder ? folder.folders : folder.files).push_back(entry);
+  }
+  if (error) return CannotBeListed(path.string(), error);
+  std::ranges::sort(folder.files);
+  std::ranges::sort(folder.folders);
+  return folder;
+}
+
+// Groups a folder's files into runs; files that do not continue one another become storms of their
+// own.
+std::vector<NamedStorm> GroupRuns(const fs::path& folder,
+                                  std::vector<storm_files::StormFile> files) {
+  std::vector<NamedStorm> storms;
+  std::vector<std::size_t> series;
+  for (std::vector<storm_files::StormFile>& run : FilesOfRuns(std::move(files))) {
+    if (run.size() > 1 && ContinueOneAnother(run)) {
+      series.push_back(storms.size());
+      storms.push_back({NameOfFolder(folder), std::move(run)});
+      continue;
+    }
+    for (storm_files::StormFile& file : run) {
+      const std::string name = NameOfFile(file.path);
+      storms.push_back({name, {}});
+      storms.back().files.push_back(std::move(file));
+    }
+  }
+  // Nested domains of one run are often in one folder; their names get the domain's number.
+  if (series.size() > 1) {
+    for (const std::size_t i : series) {
+      absl::StrAppend(&storms[i].name, "-d", absl::Dec(storms[i].files[0].domain, absl::kZeroPad2));
+    }
+  }
+  return storms;
+}
+
+// Searches a folder and those below it, each once: links can make one folder appear in many places.
+absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
+                          std::vector<NamedStorm>& storms) {
+  struct stat identity {};
+  if (::stat(path.c_str(), &identity) == 0 &&
+      !walk.visited.emplace(identity.st_dev, identity.st_ino).second) {
+    return absl::OkStatus();
+  }
+  if (walk.search.on_folder) walk.search.on_folder(path.string());
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path, walk));
+  std::vector<storm_files::StormFile> files;
+  for (const fs::path& file : folder.files) {
+    absl::StatusOr<storm_files::StormFile> metadata = walk.search.describe(file.string());
+    if (metadata.ok()) {
+      files.push_back(*std::move(metadata));
+      continue;
+    }
+    if (absl::IsCancelled(metadata.status())) continue;
+    walk.first_failure.Update(metadata.status());
+    // A file of another kind, such as a read-me, is normal; a storm that cannot be read deserves a
+    // warning.
+    const bool other = absl::IsInvalidArgument(metadata.status());
+    spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}",
+                std::string(metadata.status().message()));
+  }
+  if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
+  if (depth == kDeepestFolder) return absl::OkStatus();
+  for (const fs::path& below : folder.folders) {
+    const absl::Status status = SearchFolder(below, depth + 1, walk, storms);
+    if (!status.ok()) LeaveOut(walk, below, status);
+  }
+  return absl::OkStatus();
+}
+
+// Appends the canonical paths of those that exist.
+void AppendCanonical(const std::vector<std::string>& paths, std::vector<fs::path>* canonical) {
+  for (const std::string& path : paths) {
+    std::error_code error;
+    fs::path found = fs::canonical(path, error);
+    if (!error) canonical->push_back(std::move(found));
+  }
+}
+
+LinkRules LinkRulesOf(const std::vector<std::string>& paths, const LinkPolicy& links) {
+  LinkRules rules;
+  AppendCanonical(paths, &rules.targets);
+  AppendCanonical(links.allowed, &rules.targets);
+  AppendCanonical(links.untrusted, &rules.untrusted);
+  return rules;
+}
+
+absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedStorm>& storms) {
+  const StormSearch& search = walk.search;
+  std::error_code error;
+  if (search.may_find_nothing && fs::status(path, error).type() == fs::file_type::not_found) {
+    return absl::OkStatus();
+  }
+  if (!fs::is_directory(path, error)) {
+    absl::StatusOr<storm_files::StormFile> metadata = search.describe(path);
+    if (!metadata.ok() && search.may_find_nothing) return absl::OkStatus();
+    THUNDERHEAD_RETURN_IF_ERROR(metadata.status());
+    storms.push_back({NameOfFile(path), {}});
+    storms.back().files.push_back(*std::move(metadata));
+    return absl::OkStatus();
+  }
+  const std::size_t before = storms.size();
+  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, walk, storms));
+  if (storms.size() > before || search.may_find_nothing) return absl::OkStatus();
+  if (!walk.first_failure.ok()) {
+    return base::Annotate(walk.first_failure,
+                          absl::StrCat(path, " holds no storm; its first file"));
+  }
+  return absl::NotFoundError(absl::StrCat(path, ": holds no storm; put the model's output files (",
+                                          search.examples, ") there"));
+}
+
+std::string TitleOf(const std::string& name, const storm_files::StormFile& file) {
+  return base::Printable(file.about.empty() ? name : absl::StrCat(name, " (", file.about, ")"));
+}
+
+// Drops files that were found before under another path or through a link.
+void DropRepeated(std::vector<NamedStorm>& storms) {
+  std::set<std::string> seen;
+  for (NamedStorm& storm : storms) {
+    std::erase_if(storm.files, [&seen](const storm_files::StormFile& file) {
+      std::error_code error;
+      const fs::path canonical = fs::canonical(file.path, error);
+      return !seen.insert(error ? file.path : canonical.string()).second;
+    });
+  }
+  std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
+}
+
+}  // namespace
+
+absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy& links,
+                        const std::string& path, const std::string& place) {
+  const LinkRules rules = LinkRulesOf(paths, links);
+  const auto refused = [&] {
+    return absl::PermissionDeniedError(
+        absl::StrCat(path, ": lies at ", place, ", where no link may lead; put the file itself ",
+                     "into the data folder, or see --allow-links-to"));
+  };
+  if (!IsWithinAny(place, rules.targets)) return refused();
+  const auto written = [](const fs::path& each) {
+    const fs::path normal = fs::absolute(each).lexically_normal();
+    return normal.has_filename() ? normal : normal.parent_path();
+  };
+  // No link is followed in an untrusted folder, so what is found there lies there.
+  for (const std::string& untrusted : links.untrusted) {
+    std::error_code error;
+    const fs::path folder = fs::canonical(untrusted, error);
+    if (error) continue;
+    const bool is_below =
+        IsWithin(written(path), written(untrusted)) || IsWithin(written(path), folder);
+    if (is_below && !IsWithin(place, folder)) return refused();
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CannotBeListed(const std::string& folder, const std::error_code& error) {
+  return absl::PermissionDeniedError(
+      absl::StrCat(folder, ": the folder cannot be listed (", error.message(), ")"));
+}
+
+std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
+    std::vector<storm_files::StormFile> files) {
+  std::map<decltype(RunKey(files[0])), std::vector<storm_files::StormFile>> by_key;
+  for (storm_files::StormFile& file : files) by_key[RunKey(file)].push_back(std::move(file));
+  std::vector<std::vector<storm_files::StormFile>> runs;
+  runs.reserve(by_key.size());
+  for (auto& [key, run] : by_key) runs.push_back(std::move(run));
+  return runs;
+}
+
+CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::StormFile> files) {
+  THUNDERHEAD_CHECK(!files.empty(), name);
+  std::ranges::sort(files, {}, &storm_files::StormFile::path);
+  CataloguedStorm storm;
+  std::map<absl::Time, TimeSource> sources;
+  for (std::size_t file = 0; file < files.size(); ++file) {
+    for (std::size_t record = 0; record < files[file].times.size(); ++record) {
+      const absl::Time time = files[file].times[record];
+      const auto [at, added] = sources.try_emplace(time, TimeSource{file, record});
+      if (added) continue;
+      storm.notes.push_back(absl::StrCat(FormatValidTime(time), " is in ",
+                                         files[at->second.file].path, " and in ", files[file].path,
+                                         "; the latter is used"));
+      at->second = {file, record};
+    }
+  }
+  StormInfo& info = storm.info;
+  info.id = IdFrom(name);
+  for (const auto& [time, source] : sources) {
+    const storm_files::StormFile& file = files[source.file];
+    info.times.push_back({.valid_time = FormatValidTime(time),
+                          .elapsed_s = absl::ToDoubleSeconds(time - sources.begin()->first),
+                          .file = file.path,
+                          .version = file.version});
+    storm.sources.push_back(source);
+  }
+  for (const storm_files::StormFile& file : files) info.files.push_back(file.path);
+  const storm_files::StormFile& first = files[storm.sources.front().file];
+  info.title = TitleOf(name, first);
+  info.file_cells = first.cells;
+  info.dx_m = first.dx_m;
+  info.dy_m = first.dy_m;
+  info.fields = first.fields;
+  info.latitude_deg = first.latitude_deg;
+  info.longitude_deg = first.longitude_deg;
+  if (const auto start = storm_files::RunStart(first); start.has_value()) {
+    info.run_start = FormatValidTime(*start);
+  }
+  info.projection = first.projection;
+  storm.files = std::move(files);
+  return storm;
+}
+
+void LogNotes(const std::vector<CataloguedStorm>& storms) {
+  for (const CataloguedStorm& storm : storms) {
+    for (const std::string& note : storm.notes) spdlog::warn("{}", note);
+  }
+}
+
+absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
+                                                    const storm_files::StormFormats& formats) {
+  const base::SlowCall call(path);
+  try {
+    absl::StatusOr<storm_files::StormFile> file = formats.Describe(path);
+    if (file.ok() && file->device == 0) {
+      if (const auto stamp = base::StampOf(path); stamp.has_value()) file->device = stamp->device;
+    }
+    return file;
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(path, ": its metadata does not fit in memory; the file is probably damaged"));
+  }
+}
+
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
+                                                        const storm_files::StormFormats& formats,
+                                                        const LinkPolicy& links) {
+  auto storms = FindStorms(
+      paths, {.describe = [&](const std::string& path) { return DescribeFile(path, formats); },
+              .on_unlisted = {},
+              .on_folder = {},
+              .examples = formats.Examples(),
+              .links = links});
+  if (storms.ok()) LogNotes(*storms);
+  return storms;
+}
+
+absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
+                                                        const StormSearch& search) {
+  std::vector<NamedStorm> named;
+  const LinkRules links = LinkRulesOf(paths, search.links);
+  for (std::size_t path = 0; path < paths.size(); ++path) {
+    const std::size_t before = named.size();
+    if (search.answers && !search.answers(paths[path])) {
+      for (const NamedFiles& storm : (*search.found)[paths[path]]) {
+        named.push_back({storm.name, storm.files});
+      }
+    } else {
+      THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], {.search = search, .links = links}, named));
+    }
+    for (std::size_t i = before; i < named.size(); ++i) named[i].path = path;
+    if (search.found == nullptr) continue;
+    std::vector<NamedFiles>& found = (*search.found)[paths[path]];
+    found.clear();
+    for (std::size_t i = before; i < named.size(); ++i) {
+      found.push_back({named[i].name, named[i].files});
+    }
+  }
+  if (named.empty() && !search.may_find_nothing) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "no storm to show; name a file or folder of model output (", search.examples, ")"));
+  }
+  DropRepeated(named);
+  std::vector<CataloguedStorm> storms;
+  std::set<std::string> ids;
+  for (NamedStorm& storm : named) {
+    storms.push_back(AssembleStorm(storm.name, std::move(storm.files)));
+    std::string& id = storms.back().info.id;
+    const std::string stem = id;
+    for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(stem, "-", copy);
+  }
+  for (std::size_t first = 0, last = 0; first < storms.size(); first = last) {
+    while (last < storms.size() && named[last].path == named[first].path) ++last;
+    const auto begin = storms.begin();
+    std::ranges::sort(begin + static_cast<std::ptrdiff_t>(first),
+                      begin + static_cast<std::ptrdiff_t>(last), {},
+                      [](const CataloguedStorm& storm) { return storm.info.id; });
+  }
+  return storms;
+}
+
+}  // namespace thunderhead::storm_store

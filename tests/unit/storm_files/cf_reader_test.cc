@@ -1,0 +1,642 @@
+// CF files as storms: axes in any order and direction, quantities by standard name or name, clear
+// errors for files that lack something.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/air.h"
+#include "storm_files/cf_axes.h"
+#include "storm_files/cf_names.h"
+#include "storm_store/storm_store.h"
+#include "tests/support/captured_log.h"
+#include "tests/support/synthetic_cf.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+using testing::CapturedLog;
+using testing::CfContent;
+using testing::CfCoordinate;
+using testing::ExtinctionFile;
+using ::testing::HasSubstr;
+using testing::Middles;
+using ::testing::SizeIs;
+using testing::SyntheticCf;
+using testing::TemporaryFolder;
+using Index = std::map<std::string, std::size_t>;
+
+// Different in every cell, all above zero.
+double Value(std::size_t x, std::size_t y, std::size_t z) {
+  return 1e-3 * static_cast<double>(1 + x + 10 * y + 100 * z);
+}
+
+class CfReader : public ::testing::Test {
+ protected:
+  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Read(const SyntheticCf& file,
+                                                                        int time = 0) {
+    testing::WriteCf(file, path_);
+    auto store = storm_store::StormStore::Open({path_}, {.read_ahead = 0});
+    if (!store.ok()) return store.status();
+    info_ = *(*store)->Storms().front();
+    return (*store)->Get(info_.id, time, {});
+  }
+
+  void ExpectError(const SyntheticCf& file, const std::string& what) {
+    const auto fields = Read(file);
+    ASSERT_FALSE(fields.ok()) << what;
+    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(path_));
+    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(what));
+  }
+
+  void ExpectValues(const volume::HydrometeorFields& fields) {
+    ASSERT_THAT(fields.fields, SizeIs(1));
+    const auto& values = fields.fields[0].concentration_kg_per_m3;
+    ASSERT_THAT(values, SizeIs(fields.grid.CellCount()));
+    for (int z = 0; z < fields.grid.cells.z; ++z) {
+      for (int y = 0; y < fields.grid.cells.y; ++y) {
+        for (int x = 0; x < fields.grid.cells.x; ++x) {
+          EXPECT_FLOAT_EQ(values[fields.grid.Offset(x, y, z)], static_cast<float>(Value(x, y, z)));
+        }
+      }
+    }
+  }
+
+  TemporaryFolder folder_;
+  std::string path_ = folder_.File("cloud.nc");
+  storm_store::StormInfo info_;
+};
+
+SyntheticCf Small() { return ExtinctionFile(4, 3, 2, 100.0, 200.0, 50.0, Value); }
+
+TEST_F(CfReader, ReadsExtinctionAsOneFieldOnItsGrid) {
+  const auto fields = Read(Small());
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.cells, glm::ivec3(4, 3, 2));
+  EXPECT_EQ((*fields)->grid.spacing_m, glm::dvec3(100.0, 200.0, 50.0));
+  EXPECT_EQ((*fields)->grid.low_corner_m, glm::dvec3(-200.0, -300.0, 0.0));
+  ExpectValues(**fields);
+  const volume::HydrometeorField& field = (*fields)->fields[0];
+  EXPECT_EQ(field.quantity, volume::Quantity::kExtinction);
+  EXPECT_EQ(field.variable, "extinction");
+  physics::ParticleOptics optics = physics::DefaultOptics(field.hydrometeor);
+  EXPECT_EQ(volume::MassExtinctionOf(field, optics, physics::SizeSource::kModel).m2_per_kg, 1.0F);
+  optics.radius_m *= 7.0F;
+  EXPECT_EQ(volume::MassExtinctionOf(field, optics, physics::SizeSource::kGiven).m2_per_kg, 1.0F);
+  EXPECT_NEAR(field.statistics.maximum_water_path_kg_per_m2,
+              50.0 * (Value(3, 2, 0) + Value(3, 2, 1)), 1e-4);
+  EXPECT_EQ((*fields)->condensate, (volume::CellBox{{0, 0, 0}, {4, 3, 2}}));
+  EXPECT_EQ(info_.times[0].valid_time, "0001-01-01T00:00:00Z");
+}
+
+TEST_F(CfReader, TakesAnyOrderOfDimensions) {
+  for (const std::vector<std::string>& order : {std::vector<std::string>{"x", "y", "z"},
+                                                {"y", "z", "x"},
+                                                {"z", "x", "y"},
+                                                {"x", "z", "y"},
+                                                {"y", "x", "z"}}) {
+    SyntheticCf file = Small();
+    file.variables[0].dimensions = order;
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    ExpectValues(**fields);
+  }
+}
+
+TEST_F(CfReader, TakesAxesThatRunWestSouthOrDown) {
+  for (const std::size_t reversed : {0U, 1U, 2U}) {
+    SyntheticCf file = Small();
+    CfCoordinate& axis = file.coordinates[reversed];
+    std::ranges::reverse(axis.values);
+    const std::size_t last = axis.values.size() - 1;
+    const std::string name = axis.name;
+    file.variables[0].value = [last, name](Index at) {
+      at[name] = last - at[name];
+      return Value(at["x"], at["y"], at["z"]);
+    };
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_EQ((*fields)->grid.low_corner_m, glm::dvec3(-200.0, -300.0, 0.0));
+    ExpectValues(**fields);
+  }
+}
+
+TEST_F(CfReader, DepthsPointDown) {
+  SyntheticCf file = Small();
+  file.coordinates[2] = {"level", {-25.0, -75.0}, {{"units", "m"}, {"positive", "down"}}, {}};
+  file.variables[0].dimensions[0] = "level";
+  file.variables[0].value = [](Index at) { return Value(at["x"], at["y"], at["level"]); };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.low_corner_m.z, 0.0);
+  ExpectValues(**fields);
+}
+
+// The names are meaningless; each axis has one other attribute that identifies it.
+TEST_F(CfReader, AxesAreKnownByAttributesStandardNamesOrUnits) {
+  SyntheticCf file = Small();
+  file.coordinates[0] = {"a", Middles(4, 0.0, 0.1), {{"units", "km"}, {"axis", "X"}}, {}};
+  file.coordinates[1] = {"b",
+                         Middles(3, 7.0, 200.0),
+                         {{"units", "m"}, {"standard_name", "projection_y_coordinate"}},
+                         {}};
+  file.coordinates[2] = {"c", Middles(2, 0.0, 50.0), {{"units", "m"}, {"positive", "up"}}, {}};
+  file.variables[0].dimensions = {"a", "c", "b"};
+  file.variables[0].value = [](Index at) { return Value(at["a"], at["b"], at["c"]); };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.x, 100.0, 1e-9);
+  ExpectValues(**fields);
+}
+
+TEST_F(CfReader, SingleCellsHaveTheSizeOfTheirBounds) {
+  SyntheticCf file = ExtinctionFile(1, 1, 1, 100.0, 200.0, 50.0, Value);
+  file.coordinates[0].faces = {1000.0, 1300.0};
+  file.coordinates[2].faces = {500.0, 450.0};
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.spacing_m, glm::dvec3(300.0, 200.0, 50.0));
+  EXPECT_EQ((*fields)->grid.low_corner_m.z, 450.0);
+  file.coordinates[2].faces = {};
+  file.coordinates[2].values = {0.0};
+  ExpectError(file, "bounds");
+  // A slice of one cell at 0 is as wide as its other cells.
+  file = ExtinctionFile(4, 1, 1, 100.0, 1.0, 50.0, Value);
+  file.coordinates[1].values = {0.0};
+  const auto slice = Read(file);
+  ASSERT_TRUE(slice.ok()) << slice.status();
+  EXPECT_EQ((*slice)->grid.spacing_m, glm::dvec3(100.0, 100.0, 50.0));
+}
+
+// Layers of 50, 50, 100 and 200 m become eight of 50 m, each wholly of one layer.
+TEST_F(CfReader, UnevenLayersBecomeEvenOnesExactlyWhereTheyCan) {
+  SyntheticCf file = ExtinctionFile(2, 2, 4, 100.0, 100.0, 1.0, Value);
+  file.coordinates[2].values = {25.0, 75.0, 150.0, 300.0};
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.cells.z, 8);
+  const int layer_of_cell[8] = {0, 1, 2, 2, 3, 3, 3, 3};
+  for (int z = 0; z < 8; ++z) {
+    EXPECT_FLOAT_EQ((*fields)->fields[0].concentration_kg_per_m3[(*fields)->grid.Offset(1, 1, z)],
+                    static_cast<float>(Value(1, 1, static_cast<std::size_t>(layer_of_cell[z]))));
+  }
+}
+
+// Layers that stretch by 7.3 % each: the column's optical depth is kept.
+TEST_F(CfReader, UnevenLayersKeepTheirOpticalDepth) {
+  SyntheticCf file = ExtinctionFile(1, 1, 20, 100.0, 100.0, 1.0, Value);
+  std::vector<double> faces = {0.0};
+  double depth = 0.0;
+  for (std::size_t z = 0; z < 20; ++z) {
+    const double thickness_m = 30.0 * std::pow(1.073, static_cast<double>(z));
+    file.coordinates[2].values[z] = faces.back() + 0.5 * thickness_m;
+    faces.push_back(faces.back() + thickness_m);
+    depth += thickness_m * Value(0, 0, z);
+  }
+  for (const bool bounds : {false, true}) {
+    if (bounds) file.coordinates[2].faces = faces;
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_NEAR((*fields)->grid.HighCorner_m().z, faces.back(), 1e-6);
+    EXPECT_NEAR((*fields)->fields[0].statistics.mean_water_path_kg_per_m2, depth, 1e-5 * depth);
+  }
+}
+
+SyntheticCf Water(const std::string& name, const std::map<std::string, std::string>& attributes,
+                  double amount) {
+  SyntheticCf file = Small();
+  file.variables[0] = {
+      name, {"z", "y", "x"}, attributes, [amount](const Index&) { return amount; }};
+  return file;
+}
+
+TEST_F(CfReader, HydrometeorsByStandardNameOrNameInTheirUnits) {
+  struct Case {
+    std::string name;
+    std::map<std::string, std::string> attributes;
+    double amount;
+    physics::Hydrometeor hydrometeor;
+    float concentration_kg_per_m3;
+  };
+  using physics::Hydrometeor;
+  const std::string concentration = "mass_concentration_of_";
+  for (const Case& c : {
+           Case{"w",
+                {{"standard_name", concentration + "cloud_liquid_water_in_air"},
+                 {"units", "kg m-3"}},
+                2e-4,
+                Hydrometeor::kCloud,
+                2e-4F},
+           Case{"w",
+                {{"standard_name", concentration + "liquid_water_in_air"}, {"units", "g m**-3"}},
+                0.5,
+                Hydrometeor::kCloud,
+                5e-4F},
+           Case{"lwc", {{"units", "g/m^3"}}, 0.3, Hydrometeor::kCloud, 3e-4F},
+           Case{"QS", {{"units", "mg m-3"}}, 70.0, Hydrometeor::kSnow, 7e-5F},
+           Case{"hail",
+                {{"standard_name", concentration + "hail_in_air"}, {"units", "kg m-3"}},
+                1e-3,
+                Hydrometeor::kHail,
+                1e-3F},
+       }) {
+    SCOPED_TRACE(c.name + " " + c.attributes.begin()->second);
+    const auto fields = Read(Water(c.name, c.attributes, c.amount));
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    const volume::HydrometeorField& field = (*fields)->fields[0];
+    EXPECT_EQ(field.hydrometeor, c.hydrometeor);
+    EXPECT_EQ(field.quantity, volume::Quantity::kMassConcentration);
+    EXPECT_FLOAT_EQ(field.concentration_kg_per_m3[5], c.concentration_kg_per_m3);
+    EXPECT_FLOAT_EQ(field.statistics.maximum, c.concentration_kg_per_m3);
+  }
+}
+
+CfContent UniformField(const std::string& name, const std::string& units, double value) {
+  return {name, {"y", "z", "x"}, {{"units", units}}, [value](const Index&) { return value; }};
+}
+
+// Mixing ratios times the density of the air that they refer to.
+TEST_F(CfReader, MixingRatiosTakeTheAirsDensity) {
+  const double q_v = 0.01;
+  const double dry = physics::DryAirDensity_kg_per_m3(9e4, 290.0, q_v);
+  SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
+  file.variables.push_back(UniformField("prs", "hPa", 900.0));
+  file.variables.push_back(UniformField("temp", "K", 290.0));
+  file.variables.push_back(UniformField("qv", "kg/kg", q_v));
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * dry, 1e-9);
+  EXPECT_FLOAT_EQ((*fields)->fields[0].statistics.maximum, 0.8e-3F);
+  file.variables[0] =
+      Water("w", {{"standard_name", "mass_fraction_of_cloud_liquid_water_in_air"}, {"units", "1"}},
+            0.8e-3)
+          .variables[0];
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * dry * (1.0 + q_v), 1e-9);
+  file.variables = {file.variables[0], UniformField("rho", "kg m-3", 0.9)};
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * 0.9, 1e-9);
+}
+
+TEST_F(CfReader, TimesAreRecords) {
+  SyntheticCf file = Small();
+  file.coordinates.push_back(
+      {"time", {0.0, 90.5}, {{"units", "minutes since 2013-05-20 18:00:00"}}, {}});
+  file.variables[0].dimensions = {"time", "z", "y", "x"};
+  file.variables[0].value = [](Index at) {
+    return Value(at["x"], at["y"], at["z"]) * (at["time"] == 1 ? 1.0 : 2.0);
+  };
+  const auto fields = Read(file, 1);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  ExpectValues(**fields);
+  ASSERT_THAT(info_.times, SizeIs(2));
+  EXPECT_EQ(info_.times[1].valid_time, "2013-05-20T19:30:30Z");
+}
+
+// One time, in these units.
+SyntheticCf Timed(const std::string& units, double time) {
+  SyntheticCf file = Small();
+  file.coordinates.push_back({"time", {time}, {{"units", units}}, {}});
+  file.variables[0].dimensions = {"time", "z", "y", "x"};
+  return file;
+}
+
+TEST_F(CfReader, TimesCountFromTheDateOfTheirUnits) {
+  const std::tuple<const char*, double, const char*> cases[] = {
+      {"seconds since 2013-05-20 18:00:00", 90.0, "2013-05-20T18:01:30Z"},
+      {"hours since 2013-05-20 18:00:00 +05:30", 2.0, "2013-05-20T14:30:00Z"},
+      {"hours since 2013-05-20 18:00:00 -6:00", -1.0, "2013-05-20T23:00:00Z"},
+      {"days since 2012-02-28", 1.0, "2012-02-29T00:00:00Z"},
+      {"days since 2013-02-28", 1.0, "2013-03-01T00:00:00Z"},
+      {"minutes since 0001-01-01 00:00:00", 20.0, "0001-01-01T00:20:00Z"},
+      {"min", 20.0, "0001-01-01T00:20:00Z"},  // of an idealised run
+      {"", 20.0, "0001-01-01T00:00:00Z"},
+  };
+  for (const auto& [units, time, expected] : cases) {
+    const auto fields = Read(Timed(units, time));
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_EQ(info_.times[0].valid_time, expected) << units;
+  }
+}
+
+TEST_F(CfReader, TimesThatCountFromNoDateAreRefused) {
+  for (const std::string units :
+       {"seconds since 2013-13-20 18:00:00", "seconds since 2013-05-20 99:99:99",
+        "seconds since 2013-05-20 18:00:00 +9999", "seconds since 2013-02-29",
+        "seconds since 2013-05-20 24:00:00", "fortnights since 2013-05-20",
+        "months since 2013-05-20", "day as %Y%m%d.%f", "K"}) {
+    ExpectError(Timed(units, 0.0), "the coordinate time has units '" + units + "'");
+  }
+  SyntheticCf file = Timed("", 0.0);
+  file.coordinates.back().values = {0.0, 1.0};
+  ExpectError(file, "the coordinate time has no units");
+}
+
+TEST_F(CfReader, TimesOfOtherCalendarsAreRefused) {
+  SyntheticCf file = Timed("days since 2013-02-28", 1.0);
+  for (const char* calendar : {"standard", "gregorian", "Gregorian", "proleptic_gregorian"}) {
+    file.coordinates.back().attributes["calendar"] = calendar;
+    ASSERT_TRUE(Read(file).ok()) << calendar;
+    EXPECT_EQ(info_.times[0].valid_time, "2013-03-01T00:00:00Z");
+  }
+  for (const std::string calendar : {"noleap", "360_day", "all_leap", "julian", "mayan"}) {
+    file.coordinates.back().attributes["calendar"] = calendar;
+    ExpectError(file, "counts in the calendar '" + calendar + "'");
+  }
+  // CF's default calendar has two days more in the years since 1.
+  file = Timed("hours since 0001-01-01 00:00:00", 17'637'120.0);
+  ExpectError(file, "across the change of calendars in 1582");
+  file.coordinates.back().attributes["calendar"] = "proleptic_gregorian";
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_EQ(info_.times[0].valid_time, "2013-01-13T00:00:00Z");
+}
+
+TEST_F(CfReader, CoordinatesInOtherUnitsAreRefused) {
+  SyntheticCf file = Small();
+  file.coordinates[0].attributes["axis"] = "X";
+  for (const std::string units : {"ft", "Mm", "mm", "degrees_north", "degrees_west",
+                                  "degree_Celsius", "radian", "rotations", "10 m", "1"}) {
+    file.coordinates[0].attributes["units"] = units;
+    ExpectError(file, "the coordinate x has units '" + units + "'");
+  }
+  file = Small();
+  file.coordinates[2].attributes["axis"] = "Z";
+  for (const std::string units : {"ft", "hPa", "degrees_north", "degrees", "1", "level"}) {
+    file.coordinates[2].attributes["units"] = units;
+    ExpectError(file, "the coordinate z has units '" + units + "'");
+  }
+  file = Small();
+  file.coordinates[2].attributes["positive"] = "sideways";
+  ExpectError(file, "positive 'sideways'");
+  file = Small();
+  file.coordinates[0].name = "lon";
+  file.coordinates[0].attributes.clear();
+  file.variables[0].dimensions = {"z", "y", "lon"};
+  file.variables[0].value = [](const Index&) { return 0.0; };
+  ExpectError(file, "the coordinate lon has no units");
+}
+
+TEST_F(CfReader, CoordinatesWithoutUnitsAreTakenToBeInMetres) {
+  SyntheticCf file = Small();
+  for (CfCoordinate& coordinate : file.coordinates) coordinate.attributes.clear();
+  const CapturedLog log;
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.spacing_m, glm::dvec3(100.0, 200.0, 50.0));
+  for (const char* name : {"x", "y", "z"}) {
+    EXPECT_THAT(log.Text(), HasSubstr(std::string(name) + " has no units; taken to be in m"));
+  }
+}
+
+TEST_F(CfReader, BoundsAreInTheUnitsOfTheirCoordinate) {
+  SyntheticCf file = Small();
+  file.coordinates[2] = {"z", {0.025, 0.075}, {{"units", "km"}}, {0.0, 0.05, 0.1}};
+  file.bounds_attributes = {{"units", "km"}};
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.z, 50.0, 1e-9);
+  file.bounds_attributes = {{"units", "m"}};
+  ExpectError(file, "z_bounds has units 'm'");
+}
+
+TEST_F(CfReader, TheGroundIsInItsUnits) {
+  SyntheticCf file = Small();
+  file.variables.push_back(
+      {"orog",
+       {"y", "x"},
+       {{"standard_name", "surface_altitude"}, {"units", "km"}},
+       [](const Index& at) { return 0.01 * static_cast<double>(at.at("x")); }});
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_FLOAT_EQ((*fields)->terrain_height_m[3], 30.0F);
+  file.variables.back().attributes["units"] = "ft";
+  const CapturedLog log;
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->terrain_height_m[3], 0.0F);
+  EXPECT_THAT(log.Text(), HasSubstr("orog (units 'ft') is not read"));
+}
+
+TEST_F(CfReader, DegreesHaveAPlaceOnEarth) {
+  SyntheticCf file = Small();
+  file.coordinates[0] = {"lon", {9.98, 9.99, 10.0, 10.01}, {{"units", "degrees_east"}}, {}};
+  file.coordinates[1] = {"lat", {59.99, 60.0, 60.01}, {{"units", "degrees_north"}}, {}};
+  file.variables[0].dimensions = {"z", "lat", "lon"};
+  file.variables[0].value = [](Index at) { return Value(at["lon"], at["lat"], at["z"]); };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.y, 1111.9, 0.1);
+  EXPECT_NEAR((*fields)->grid.spacing_m.x, 0.5 * 1111.9, 0.1);
+  EXPECT_NEAR(info_.latitude_deg.value(), 60.0, 1e-9);
+  EXPECT_NEAR(info_.longitude_deg.value(), 9.995, 1e-9);
+}
+
+TEST_F(CfReader, MissingAndNegativeCellsAreEmptyAndCounted) {
+  SyntheticCf file = Small();
+  file.variables[0].value = [](Index at) {
+    if (at["x"] == 0) return std::nan("");
+    if (at["x"] == 1) return -999.0;
+    return at["x"] == 2 ? -1e-9 : 0.01;
+  };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const volume::HydrometeorField& field = (*fields)->fields[0];
+  EXPECT_EQ(field.statistics.missing_cells, 12);
+  EXPECT_EQ(field.statistics.negative_cells, 6);
+  EXPECT_EQ((*fields)->condensate, (volume::CellBox{{3, 0, 0}, {4, 3, 2}}));
+}
+
+TEST_F(CfReader, SaysWhatAFileLacks) {
+  SyntheticCf file = Small();
+  file.variables[0].name = "brightness";
+  ExpectError(file, "neither WRF");
+  file = Small();
+  file.coordinates[0].written = false;
+  ExpectError(file, "no coordinate variable x");
+  file = Small();
+  file.coordinates[0].values[2] += 30.0;
+  ExpectError(file, "not evenly spaced");
+  file = Small();
+  file.coordinates[1].values[2] = file.coordinates[1].values[0];
+  ExpectError(file, "neither rises nor falls");
+  file = Small();
+  file.coordinates[2].attributes["units"] = "hPa";
+  ExpectError(file, "heights in m or km");
+  file = Small();
+  file.variables[0].attributes["units"] = "dBZ";
+  ExpectError(file, "'m-1' is needed");
+  ExpectError(Water("qc", {{"units", "kg kg-1"}}, 1e-3), "lacks the air's density");
+  ExpectError(Water("qc", {}, 1e-3), "has no units");
+  ExpectError(Water("lwc", {{"units", "kg m-3"}}, 0.8), "more than air can hold");
+  file = Small();
+  file.coordinates.push_back({"member", {1.0, 2.0}, {}, {}});
+  file.variables[0].dimensions = {"member", "z", "y", "x"};
+  ExpectError(file, "member");
+  file = Small();
+  file.coordinates[2].name = "q";
+  file.variables[0].dimensions[0] = "q";
+  file.variables[0].value = [](const Index&) { return 0.0; };
+  ExpectError(file, "q");
+}
+
+TEST_F(CfReader, AmountsInUnknownUnitsAreRefused) {
+  for (const std::string units : {"kg", "g", "kg m-2", "Mg m-3", "ppm", "mol m-3", "10 g m-3",
+                                  "kg kg-2", "(not text)", "%"}) {
+    ExpectError(Water("lwc", {{"units", units}}, 1e-3), "lwc has units '" + units + "'");
+  }
+  // "Mm-1", as of aerosols, is not "mm-1".
+  for (const std::string units : {"Mm-1", "mm-1", "kg m-3", "cm-1"}) {
+    SyntheticCf file = Small();
+    file.variables[0].attributes["units"] = units;
+    ExpectError(file, "extinction has units '" + units + "'");
+  }
+  SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
+  for (const auto& [name, units] : {std::pair<std::string, std::string>{"prs", "atm"},
+                                    {"prs", "MPa"},
+                                    {"temp", "degF"},
+                                    {"qv", "ppm"},
+                                    {"rho", "g m-3"}}) {
+    file.variables.resize(1);
+    file.variables.push_back(UniformField(name, units, 1.0));
+    ExpectError(file, name + " has units '" + units + "'");
+  }
+}
+
+// Units that are a number say nothing, and are not absent either.
+TEST_F(CfReader, UnitsThatAreNoTextAreRefused) {
+  SyntheticCf file = Small();
+  file.number_attributes["extinction"]["units"] = 1.0;
+  file.variables[0].attributes.clear();
+  ExpectError(file, "extinction has units '(not text)'");
+  file = Small();
+  file.number_attributes["x"]["units"] = 1.0;
+  file.coordinates[0].attributes.clear();
+  ExpectError(file, "the coordinate x has units '(not text)'");
+}
+
+TEST_F(CfReader, AirWithoutUnitsIsTakenToBeInThoseOfTheSi) {
+  SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
+  file.variables.push_back(UniformField("rho", "", 0.9));
+  const CapturedLog log;
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[3], 0.8e-3 * 0.9, 1e-9);
+  EXPECT_THAT(log.Text(), HasSubstr("rho has no units"));
+}
+
+// Cloud water below ice, and wind that grows with height: two layers of 50 m.
+SyntheticCf Windy() {
+  SyntheticCf file = Water("lwc", {{"units", "kg m-3"}}, 0.0);
+  file.variables[0].value = [](const Index& at) { return at.at("z") == 0 ? 1e-3 : 0.0; };
+  CfContent ice = file.variables[0];
+  ice.name = "iwc";
+  ice.value = [](const Index& at) { return at.at("z") == 1 ? 1e-4 : 0.0; };
+  file.variables.push_back(ice);
+  CfContent eastward = UniformField("u", "m s-1", 0.0);
+  eastward.value = [](const Index& at) { return at.at("z") == 0 ? 4.0 : 10.0; };
+  file.variables.push_back(eastward);
+  file.variables.push_back(UniformField("V_north", "m/s", -3.0));
+  file.variables.back().attributes["standard_name"] = "northward_wind";
+  file.variables.push_back(UniformField("winterp", "m s**-1", 2.0));
+  return file;
+}
+
+TEST_F(CfReader, TurbulenceIsThatOfTheWindsDeformation) {
+  const auto fields = Read(Windy());
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const volume::AirMotion& motion = (*fields)->motion;
+  EXPECT_EQ(motion.source, volume::TurbulenceSource::kDeformation);
+  EXPECT_EQ(motion.shear_m_per_s, glm::dvec2(6.0, 0.0));
+  EXPECT_EQ(motion.steering_m_per_s, glm::dvec2(7.0, -3.0));
+  ASSERT_THAT(motion.ascent, SizeIs((*fields)->grid.CellCount()));
+  EXPECT_EQ(motion.ascent[7], 8);  // in 0.25 m/s
+  // Shear of 6 m/s on 50 m, in cells of 100 x 200 x 50 m.
+  const double root = 0.4 * std::cbrt(100.0 * 200.0 * 50.0) * 6.0 / 50.0;
+  ASSERT_THAT(motion.turbulence, SizeIs((*fields)->grid.CellCount()));
+  EXPECT_NEAR(motion.turbulence[7], 255.0 * root * root / (root * root + 0.25), 1.0);
+}
+
+TEST_F(CfReader, TurbulenceIsTheFilesOwnWhereItHasSome) {
+  SyntheticCf file = Windy();
+  file.variables.push_back(UniformField("tke", "m2 s-2", 0.25));
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, volume::TurbulenceSource::kEnergy);
+  EXPECT_EQ((*fields)->motion.variable, "tke");
+  EXPECT_EQ((*fields)->motion.turbulence[7], 128);
+  EXPECT_EQ((*fields)->motion.shear_m_per_s, glm::dvec2(6.0, 0.0));
+  // Without one component there is no wind; the energy stays.
+  file.variables.erase(file.variables.begin() + 4);
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, volume::TurbulenceSource::kEnergy);
+  EXPECT_TRUE((*fields)->motion.ascent.empty());
+}
+
+TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
+  // Pressure velocity; wind on a grid of its own, as CM1 has it; missing values.
+  SyntheticCf file = Windy();
+  file.variables[4].attributes["units"] = "Pa s-1";
+  const CapturedLog log;
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_THAT(log.Text(), HasSubstr("winterp has units 'Pa s-1' where m s-1 is needed"));
+  EXPECT_EQ((*fields)->motion.source, volume::TurbulenceSource::kGradient);
+  EXPECT_TRUE((*fields)->motion.turbulence.empty());
+  file = Windy();
+  file.coordinates.push_back({"xf", {-250.0, -150.0, -50.0, 50.0, 150.0}, {{"units", "m"}}, {}});
+  file.variables[2].dimensions = {"z", "y", "xf"};
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, volume::TurbulenceSource::kGradient);
+  EXPECT_THAT(log.Text(), HasSubstr("u has a dimension xf"));
+  file = Windy();
+  file.variables.push_back(UniformField("tke", "kg", 0.25));
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.source, volume::TurbulenceSource::kDeformation);
+  EXPECT_THAT(log.Text(), HasSubstr("tke has units 'kg' where m2 s-2 is needed"));
+  file = Windy();
+  file.variables[2].value = [](const Index& at) {
+    return at.at("x") == 0 ? std::nan("") : 5.0 + static_cast<double>(at.at("z"));
+  };
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->motion.turbulence[0], 0);
+  EXPECT_EQ((*fields)->motion.shear_m_per_s, glm::dvec2(1.0, 0.0));
+}
+
+TEST(CfNames, UnitsAreReadInTheirSpellings) {
+  EXPECT_EQ(PlainUnits("kg m**-3"), "kgm-3");
+  EXPECT_EQ(PlainUnits("g.m^(-3)"), "gm-3");
+  EXPECT_EQ(PlainUnits("mg m-3"), "mgm-3");
+  EXPECT_EQ(PlainUnits("MG M-3"), "mgm-3");
+  EXPECT_EQ(PlainUnits("Mg m-3"), "Mgm-3");
+  EXPECT_TRUE(IsDegrees("degrees_E", CfDirection::kX));
+  EXPECT_TRUE(IsDegrees("degree_north", CfDirection::kY));
+  EXPECT_TRUE(IsDegrees("degrees", CfDirection::kY));
+  EXPECT_FALSE(IsDegrees("degrees_E", CfDirection::kY));
+  EXPECT_FALSE(IsDegrees("degrees", CfDirection::kZ));
+  EXPECT_EQ(MetresIn("km"), 1000.0);
+  EXPECT_FALSE(MetresIn("hPa").has_value());
+}
+
+TEST(EvenOut, FindsACommonDivisorOfThickness) {
+  CfAxis axis;
+  EvenOut({0.0, 20.0, 50.0, 100.0}, &axis);
+  EXPECT_TRUE(axis.exact);
+  EXPECT_EQ(axis.cells, 10);
+  EvenOut({0.0, 31.4, 100.0}, &axis);
+  EXPECT_FALSE(axis.exact);
+  for (const auto& cell : axis.shares) {
+    double sum = 0.0;
+    for (const LayerShare& part : cell) sum += part.share;
+    EXPECT_NEAR(sum, 1.0, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::storm_files

@@ -1,0 +1,156 @@
+#include "storm_files/vertical_remap.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace thunderhead::storm_files {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::FloatEq;
+using ::testing::FloatNear;
+
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+
+double Path(const std::vector<float>& interfaces_m, const std::vector<float>& concentration) {
+  double path = 0.0;
+  for (std::size_t i = 0; i < concentration.size(); ++i) {
+    path += static_cast<double>(concentration[i]) * (interfaces_m[i + 1] - interfaces_m[i]);
+  }
+  return path;
+}
+
+double Path(const VerticalGrid& grid, const std::vector<float>& cells) {
+  double path = 0.0;
+  for (const float cell : cells) path += cell * grid.spacing_m;
+  return path;
+}
+
+// Layer 1 (100 to 300 m) has the central slope (4 - 1) / (450 - 50) = 0.0075 per m, below the limit
+// 2 * 1 / 200 = 0.01; the outer layers are flat. Cell 0 holds 100 * 1 from layer 0 and from layer 1
+// 50 * (2 + 0.0075 * (125 - 200)) = 71.875; cell 1 holds 150 * (2 + 0.0075 * 25) = 328.125.
+TEST(VerticalRemap, AgreesWithAColumnComputedByHand) {
+  const VerticalGrid grid{0.0, 150.0, 4};
+  EXPECT_THAT(RemapColumns({0, 100, 300, 600}, {1, 2, 4}, 3, 1, grid),
+              ElementsAre(FloatNear(171.875F / 150, 1e-6F), FloatNear(328.125F / 150, 1e-6F),
+                          FloatEq(4), FloatEq(4)));
+}
+
+// Of neighbours 1 and 100 the smaller step decides: 2 * 1 / 100 per m, so the top half of the
+// middle layer holds 2 + 0.02 * 25 = 2.5, the lower 1.5, and neither leaves the range of its
+// neighbours.
+TEST(VerticalRemap, LimitsTheSlopeSoThatNoNewExtremeAppears) {
+  const VerticalGrid grid{0.0, 50.0, 6};
+  EXPECT_THAT(RemapColumns({0, 100, 200, 300}, {1, 2, 100}, 3, 1, grid),
+              ElementsAre(1, 1, FloatNear(1.5F, 1e-6F), FloatNear(2.5F, 1e-6F), 100, 100));
+}
+
+TEST(VerticalRemap, KeepsLayersThatAreCells) {
+  const VerticalGrid grid{200.0, 100.0, 4};
+  EXPECT_THAT(RemapColumns({200, 300, 400, 500, 600}, {5, 1, 7, 2}, 4, 1, grid),
+              ElementsAre(FloatEq(5), FloatEq(1), FloatEq(7), FloatEq(2)));
+}
+
+TEST(VerticalRemap, PreservesThePathOfRandomColumnsAndStaysWithinTheirRange) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> thickness_m(5.0F, 700.0F);
+  std::uniform_real_distribution<float> mass(0.0F, 1e-2F);
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<float> interfaces_m = {thickness_m(random)};
+    std::vector<float> concentration;
+    for (int level = 0; level < 40; ++level) {
+      interfaces_m.push_back(interfaces_m.back() + thickness_m(random));
+      concentration.push_back(trial % 3 == 0 && level % 4 != 0 ? 0.0F : mass(random));
+    }
+    const VerticalGrid grid = ChooseVerticalGrid(interfaces_m, 40, 1);
+    ASSERT_GT(grid.cells, 0);
+    const std::vector<float> cells = RemapColumns(interfaces_m, concentration, 40, 1, grid);
+    // Single precision sums of some hundred terms.
+    EXPECT_NEAR(Path(grid, cells) / Path(interfaces_m, concentration), 1.0, 1e-5);
+    const float largest = *std::max_element(concentration.begin(), concentration.end());
+    EXPECT_THAT(cells, Each(::testing::AllOf(::testing::Ge(0.0F),
+                                             ::testing::Le(largest * (1.0F + 1e-5F)))));
+  }
+}
+
+TEST(VerticalRemap, SkipsLayersThatAreMissingOrUpsideDown) {
+  const VerticalGrid grid{0.0, 100.0, 4};
+  EXPECT_THAT(RemapColumns({0, 100, kMissing, 300, 400}, {1, 2, 3, 4}, 4, 1, grid),
+              ElementsAre(1, 0, 0, 4));
+  EXPECT_THAT(RemapColumns({0, 200, 100, 300, 400}, {1, 2, 0, 4}, 4, 1, grid),
+              ElementsAre(1, 1, 0, 4));
+}
+
+TEST(VerticalRemap, PutsWhatLiesOutsideTheGridIntoItsEndCells) {
+  const VerticalGrid grid{100.0, 100.0, 2};
+  EXPECT_THAT(RemapColumns({0, 100, 200, 300, 400}, {1, 2, 3, 4}, 4, 1, grid),
+              ElementsAre(FloatNear(3, 1e-6F), FloatNear(7, 1e-6F)));
+}
+
+// 20 columns are more than one block and not two; each is told apart by its mass.
+TEST(VerticalRemap, KeepsColumnsApart) {
+  constexpr int kColumns = 20;
+  std::vector<float> interfaces_m(3 * kColumns);
+  std::vector<float> concentration(2 * kColumns, 0.0F);
+  for (int column = 0; column < kColumns; ++column) {
+    for (int k = 0; k < 3; ++k) interfaces_m[k * kColumns + column] = 50.0F * k;
+    concentration[kColumns + column] = static_cast<float>(column);
+  }
+  const std::vector<float> cells =
+      RemapColumns(interfaces_m, concentration, 2, kColumns, {0.0, 50.0, 3});
+  ASSERT_EQ(cells.size(), 3U * kColumns);
+  for (int column = 0; column < kColumns; ++column) {
+    EXPECT_EQ(cells[column], 0.0F);
+    EXPECT_FLOAT_EQ(cells[kColumns + column], static_cast<float>(column));
+    EXPECT_EQ(cells[2 * kColumns + column], 0.0F);
+  }
+}
+
+// Eight layers of 100 m: 8.04 cells with the room above, so nine.
+TEST(ChooseVerticalGrid, IsAsFineAsEqualLayersWithRoomAbove) {
+  std::vector<float> interfaces_m;
+  for (int k = 0; k <= 8; ++k) interfaces_m.push_back(100.0F * k + 30.0F);
+  const VerticalGrid grid = ChooseVerticalGrid(interfaces_m, 8, 1);
+  EXPECT_DOUBLE_EQ(grid.low_m, 30.0);
+  EXPECT_DOUBLE_EQ(grid.spacing_m, 100.0);
+  EXPECT_EQ(grid.cells, 9);
+}
+
+TEST(ChooseVerticalGrid, HasAtMostAQuarterMoreCellsThanLevels) {
+  // Layers from 10 m to 1.3 km, as over land; the thinnest would need 1,000 cells.
+  std::vector<float> interfaces_m = {0.0F};
+  for (int k = 0; k < 40; ++k) {
+    interfaces_m.push_back(interfaces_m.back() + 10.0F * std::pow(1.13F, static_cast<float>(k)));
+  }
+  const VerticalGrid grid = ChooseVerticalGrid(interfaces_m, 40, 1);
+  EXPECT_LE(grid.cells, 50);
+  EXPECT_GE(grid.cells, 49);
+  EXPECT_GE(grid.High_m(), interfaces_m.back());
+}
+
+TEST(ChooseVerticalGrid, HasOneCellForOneLayerAndNoneForNone) {
+  const VerticalGrid one = ChooseVerticalGrid({500, 900}, 1, 1);
+  EXPECT_EQ(one.cells, 1);
+  EXPECT_DOUBLE_EQ(one.low_m, 500.0);
+  EXPECT_DOUBLE_EQ(one.spacing_m, 400.0);
+  EXPECT_EQ(ChooseVerticalGrid({kMissing, 900}, 1, 1).cells, 0);
+  EXPECT_EQ(ChooseVerticalGrid({900, 500}, 1, 1).cells, 0);
+}
+
+TEST(ExtendedGrid, AddsWholeCellsBelowAndAbove) {
+  const VerticalGrid grid{0.0, 100.0, 10};
+  const VerticalGrid same = Extended(grid, {0, 999});
+  EXPECT_EQ(same.cells, 10);
+  const VerticalGrid more = Extended(grid, {-150, 1010});
+  EXPECT_DOUBLE_EQ(more.low_m, -200.0);
+  EXPECT_EQ(more.cells, 13);
+  EXPECT_DOUBLE_EQ(more.High_m(), 1100.0);
+}
+
+}  // namespace
+}  // namespace thunderhead::storm_files
