@@ -1,5 +1,6 @@
 #include "app/config_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -40,13 +41,19 @@ absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
     return absl::InvalidArgumentError(absl::StrCat(path, ": ", unreadable.what()));
   }
   for (const CLI::ConfigItem& setting : settings) {
-    CLI::Option* const option =
-        setting.parents.empty() ? command.get_option_no_throw("--" + setting.name) : nullptr;
-    if (option == nullptr || !option->get_configurable()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(path, ": there is no setting '", setting.fullname(), "'; `thunderhead ",
-                       command.get_name(), " --print-config` lists them all"));
+    if (!setting.parents.empty()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          path, ": has a section [", setting.parents.front(),
+          "]; write the settings without sections, each as its flag without the dashes"));
     }
+    CLI::Option* const option = command.get_option_no_throw("--" + setting.name);
+    if (option == nullptr || !option->get_configurable()) {
+      return absl::InvalidArgumentError(absl::StrCat(path, ": there is no setting '", setting.name,
+                                                     "'; `thunderhead ", command.get_name(),
+                                                     " --print-config` lists them all"));
+    }
+    // ConfigFileOf writes a setting without a value so.
+    if (std::ranges::all_of(setting.inputs, &std::string::empty)) continue;
     THUNDERHEAD_RETURN_IF_ERROR(
         base::Annotate(Set(*option, setting), absl::StrCat(path, ": ", setting.name)));
   }
@@ -56,7 +63,7 @@ absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
 std::string ConfigFileOf(const CLI::App& command) {
   constexpr bool kDefaultsToo = true;
   constexpr bool kWithMeaning = true;
-  return CLI::ConfigINI().to_config(&command, kDefaultsToo, kWithMeaning, "");
+  return CLI::ConfigINI().to_config(&command, kDefaultsToo, kWithMeaning, "") + "\n";
 }
 
 }  // namespace thunderhead::app

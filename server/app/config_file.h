@@ -1,5 +1,6 @@
 // Settings of a command in a file: the command's flags without their dashes, one a line, as
-// `max-sessions = 200`. Flags on the command line take precedence.
+// `max-sessions = 200`. Flags on the command line take precedence. A setting with an empty value
+// keeps its default.
 #pragma once
 
 #include <string>
