@@ -1,10 +1,11 @@
-# Thunderhead's server. Installs and builds by ./dev, the same script as on a developer's machine.
+# Thunderhead's server. The image installs and builds by ./dev, the same script as on a developer's machine.
 #   docker build -t thunderhead .
 #   docker run --rm -p 127.0.0.1:8080:8080 -v /path/to/storms:/data:ro thunderhead
-# Draws in software; with the NVIDIA container runtime (--gpus all) on the GPU, by the driver's own EGL.
+# The server renders in software. With the NVIDIA container runtime (--gpus all) it renders on the GPU, by the driver's
+# own EGL.
 FROM debian:bookworm-slim AS build
 WORKDIR /src
-# The packages alone first, so that a change of the code does not install them again.
+# The packages are in a separate layer, so that a change of the code does not install them again.
 COPY dev ./
 COPY deploy/packages deploy/packages
 RUN ./dev install runtime build web && rm -rf /var/lib/apt/lists/*
@@ -26,7 +27,8 @@ ENV PATH=/opt/thunderhead/bin:$PATH \
     STATE_DIRECTORY=/var/lib/thunderhead
 USER thunderhead
 EXPOSE 8080 50051
-# Inside the container every address is its own; what is published decides who reaches it, hence --insecure. To publish it to
-# other machines, give --auth, --tls-cert and --tls-key instead: docs/operating.md.
+# Inside the container all addresses are local, and the published ports decide who can reach the server. This is why
+# --insecure is given. To publish it to other machines, give --auth, --tls-cert and --tls-key instead:
+# docs/operating.md.
 ENTRYPOINT ["thunderhead"]
 CMD ["serve", "--data", "/data", "--http", "0.0.0.0:8080", "--grpc", "0.0.0.0:50051", "--insecure"]

@@ -3,8 +3,8 @@
 #include "desktop/app.h"
 
 int main(int argc, char** argv) {
-  // A heap for each of many short-lived threads, and freed pictures kept in them, would look like a
-  // leak after weeks.
+  // Many short-lived threads would each get a heap that keeps freed pictures. After weeks this
+  // would look like a memory leak.
   constexpr int kMaxHeaps = 2;
   constexpr int kMappedFrom_bytes = 256 << 10;
   mallopt(M_ARENA_MAX, kMaxHeaps);

@@ -1,7 +1,8 @@
-# Read by ctest when it starts: adds a test for each suite that `program` has then. Suites named ...Benchmark state figures that
-# depend on the machine's speed; they have the label `benchmark`, which `./dev test` leaves out and `./dev bench waits` runs.
+# ctest reads this file when it starts. It adds a test for each suite that `program` has at that time. Suites named
+# ...Benchmark print figures that depend on the machine's speed. They have the label `benchmark`, which `./dev test`
+# leaves out and `./dev bench waits` runs.
 if(NOT EXISTS ${program})
-  # Fails, since there is no such command.
+  # This test fails because the command does not exist.
   add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)
   return()
 endif()
@@ -9,7 +10,7 @@ execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed RES
 if(failed)
   message(FATAL_ERROR "${program} --gtest_list_tests failed: ${failed}")
 endif()
-# Lines of suites end in a dot or, with a parameter of a type, in a comment after it; those of cases are indented.
+# A line of a suite ends in a dot. With a type parameter, a comment follows the dot. Lines of cases are indented.
 string(REGEX MATCHALL "\n[A-Za-z0-9_/]+\\.[ \n]" lines "\n${listed}")
 foreach(line IN LISTS lines)
   string(REGEX REPLACE "^\n(.+)\\..$" "\\1" suite "${line}")

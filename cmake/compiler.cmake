@@ -1,9 +1,9 @@
-# Compiler settings of every target of ours; generated code (proto/) opts out of the warnings.
+# Compiler settings of all our targets. Generated code (proto/) disables the warnings.
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
-# x86-64-v3 (AVX2, FMA, F16C) is every x86 server since 2015; half-float conversion needs it to be fast.
+# Every x86 server since 2015 supports x86-64-v3 (AVX2, FMA, F16C). Half-float conversion is fast only with it.
 option(THUNDERHEAD_X86_64_V3 "Compile for x86-64-v3 processors" OFF)
 
 find_program(CCACHE_PROGRAM ccache)
@@ -15,21 +15,23 @@ if(MOLD_PROGRAM)
   add_link_options(-fuse-ld=mold)
 endif()
 
-# Tests call more than they compute, and are a third of what is compiled. Only their own files: libraries are optimised.
+# Tests compute little, and are a third of the compiled code. Only their own files are unoptimised: the libraries are
+# optimised.
 set(THUNDERHEAD_TEST_OPTIONS $<$<CONFIG:Release>:-O0>)
 
-# GCC 12 reports overlaps and overruns inside std::string's own code (GCC bug 105651); that of precompiled headers is not
-# told apart from ours.
+# GCC 12 reports overlaps and overruns inside std::string's own code (GCC bug 105651). In code from precompiled headers
+# it cannot distinguish these from ours.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   add_compile_options(-Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
-  # The same of literals joined to strings, in tests and where sanitizers change what is inlined.
+  # The same false warnings appear for literals joined to strings, in tests and where sanitizers change the inlining.
   list(APPEND THUNDERHEAD_TEST_OPTIONS -Wno-stringop-overflow)
   if(THUNDERHEAD_SANITIZE)
     add_compile_options(-Wno-stringop-overflow)
   endif()
 endif()
 
-# One set of precompiled headers serves all only if all are compiled alike; ccache knows their files by the second flag.
+# Targets can share a precompiled header only if they are compiled with the same flags. ccache needs the second flag to
+# see its files.
 add_compile_options(-pthread)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
@@ -47,11 +49,11 @@ if(THUNDERHEAD_X86_64_V3)
   add_compile_options(-march=x86-64-v3)
 endif()
 if(THUNDERHEAD_SANITIZE)
-  # GCC 12 then takes copies of a std::variant for uses of what is uninitialised.
+  # With sanitizers, GCC 12 takes copies of a std::variant for uses of uninitialised memory.
   add_compile_options(-fsanitize=${THUNDERHEAD_SANITIZE} -fno-omit-frame-pointer -Wno-error=maybe-uninitialized)
   add_link_options(-fsanitize=${THUNDERHEAD_SANITIZE})
   if(THUNDERHEAD_SANITIZE MATCHES "thread")
-    # ThreadSanitizer does not know fences; Asio's only back up what its locks already order.
+    # ThreadSanitizer does not support fences. Asio's fences only repeat the order that its locks already guarantee.
     add_compile_definitions(BOOST_ASIO_DISABLE_FENCED_BLOCK)
   endif()
   if(THUNDERHEAD_SANITIZE MATCHES "undefined")

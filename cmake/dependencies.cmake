@@ -1,4 +1,4 @@
-# Every dependency is a Debian 12 package; ./dev installs them.
+# Every dependency is a Debian 12 package. ./dev installs them.
 find_package(Threads REQUIRED)
 find_package(absl REQUIRED)
 find_package(spdlog REQUIRED)

@@ -1,4 +1,4 @@
-# The libraries of the C++ client and the native client: Debian 12 packages (deploy/packages/desktop.txt).
+# The libraries of the C++ client and the native client. They are Debian 12 packages (deploy/packages/desktop.txt).
 find_package(Threads REQUIRED)
 find_package(absl REQUIRED)
 find_package(Protobuf REQUIRED)
@@ -16,6 +16,7 @@ find_library(YUV_LIBRARY yuv REQUIRED)
 if(THUNDERHEAD_TESTS)
   find_package(GTest REQUIRED)
   include(suites)
-  # Not -O0, as other tests: these take the precompiled headers of the library, which are optimised.
+  # These tests are not compiled with -O0 like other tests, because they share the library's precompiled header, which
+  # is optimised.
   set(THUNDERHEAD_CLIENT_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 endif()

@@ -1,4 +1,5 @@
-# Writes OUTPUT, which defines FUNCTION of NAMESPACE, declared in HEADER: the bytes of FILE.
+# Writes OUTPUT, which defines the function FUNCTION of NAMESPACE, declared in HEADER. The function returns the bytes of
+# FILE.
 file(READ ${FILE} hex HEX)
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
 string(REGEX REPLACE "(0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,0x..,)" "\\1\n" bytes "${bytes}")

@@ -1,5 +1,5 @@
-# Writes OUTPUT, which defines FUNCTION of NAMESPACE, declared in HEADER: from FILES in ROOT a map of their names, without
-# extension, to their texts.
+# Writes OUTPUT, which defines the function FUNCTION of NAMESPACE, declared in HEADER. The function returns a map from
+# the names of FILES in ROOT, without extension, to their texts.
 set(map "std::map<std::string_view, std::string_view>")
 set(text "#include \"${HEADER}\"\n\nnamespace ${NAMESPACE} {\n\nconst ${map}& ${FUNCTION}() {\n")
 string(APPEND text "  static const ${map} texts = {\n")

@@ -1,5 +1,5 @@
-# Builds the files of ROOT that match PATTERN into `target`: FUNCTION of NAMESPACE, which HEADER declares, finds each by
-# its name without extension.
+# Embeds the files of ROOT that match PATTERN into `target`. The function FUNCTION of NAMESPACE, which HEADER declares,
+# returns each text by its name without extension.
 function(thunderhead_embed_texts target)
   cmake_parse_arguments(TEXTS "" "ROOT;PATTERN;HEADER;NAMESPACE;FUNCTION" "" ${ARGN})
   file(GLOB files CONFIGURE_DEPENDS RELATIVE ${TEXTS_ROOT} ${TEXTS_ROOT}/${TEXTS_PATTERN})

@@ -1,8 +1,9 @@
-# Headers that many files include, compiled once a set instead of once a file (decision 50). Every file still
-# includes what it uses; the builds of ./dev lint and those without GCC go without.
+# Precompiled headers: headers that many files include are compiled once per set instead of once per file (decision 50).
+# Every file still includes what it uses, because the builds of ./dev lint and builds without GCC have no precompiled
+# headers.
 
-# thunderhead_headers(NAME DEPENDS libraries... [OPTIONS options...] HEADERS headers...) makes the set thunderhead_NAME, for
-# targets that have the same options.
+# thunderhead_headers(NAME DEPENDS libraries... [OPTIONS options...] HEADERS headers...) makes the set thunderhead_NAME,
+# for targets that have the same options.
 function(thunderhead_headers name)
   cmake_parse_arguments(SET "" "" "DEPENDS;OPTIONS;HEADERS" ${ARGN})
   set(source ${CMAKE_BINARY_DIR}/headers/${name}.cc)

@@ -1,7 +1,8 @@
-# Debian packages by CPack: `thunderhead` (the server with its page and units), `thunderhead-desktop`, `python3-thunderhead`. ./dev package
-# runs CPack in the release build for the first and the last, in the desktop build for the second.
+# Debian packages by CPack: `thunderhead` (the server with its page and units), `thunderhead-desktop`,
+# `python3-thunderhead`. ./dev package runs CPack in the release build for the first and the last. It runs CPack in the
+# desktop build for the second.
 set(CPACK_GENERATOR DEB)
-set(CPACK_SET_DESTDIR ON)  # for /etc
+set(CPACK_SET_DESTDIR ON)  # needed for /etc
 set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_CONTACT "The Thunderhead project")
 set(CPACK_PACKAGE_HOMEPAGE_URL "")
@@ -15,7 +16,7 @@ set(CPACK_COMPONENTS_ALL "")
 
 if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   set(packaging ${CMAKE_BINARY_DIR}/packaging)
-  # In a package the program lies where the system's do.
+  # In a package the program has the path of system programs.
   foreach(unit thunderhead.service thunderhead-watch@.service)
     file(READ ${CMAKE_SOURCE_DIR}/deploy/systemd/${unit} text)
     string(REPLACE "/opt/thunderhead/bin/" "/usr/bin/" text "${text}")
@@ -35,15 +36,16 @@ if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   install(FILES ${CMAKE_SOURCE_DIR}/docs/operating.md DESTINATION share/doc/thunderhead COMPONENT server)
   set(CPACK_DEBIAN_SERVER_PACKAGE_NAME thunderhead)
   set(CPACK_COMPONENT_SERVER_DESCRIPTION "Server that draws storms of weather models as they would look in the sky")
-  # The libraries that it opens by name, the fonts of its products, and who makes its user.
+  # These are the libraries that the server loads by name, the fonts of its products, and the program that creates its
+  # user.
   set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS
     "ca-certificates, fontconfig, fonts-dejavu-core, libegl1, libegl-mesa0, libgdal32, libgl1-mesa-dri, libopengl0, systemd | systemd-standalone-sysusers")
-  # Coasts and borders.
+  # These packages have the coasts and borders.
   set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "gmt-gshhg-high, gmt-gshhg-low")
   set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
     ${CMAKE_SOURCE_DIR}/deploy/debian/postinst ${CMAKE_SOURCE_DIR}/deploy/debian/prerm ${CMAKE_SOURCE_DIR}/deploy/debian/conffiles)
 
-  # Built by ./dev package: the sources with the messages that protoc generates.
+  # ./dev package builds these files: the sources, with the messages that protoc generates.
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/python/thunderhead DESTINATION lib/python3/dist-packages COMPONENT python
     OPTIONAL PATTERN "__pycache__" EXCLUDE)
   install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION share/doc/python3-thunderhead RENAME copyright COMPONENT python)

@@ -1,6 +1,7 @@
-# A room is one folder of server/ built as one static library, `thunderhead::NAME`.
-# thunderhead_room(NAME [HEADERS set] [FILES files...] [DEPENDS rooms and libraries...]) takes every .cc file of the folder that
-# no library of it has yet, or FILES. HEADERS is the set of precompiled headers (cmake/headers.cmake), `headers` if none is named.
+# A room is one folder of server/ that is built as one static library, `thunderhead::NAME`.
+# thunderhead_room(NAME [HEADERS set] [FILES files...] [DEPENDS rooms and libraries...]) makes it from FILES. Without
+# FILES it takes every .cc file of the folder that is not yet in another library. HEADERS is the set of precompiled
+# headers (cmake/headers.cmake), by default `headers`.
 function(thunderhead_room name)
   cmake_parse_arguments(ROOM "" "HEADERS" "DEPENDS;SOURCES;FILES" ${ARGN})
   if(NOT ROOM_HEADERS)
@@ -28,13 +29,14 @@ function(thunderhead_room name)
   add_library(thunderhead::${name} ALIAS thunderhead_${name})
 endfunction()
 
-# The environment of tests that open a context, or start a program that does: Mesa unloads its driver at the end with
-# memory that it still holds, which LeakSanitizer cannot tell from ours by name.
+# Environment of tests that open a context, or that start a program that opens one. When Mesa unloads its driver, the
+# driver still holds memory, which LeakSanitizer cannot distinguish from our leaks by name.
 set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
-# GoogleTest program and registers each of its suites with ctest under LABEL, those that are GL in its environment and with
-# strict programs. Those that WAIT, or of which a suite is WAITING, leave a processor to others. HEADERS is the set of precompiled headers, `test_headers` if none is named.
+# GoogleTest program. It registers each of the suites with ctest under LABEL. Suites of GL programs get the GL
+# environment and strict programs. Programs that WAIT, and suites that are WAITING, leave a processor to others. HEADERS
+# is the set of precompiled headers, by default `test_headers`.
 function(thunderhead_test name)
   cmake_parse_arguments(TEST "GL;WAITS" "LABEL;HEADERS" "DEPENDS;SOURCES;WAITING;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)
@@ -64,7 +66,7 @@ function(thunderhead_test name)
   thunderhead_register_suites(${name} WAITING ${TEST_WAITING} PROPERTIES LABELS ${TEST_LABEL} ${TEST_PROPERTIES})
 endfunction()
 
-# An error if a test file of the current folder is in none of its programs.
+# Fails if a test file of the current folder is in none of its programs.
 function(thunderhead_no_test_is_left_out)
   file(GLOB tests CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *_test.cc)
   get_property(taken DIRECTORY PROPERTY THUNDERHEAD_TAKEN)

@@ -1,10 +1,10 @@
-# Writes OUTPUT, a header with a gl::Uniform for each uniform that FILES below ROOT declare, one a line, `uniform TYPE NAME;`
-# or `uniform TYPE NAME[SIZE];`. A name has one type everywhere. An unchanged header is left as it is, so that nothing is
-# compiled again.
+# Writes OUTPUT, a header with a gl::Uniform for each uniform that FILES below ROOT declare. A declaration is one line,
+# `uniform TYPE NAME;` or `uniform TYPE NAME[SIZE];`. A name must have the same type everywhere. An unchanged header is
+# not written, so that nothing is compiled again.
 set(uniforms "")
 foreach(file IN LISTS FILES)
   file(READ ${ROOT}/${file} body)
-  string(REPLACE "[" "@" body "\n${body}")  # brackets would join elements of a list
+  string(REPLACE "[" "@" body "\n${body}")  # brackets would join list elements
   string(REGEX MATCHALL "\nuniform [a-z0-9]+ [a-z0-9_]+@?" found "${body}")
   foreach(declaration IN LISTS found)
     string(REGEX MATCH "uniform ([a-z0-9]+) ([a-z0-9_]+)(@?)" ignored "${declaration}")

@@ -1,5 +1,6 @@
-# Embeds every .glsl, .vert, .frag and .comp file of server/shaders as a string, found by its path below that
-# folder, e.g. "half_angle/eye.frag", and makes their uniforms' names known to C++ as shaders/uniforms.h.
+# Embeds every .glsl, .vert, .frag and .comp file of server/shaders as a string. A shader is found by its path below
+# that folder, for example "half_angle/eye.frag". Also generates shaders/uniforms.h, which makes the uniforms' names
+# known to C++.
 function(thunderhead_embed_shaders target)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/server/shaders
     ${CMAKE_SOURCE_DIR}/server/shaders/*.glsl ${CMAKE_SOURCE_DIR}/server/shaders/*.vert

@@ -1,15 +1,18 @@
-# How ctest runs the tests. `./dev test` gives it two places a processor and one more (ctest -j). A test that keeps a processor busy takes two places,
-# so on two processors at most two such tests run at once; a test that mostly waits takes one place. The classes follow from measured
-# processor time (docs/testing.md). COST only sets the order: the longest begin first.
+# Settings for running the tests with ctest. `./dev test` gives ctest two places per processor and one more (ctest -j).
+# A test that keeps a processor busy takes two places, so on two processors at most two such tests run at once. A test
+# that mostly waits takes one place. The classes follow from measured processor time (docs/testing.md). COST only sets
+# the order: the longest tests begin first.
 #
-# TIMEOUT is a limit against hangs, in seconds. It says nothing about speed: the slowest test takes three minutes on an idle machine.
+# TIMEOUT is a limit against hangs, in seconds. It is not a performance requirement: the slowest test takes three
+# minutes on an idle machine.
 set(THUNDERHEAD_HANG_LIMIT_S 1800)
 set(THUNDERHEAD_BUSY_TEST PROCESSORS 2 TIMEOUT ${THUNDERHEAD_HANG_LIMIT_S})
 set(THUNDERHEAD_WAITING_TEST PROCESSORS 1 TIMEOUT ${THUNDERHEAD_HANG_LIMIT_S} COST 100)
 
-# thunderhead_register_suites(TARGET [WAITING suites...] [PROPERTIES properties...]) registers each suite of a GoogleTest program with ctest, as
-# PROGRAM.SUITE. Suites in WAITING mostly wait. Cases are not registered one by one, as GoogleTest's module for CMake does it, because
-# each process that draws opens a context and compiles its shaders, which takes longer than most cases.
+# thunderhead_register_suites(TARGET [WAITING suites...] [PROPERTIES properties...]) registers each suite of a
+# GoogleTest program with ctest, as PROGRAM.SUITE. Suites in WAITING mostly wait. GoogleTest's own CMake module would
+# register each case. This function does not, because each process that draws opens a context and compiles its shaders.
+# That takes longer than most cases.
 function(thunderhead_register_suites target)
   cmake_parse_arguments(SUITES "" "" "WAITING;PROPERTIES" ${ARGN})
   set(suites ${CMAKE_CURRENT_BINARY_DIR}/${target}_suites.cmake)

@@ -1,4 +1,5 @@
-// Opens a session on a server, waits for its picture in full quality, and saves it as JPEG:
+// This example opens a session on a server, waits for its frame in full quality, and saves it as
+// JPEG:
 //   save_picture localhost:50051 storm.jpg
 #include <chrono>
 #include <condition_variable>
@@ -21,14 +22,14 @@ constexpr int kUnavailable = 69;
 constexpr int kCannotCreate = 73;
 constexpr std::chrono::minutes kPatience{10};
 
-// Returns true for a picture in full quality. On a slow machine the first one at rest has fewer
+// Returns true for a frame in full quality. On a slow machine the first resting frame has fewer
 // rays.
 bool IsFull(const v1::Frame& frame) {
   return frame.refined() && (!frame.has_accuracy() || frame.accuracy().image_scale() >= 1.0F);
 }
 
-// Keeps the JPEG of the first frame in full quality. Its methods are called on the session's
-// thread.
+// A listener that keeps the JPEG of the first frame in full quality. Its methods are called on the
+// session's thread.
 class FirstPicture final : public client::SessionListener {
  public:
   void Changed() override {}
@@ -42,7 +43,7 @@ class FirstPicture final : public client::SessionListener {
   }
   void SceneTaken(std::uint64_t /*revision*/, std::chrono::steady_clock::time_point) override {}
 
-  // Empty if none came in time.
+  // Returns the JPEG, or an empty string if no frame arrived before the timeout.
   std::string Await() {
     std::unique_lock lock(mutex_);
     arrived_.wait_for(lock, kPatience, [this] { return !jpeg_.empty(); });
@@ -73,10 +74,11 @@ int main(int argc, char** argv) {
   options.name = "save_picture";
   options.scene.mutable_output()->set_width_px(640);
   options.scene.mutable_output()->set_height_px(400);
-  // Otherwise traced paths correct the picture while it rests, and the first one may have some.
+  // Traced paths would otherwise correct the resting frame, and even the first resting frame may
+  // include some of them.
   options.scene.mutable_rendering()->mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_OFF);
   FirstPicture picture;
-  client::Session session(*connection, options, picture);  // joins on a thread of its own
+  client::Session session(*connection, options, picture);  // joins on a separate thread
   const std::string jpeg = picture.Await();
   if (jpeg.empty()) {
     std::cerr << "no picture came: " << session.State().reason << "\n";

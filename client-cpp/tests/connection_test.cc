@@ -1,4 +1,4 @@
-// Tests of what a connection refuses before its first call.
+// Tests of the errors that a connection reports before its first call.
 #include "thunderhead_client/connection.h"
 
 #include <fstream>

@@ -1,4 +1,5 @@
-// The library's example before the real server: the picture that it saves, and what it says where none comes.
+// Tests the library's example against the real server: the picture that it saves, and its message if no picture
+// arrives.
 import assert from "node:assert/strict";
 import { execFile, execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";

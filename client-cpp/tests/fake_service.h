@@ -1,5 +1,5 @@
-// A service in this process that does as a test says: keeps one session, records what clients send,
-// and sends what it is told.
+// A fake service in this process, controlled by the test. It keeps one session, records the
+// clients' requests, and sends the responses that the test gives it.
 #pragma once
 
 #include <atomic>
@@ -29,40 +29,42 @@ class FakeService final : public v1::ThunderheadService::Service {
   ~FakeService() override;
 
   std::shared_ptr<const Connection> Connect() const;
-  // Ends the server and starts it again on the same port; sessions stay.
+  // Stop() ends the server. Start() starts it again on the same port with the same sessions.
   void Stop();
   void Start();
 
-  // Every request of every call so far; waits until it is as wanted.
+  // Await() waits until `wanted` returns true for all requests of all calls so far. All() returns
+  // these requests.
   bool Await(const std::function<bool(const Requests&)>& wanted);
   Requests All();
-  // The metadata "authorization" of the last call.
+  // Returns the metadata "authorization" of the last call.
   std::string authorization();
-  int opened();  // sessions
-  int joined();  // calls
+  int opened();  // number of sessions
+  int joined();  // number of calls
 
-  // Sends to the newest call.
+  // Sends a response to the newest call.
   void Send(v1::InteractResponse response);
-  // Sends presence with the client and others, who present, steered by that person.
+  // Sends a presence that contains the client and others, all of them presenters. The given viewer
+  // steers.
   void SendPresence(std::uint64_t steering_viewer_id,
                     const std::vector<std::uint64_t>& others = {});
   void SendScene(const v1::Scene& scene, std::uint64_t revision);
   // Ends the newest call.
   void EndCall(const grpc::Status& status);
 
-  // The answer to an update of the scene; by default it is taken. Called with its expected
-  // revision.
+  // Makes the response to an update of the scene. The default accepts the update. The callback
+  // receives the request with its expected revision.
   std::function<v1::InteractResponse(const v1::InteractRequest&)> answer_scene;
   bool answers_scenes = true;
-  // The answer to a scene to open a session with; by default it is taken.
+  // Makes the response to the first scene of a session. The default accepts it.
   std::function<grpc::Status(const v1::Scene&)> answer_opening;
-  std::optional<bool> durable;    // of the sessions that are opened
-  bool forgets_sessions = false;  // joins end with NOT_FOUND until another session is opened
+  std::optional<bool> durable;    // of the opened sessions
+  bool forgets_sessions = false;  // joins fail with NOT_FOUND until another session is opened
 
   static constexpr char kPresenterKey[] = "presenter-key";
   static constexpr char kViewerKey[] = "viewer-key";
   static constexpr std::uint64_t kClient = 7;
-  std::atomic<std::uint64_t> client{kClient};  // the client's id in its next call
+  std::atomic<std::uint64_t> client{kClient};  // the viewer id that the next call gets
 
  private:
   using Stream = grpc::ServerReaderWriter<v1::InteractResponse, v1::InteractRequest>;

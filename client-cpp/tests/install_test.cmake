@@ -1,5 +1,5 @@
-# cmake -DBUILD=build/desktop -DEXAMPLES=client-cpp/examples -DWORK=folder -P install_test.cmake: installs the library in a prefix, and
-# builds the example outside the tree against it.
+# Installs the library in a prefix, and builds the example against it outside the tree:
+#   cmake -DBUILD=build/desktop -DEXAMPLES=client-cpp/examples -DWORK=folder -P install_test.cmake
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE failure OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(failure)
@@ -19,7 +19,7 @@ if(NOT status EQUAL 64 OR NOT said MATCHES "usage:")
   message(FATAL_ERROR "the example ends with ${status}: ${said}")
 endif()
 
-# Nothing in the prefix names the tree that it was built in.
+# No installed file may name the source tree in which the library was built.
 get_filename_component(source ${EXAMPLES}/../.. REALPATH)
 file(GLOB_RECURSE texts ${WORK}/prefix/*.cmake ${WORK}/prefix/*.h)
 foreach(text IN LISTS texts)
@@ -30,11 +30,11 @@ foreach(text IN LISTS texts)
   endif()
 endforeach()
 
-# A program that has found gRPC and Protobuf by itself.
+# Tests a program that has already found gRPC and Protobuf itself.
 file(WRITE ${WORK}/dependencies.cmake "find_package(Protobuf REQUIRED)\nfind_package(gRPC CONFIG REQUIRED)\n")
 run(${configure} -B ${WORK}/build_after -DCMAKE_PROJECT_INCLUDE=${WORK}/dependencies.cmake)
 
-# The window's package is the window alone.
+# The desktop client's package must contain only the desktop client.
 run(${CMAKE_COMMAND} --install ${BUILD} --component desktop --prefix ${WORK}/package)
 foreach(folder include lib)
   if(EXISTS ${WORK}/package/${folder})

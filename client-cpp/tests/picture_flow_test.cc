@@ -1,5 +1,5 @@
-// Frames decoded beside the drawing thread: the newest is shown, video survives frames that are
-// not.
+// Tests of PictureFlow, which decodes frames in parallel with the drawing thread. The newest frame
+// is shown, and video survives frames that are not shown.
 #include "thunderhead_client/picture_flow.h"
 
 #include <turbojpeg.h>
@@ -20,7 +20,7 @@ constexpr int kWidth = 64;
 constexpr int kHeight = 48;
 using thunderhead::testing::WaitFor;
 
-// A grey picture of that level.
+// Returns a JPEG of uniform grey at that level.
 std::string JpegOf(std::uint8_t level, int width = kWidth, int height = kHeight) {
   const std::vector<std::uint8_t> rgb(
       3U * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), level);
@@ -41,7 +41,7 @@ v1::Frame JpegFrame(std::uint64_t sequence, std::uint8_t level) {
   return frame;
 }
 
-// Video of grey pictures.
+// Encodes grey images as video.
 class Encoder {
  public:
   Encoder() {
@@ -82,7 +82,7 @@ class Encoder {
 
 class PictureFlowTest : public ::testing::Test {
  protected:
-  // Waits for a picture of at least that sequence; those before it are taken and dropped.
+  // Waits for a picture with at least that sequence number. Drops the earlier pictures.
   std::unique_ptr<Picture> Await(std::uint64_t sequence) {
     std::unique_ptr<Picture> picture;
     const bool came = WaitFor([&] {
@@ -98,7 +98,8 @@ class PictureFlowTest : public ::testing::Test {
   std::atomic<int> readies{0};
   std::atomic<int> lost{0};
   std::atomic<int> failures{0};
-  std::mutex decoding;  // held: the decoder waits after the picture that it has made ready
+  std::mutex
+      decoding;  // while it is locked, the decoder waits after the picture that it has finished
   PictureFlow flow{{[this] {
                       ++readies;
                       const std::lock_guard waits(decoding);
@@ -123,7 +124,8 @@ TEST_F(PictureFlowTest, TheNewestOfManyIsShownAndTheOthersAreCounted) {
   constexpr std::uint64_t kCount = 200;
   for (std::uint64_t i = 1; i <= kCount; ++i)
     flow.Offer(JpegFrame(i, static_cast<std::uint8_t>(i)), 1);
-  // Nothing is taken meanwhile: all but the newest are dropped, before or after they are decoded.
+  // The test takes no picture meanwhile, so all but the newest are dropped before or after they are
+  // decoded.
   ASSERT_TRUE(WaitFor([&] { return flow.dropped() == kCount - 1 && readies > 0; }));
   const auto picture = flow.Take();
   ASSERT_NE(picture, nullptr);
@@ -132,7 +134,7 @@ TEST_F(PictureFlowTest, TheNewestOfManyIsShownAndTheOthersAreCounted) {
 }
 
 TEST_F(PictureFlowTest, VideoIsDecodedInOrderHoweverFewArePainted) {
-  // All at once, and while the decoder is busy, so that they wait for it.
+  // The frames are offered together while the decoder is busy, so that they wait in the queue.
   Encoder encoder;
   std::vector<v1::Frame> frames;
   for (int i = 0; i < 20; ++i)

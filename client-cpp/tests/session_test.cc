@@ -1,4 +1,4 @@
-// A session against a service that does as told: joining, edits, control, and coming back.
+// Tests of a session against the fake service: joining, editing, control and reconnecting.
 #include "thunderhead_client/session.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ class SessionTest : public ::testing::Test {
     session = std::make_unique<Session>(service.Connect(), std::move(options), listener);
     ASSERT_TRUE(listener.Await([&] { return session->State().link == Link::kLive; }));
   }
-  // As the one who steers, at revision 1.
+  // Makes the client steer at revision 1.
   void Steer() {
     Begin();
     service.SendScene({}, 1);
@@ -78,7 +78,8 @@ class SessionTest : public ::testing::Test {
     }
     return newest;
   }
-  // The most cameras or pointers that may have been sent: the first at once, then 30 a second.
+  // Returns the maximum number of cameras or pointers that the client may have sent since `began`.
+  // The first is sent at once, then 30 a second.
   static long MostSince(std::chrono::steady_clock::time_point began) {
     const std::chrono::duration<double> past = std::chrono::steady_clock::now() - began;
     return 1 + static_cast<long>(past.count() * 30.0);
@@ -106,7 +107,7 @@ TEST_F(SessionTest, OpensASessionAndTakesControlOfIt) {
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }
 
-// Frames come only to who is known to be visible.
+// The server sends frames only to viewers that are known to be visible.
 TEST_F(SessionTest, AWindowToldWhileJoiningReachesTheServer) {
   SessionOptions options;
   options.window.set_hidden(true);
@@ -145,7 +146,7 @@ TEST_F(SessionTest, WhileAnswersAreLateTheNewestEditWins) {
   for (int i = 0; i < 500; ++i) session->Edit(SunTo(static_cast<float>(i % 360)));
   EXPECT_EQ(session->State().scene.sun().azimuth_deg(), 139.0F);
   ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
-  // Another scene that is to be sent goes at the latest between these two.
+  // If the client sends another scene, it does so before the second of these messages arrives.
   for (const long later : {1, 2}) {
     session->SetName("A later request");
     ASSERT_TRUE(AwaitCount(v1::InteractRequest::kSetName, later));
@@ -189,12 +190,13 @@ TEST_F(SessionTest, ComesBackToTheSameSessionWhenTheServerRestarts) {
   const v1::Join join = Newest(v1::InteractRequest::kJoin).join();
   EXPECT_EQ(join.session_key(), FakeService::kPresenterKey);
   EXPECT_EQ(join.participant_key(), "participant-key");
-  // It steered, so it takes control again from the connection that the server may still see.
+  // The client steered, so it takes control again from the connection that the server may still
+  // consider alive.
   service.SendPresence(0);
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }
 
-// A client whose connection is lost while it steers, and whose last edit has had no answer.
+// A client that loses its connection while it steers and while its last edit is unanswered.
 class ResumptionTest : public SessionTest {
  protected:
   static constexpr std::uint64_t kColleague = 3;
@@ -217,7 +219,7 @@ class ResumptionTest : public SessionTest {
     ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
     service.SendScene({}, 1);
   }
-  // Tells who steers, and waits until the client has taken that.
+  // Sends who steers, and waits until the client has processed it.
   void Tell(std::uint64_t steering, const std::vector<std::uint64_t>& others = {}) {
     service.SendPresence(steering, others);
     ASSERT_TRUE(listener.Await([&] {
@@ -226,7 +228,8 @@ class ResumptionTest : public SessionTest {
              state.presence.steering_viewer_id() == steering;
     }));
   }
-  // Once, and not again by a presence that crosses with it.
+  // Checks that the client takes control once, and not again after a presence that was already in
+  // flight.
   void TakesControlAgainFrom(std::uint64_t steering) {
     Tell(steering, {FakeService::kClient});
     Tell(steering, {FakeService::kClient, kColleague});
@@ -350,7 +353,7 @@ TEST_F(SessionTest, EndsWithoutWaitingForAServerThatHangs) {
     return grpc::Status::OK;
   };
   SessionOptions options;
-  options.patience = kPatience;  // whoever waits for it hangs
+  options.patience = kPatience;  // a caller that waited for this timeout would hang
   session = std::make_unique<Session>(service.Connect(), options, listener);
   asked.get_future().wait();
   const auto began = std::chrono::steady_clock::now();

@@ -1,5 +1,5 @@
-// The client's plain values: camera motions, projection, back-off, playback, statistics, the list
-// of every parameter.
+// Tests of the client's plain values: camera motions, projection, back-off, playback, statistics,
+// and the list of all parameters.
 #include <cmath>
 #include <numbers>
 
@@ -24,13 +24,13 @@ OrbitPose AnOrbit() { return {{0.0, 0.0, 5000.0}, 200.0, 10.0, 50'000.0, 35.0}; 
 TEST(Pose, ADragAcrossTheHeightTurnsHalfAround) {
   const Pose turned = Drag(AnOrbit(), 720.0, 0.0, {1280.0, 720.0});
   EXPECT_NEAR(std::get<OrbitPose>(turned).azimuth_deg, 20.0, 1e-9);
-  // No farther than the limit.
+  // The elevation stops at the limit.
   const Pose up = Drag(AnOrbit(), 0.0, 720.0, {1280.0, 720.0});
   EXPECT_NEAR(std::get<OrbitPose>(up).elevation_deg, 89.9, 1e-9);
 }
 
 TEST(Pose, APannedPointFollowsThePointer) {
-  // Seen from the south, right is east: the target goes west.
+  // Seen from the south, right is east. The target therefore moves west.
   OrbitPose south = AnOrbit();
   south.azimuth_deg = 180.0;
   const auto panned = std::get<OrbitPose>(Pan(south, 100.0, 0.0, {1280.0, 720.0}));
@@ -82,7 +82,7 @@ v1::Mark AMark(const std::vector<std::array<float, 3>>& corners_m) {
 }
 
 TEST(Projection, OfALineIsCutOffBehindTheEye) {
-  // Comes from behind, goes back, and comes again.
+  // The line comes from behind the eye, goes back behind it, and comes forward again.
   const v1::Mark mark = AMark({{0.0F, -9.0F, 1000.0F},
                                {8.0F, 11.0F, 1000.0F},
                                {8.0F, 21.0F, 1000.0F},
@@ -92,7 +92,8 @@ TEST(Projection, OfALineIsCutOffBehindTheEye) {
   const auto parts = ProjectLine(AView(), mark.positions());
   ASSERT_EQ(parts.size(), 2U);
   ASSERT_EQ(parts[0].size(), 4U);
-  // A metre before the eye, half way to a corner that is 8 m to the right.
+  // The line is cut one metre in front of the eye, where it leads to a corner that is 8 m to the
+  // right.
   EXPECT_NEAR(parts[0][0].x, 4.0 / 0.8, 1e-6);
   EXPECT_NEAR(parts[0][1].x, 8.0 / 0.8 / 11.0, 1e-6);
   EXPECT_NEAR(parts[0][3].x, 8.0 / 0.8, 1e-6);
@@ -118,7 +119,8 @@ TEST(BackOff, DelaysGrowAreSpreadAndKeepWhatTheServerAsks) {
     least = std::min(least, delay);
     sum_ms += static_cast<double>(delay.count());
   }
-  // Uniform below the bound: the mean of 200 is within four of its standard errors of 163 ms.
+  // The delays are uniform below the bound. The mean of 200 is within four of its standard errors
+  // of 163 ms.
   EXPECT_NEAR(sum_ms / 200.0, 4500.0, 4.0 * 163.0);
   EXPECT_LT(least, milliseconds(1500));
 }
@@ -151,7 +153,7 @@ TEST(Statistics, TellsRateBytesAndLatency) {
   EXPECT_NEAR(figures.bytes_per_s, 25'000.0, 600.0);
   EXPECT_NEAR(figures.latency_ms.value_or(0.0), 40.0, 1e-6);
   EXPECT_NEAR(figures.decode_ms, 5.0, 1e-9);
-  // A frame may come before the answer that names its revision.
+  // A frame may arrive before the response that names its revision.
   statistics.Shown(90, 5.0, now);
   statistics.SceneTaken(90, now - milliseconds(300));
   EXPECT_EQ(statistics.At(now + std::chrono::seconds(3)).frames_per_s, 0.0);
@@ -244,7 +246,7 @@ TEST(Parameters, EveryScalarOfTheSceneIsListedWithItsLimits) {
   EXPECT_TRUE(turbidity->limits.logarithmic);
   EXPECT_NE(Find(parameters, "fields[0].phase.asymmetry"), nullptr);
   EXPECT_NE(Find(parameters, "camera.spotter.focal_length_mm"), nullptr);
-  // Of a oneof only the case that is set.
+  // Only the case of a oneof that is set is listed.
   EXPECT_EQ(Find(parameters, "camera.orbit.azimuth_deg"), nullptr);
   EXPECT_EQ(Find(parameters, "camera.spotter.focal_length_mm")->name, "Focal length");
   const Parameter* const tone = Find(parameters, "display.tone_map");
@@ -272,7 +274,7 @@ TEST(Parameters, ValuesAreReadSetWithinLimitsAndCleared) {
   EXPECT_EQ(TextIn(scene, clock), "2013-05-20T20:00:00Z");
 }
 
-// A list element that went meanwhile must not be written.
+// A list element that was removed meanwhile must not be written.
 TEST(Parameters, AnElementThatIsGoneStaysGone) {
   v1::Scene scene;
   scene.add_fields();

@@ -1,5 +1,5 @@
-// Exponential back-off with full jitter: a delay is drawn at random below a bound that doubles, so
-// that a whole class does not come back at once.
+// Exponential back-off with full jitter: each delay is random below a bound that doubles. A class
+// of clients therefore does not reconnect all at once.
 #pragma once
 
 #include <chrono>
@@ -14,9 +14,9 @@ class BackOff {
 
   explicit BackOff(unsigned seed = std::random_device{}()) : random_(seed) {}
 
-  // The delay before the next attempt; not below `least`, which the server asked for.
+  // Returns the delay before the next attempt. It is not below `least`, which the server asked for.
   std::chrono::milliseconds Next(std::chrono::milliseconds least = {});
-  // An attempt succeeded.
+  // Starts again with short delays after an attempt that succeeded.
   void Reset() { attempts_ = 0; }
   int attempts() const { return attempts_; }
 

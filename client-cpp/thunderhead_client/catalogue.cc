@@ -7,7 +7,7 @@ namespace {
 
 using Stub = v1::ThunderheadService::Stub;
 
-// A storm's first description reads its file.
+// The first description of a storm takes long because the server reads the storm's file.
 constexpr std::chrono::seconds kPatience{60};
 
 }  // namespace
@@ -85,8 +85,8 @@ void Catalogue::Learn() {
   ++state_.version;
 }
 
-// A storm that has gone keeps its last description, and is asked for again when the catalogue
-// changes.
+// Keeps the last description of a storm that is no longer available, and requests it again when the
+// catalogue changes.
 void Catalogue::LearnStorm(const StormTime& wanted) {
   v1::DescribeStormRequest request;
   request.set_storm_id(wanted.first);

@@ -1,5 +1,5 @@
-// The server's storms and what it can draw, asked for on a thread of its own whenever they may have
-// changed.
+// The server's storms and rendering capabilities. A separate thread requests them whenever they may
+// have changed.
 #pragma once
 
 #include <condition_variable>
@@ -20,21 +20,22 @@ namespace thunderhead::client {
 struct CatalogueState {
   std::uint64_t version = 0;  // counts the changes
   v1::ListStormsResponse storms;
-  v1::StormDescription storm;  // the one described last, at one time
+  v1::StormDescription storm;  // the storm described last, at one time
   v1::GetServerInfoResponse server;
 };
 
 class Catalogue {
  public:
-  // `changed` is called on the catalogue's thread.
+  // The catalogue's thread calls `changed`.
   Catalogue(std::shared_ptr<const Connection> connection, std::function<void()> changed);
   ~Catalogue();
   Catalogue(const Catalogue&) = delete;
   Catalogue& operator=(const Catalogue&) = delete;
 
-  // Asks for the list and the server again. Returns at once, as the next does.
+  // Requests the list of storms and the server's information again. Refresh() and Describe() return
+  // at once.
   void Refresh();
-  // Asks for a storm at one time, unless that is the one described last.
+  // Requests the description of a storm at one time, unless it is the one described last.
   void Describe(const std::string& storm_id, std::uint32_t time_index);
 
   CatalogueState State() const;

@@ -1,4 +1,4 @@
-// The comments of scene.proto, which is built in with its source information
+// The comments of scene.proto. The build embeds scene.proto with its source information
 // (cmake/embed_bytes.cmake).
 #include <map>
 #include <string>
@@ -24,7 +24,7 @@ std::string FirstSentence(const std::string& comment) {
   for (const char letter : comment) text += letter == '\n' ? ' ' : letter;
   absl::RemoveExtraAsciiWhitespace(&text);
   for (std::size_t at = text.find(". "); at != std::string::npos; at = text.find(". ", at + 1)) {
-    // Not at an abbreviation such as "et al. 2003".
+    // An abbreviation such as "et al. 2003" does not end a sentence.
     if (absl::ascii_isupper(static_cast<unsigned char>(text[at + 2])))
       return text.substr(0, at + 1);
   }

@@ -19,14 +19,14 @@
 namespace thunderhead::client {
 namespace {
 
-// Stills of 8192 x 8192 pixels fit.
+// Images of 8192 x 8192 pixels fit into one message.
 constexpr int kMaxMessage_bytes = 256 << 20;
-// The session's own back-off decides when to connect again, not the channel's, which waits up to
-// two minutes.
+// The session's back-off decides when to reconnect. The channel's own back-off would wait up to two
+// minutes.
 constexpr int kReconnectFirst_ms = 100;
 constexpr int kReconnectLongest_ms = 500;
-// How long one try to connect may take, TLS's round trips over a slow link included; despite its
-// name that is what gRPC's least back-off means.
+// Timeout of one connection attempt, which includes TLS's round trips over a slow link. gRPC uses
+// its minimum back-off for this purpose, despite the name.
 constexpr int kConnectPatience_ms = 10'000;
 constexpr std::chrono::seconds kReconnectPatience{8};
 
@@ -55,7 +55,7 @@ absl::Status CheckAddress(const std::string& address) {
   return absl::OkStatus();
 }
 
-// Returns whether HOST:PORT is of this machine.
+// Returns whether HOST:PORT is an address of this machine.
 bool IsLoopback(const std::string& address) {
   std::string host = address.substr(0, address.rfind(':'));
   if (host.size() > 1 && host.front() == '[' && host.back() == ']') {
@@ -93,7 +93,7 @@ Canceller::Running::Running(Canceller& canceller, grpc::ClientContext& context)
     : canceller_(canceller), context_(context) {
   const std::lock_guard lock(canceller_.mutex_);
   canceller_.running_.insert(&context_);
-  // Before the call has begun, that ends it as soon as it does.
+  // If the call has not begun yet, this ends it as soon as it begins.
   if (canceller_.cancelled_) context_.TryCancel();
 }
 
@@ -142,18 +142,18 @@ void Connection::AwaitReconnection(const std::function<bool()>& gives_up) const 
   while (std::chrono::system_clock::now() < deadline && !gives_up()) {
     const grpc_connectivity_state state = channel_->GetState(true);
     if (state == GRPC_CHANNEL_READY || state == GRPC_CHANNEL_SHUTDOWN) return;
-    // After a first failure the channel stays in this state until it is connected.
+    // After its first failure a channel stays in this state until it is connected.
     if (!failed && state == GRPC_CHANNEL_TRANSIENT_FAILURE) return;
     channel_->WaitForStateChange(state, std::chrono::system_clock::now() + kSlice);
   }
 }
 
 std::string Connection::Explain(const grpc::Status& status) const {
-  // Thunderhead's own refusals have details.
+  // Errors that Thunderhead itself reports have details.
   if (status.error_code() != grpc::StatusCode::UNAVAILABLE || !status.error_details().empty()) {
     return status.error_message();
   }
-  // gRPC 1.51 has no codes for these, only words.
+  // gRPC 1.51 has no status codes for these cases, so their messages are compared.
   if (absl::StrContains(status.error_message(), "http1.x")) {
     return absl::StrCat(address(),
                         " answers by HTTP, as the server's page does; give its gRPC port, ",

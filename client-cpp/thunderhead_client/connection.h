@@ -1,5 +1,5 @@
-// A connection to one server: address, encryption and token. What a call needs besides its
-// messages.
+// A connection to one server: its address, encryption and token. It holds everything that a call
+// needs in addition to its messages.
 #pragma once
 
 #include <chrono>
@@ -17,19 +17,20 @@
 namespace thunderhead::client {
 
 struct ServerAccess {
-  std::string address;      // HOST:PORT of the server's gRPC port
-  std::string tls_ca_file;  // PEM of who vouches for its certificate; empty: no encryption
-  std::string token_file;   // a bearer token, read again for each call; empty: none
-  // Sends the token without encryption to other machines, too, where anybody on the way can read
-  // it.
+  std::string address;  // HOST:PORT of the server's gRPC port
+  std::string
+      tls_ca_file;  // PEM file of the authority that signed its certificate; empty: no encryption
+  std::string token_file;  // a bearer token, read again for each call; empty: none
+  // Sends the token without encryption to other machines, too. Anyone on the network path can then
+  // read it.
   bool allow_plaintext_token = false;
 };
 
-// Ends unary calls from another thread: whoever makes calls can be destroyed without waiting for a
-// server that does not answer.
+// Cancels unary calls from another thread. The owner of the calls can then be destroyed without
+// waiting for a server that does not answer.
 class Canceller {
  public:
-  // Cancels what runs; every later call ends at once.
+  // Cancels the running calls. Every later call ends at once.
   void Cancel();
 
  private:
@@ -41,7 +42,7 @@ class Canceller {
   std::set<grpc::ClientContext*> running_;
 };
 
-// A call of a canceller, while it runs.
+// Registers one call with its canceller while the call runs.
 class Canceller::Running {
  public:
   Running(Canceller& canceller, grpc::ClientContext& context);
@@ -56,27 +57,27 @@ class Canceller::Running {
 
 class Connection {
  public:
-  // Connects at the first call. An error names the file that cannot be read or is no PEM, or the
-  // address that is none.
+  // Makes a connection, which connects at its first call. The error names a file that is unreadable
+  // or not PEM, or an invalid address.
   static absl::StatusOr<std::shared_ptr<Connection>> Open(ServerAccess access);
 
   v1::ThunderheadService::Stub& stub() const { return *stub_; }
   const std::string& address() const { return access_.address; }
 
-  // Waits for a server that was reached before, or could not be, for some seconds at most or until
-  // `gives_up`, which is asked ten times a second. A call that comes at once fails with the
-  // channel's last failure, and while nothing waits on a channel gRPC works on it only every five
-  // seconds.
+  // Waits until the server is connected, for at most a few seconds or until `gives_up` returns
+  // true. `gives_up` is called ten times a second. This is needed before a retry, because an
+  // immediate call would fail with the channel's last error. While no caller waits on a channel,
+  // gRPC works on it only every five seconds.
   void AwaitReconnection(const std::function<bool()>& gives_up) const;
 
-  // For people: why a call failed. The server's own words, or, where none has answered, what may
-  // be wrong and what to try.
+  // Returns the reason why a call failed, as text for people. The text is the server's own message.
+  // If no server answered, it is a likely cause with a suggestion.
   std::string Explain(const grpc::Status& status) const;
 
-  // Adds the token. An error if its file cannot be read.
+  // Adds the token. Returns an error if the token file cannot be read.
   absl::Status Authorize(grpc::ClientContext& context) const;
 
-  // Calls one unary rpc: Call(&Stub::ListStorms, request, &response, patience, canceller).
+  // Makes one unary call: Call(&Stub::ListStorms, request, &response, patience, canceller).
   template <typename Method, typename Request, typename Response>
   grpc::Status Call(Method method, const Request& request, Response* response,
                     std::chrono::milliseconds patience, Canceller& canceller) const {
@@ -97,7 +98,7 @@ class Connection {
   const std::unique_ptr<v1::ThunderheadService::Stub> stub_;
 };
 
-// The delay that the server asks for in the details of a refusal; 0 if it names none.
+// Returns the delay that the server asks for in the details of an error; 0 if it names none.
 std::chrono::milliseconds RetryAfter(const grpc::Status& status);
 
 }  // namespace thunderhead::client

@@ -21,14 +21,15 @@ ControlResumption::Outcome ControlResumption::Of(const v1::Presence& presence, b
     End();
     return Outcome::kLost;
   }
-  // Once: it may cross with a presence that is older, and must not take control from a colleague
-  // who came after it.
+  // Takes control only once. The request may cross with an older presence, and a second request
+  // could take control from a colleague who got it afterwards.
   const bool takes = std::exchange(takes_, false);
   return presents && takes ? Outcome::kTakes : Outcome::kWaits;
 }
 
-// Where nobody steers or this person's lost connection does, and where a presenter got control for
-// having come first to a server that started again. A colleague who was there and took it keeps it.
+// Returns true if no viewer steers, or if this person's lost connection still steers. Also returns
+// true if a new presenter got control because that presenter reached a restarted server first. A
+// colleague who was present before and took control keeps it.
 bool ControlResumption::Awaits(const v1::Presence& presence, bool presents) const {
   const std::uint64_t steering = presence.steering_viewer_id();
   if (steering == 0 || own_ids_.contains(steering)) return true;

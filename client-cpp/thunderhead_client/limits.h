@@ -12,21 +12,22 @@ struct Limits {
   double minimum = 0.0;
   double maximum = 0.0;
   std::optional<double> default_value;
-  std::string unit;  // as UCUM writes it, "1" for a pure number
+  std::string unit;  // in UCUM notation, "1" for a pure number
   bool logarithmic = false;
   bool whole = false;  // an integer field
 };
 
-// All zero for a field that declares none.
+// Returns a field's limits; all zero for a field that declares none.
 Limits LimitsOf(const google::protobuf::FieldDescriptor& field);
 
-// LimitsOf<v1::OrbitCamera>("azimuth_deg"); the field must exist.
+// Returns the limits of a field by name, such as LimitsOf<v1::OrbitCamera>("azimuth_deg"). The
+// field must exist.
 template <typename Message>
 Limits LimitsOf(const std::string& field) {
   return LimitsOf(*Message::descriptor()->FindFieldByName(field));
 }
 
-// The nearest value within the limits; whole where the field is.
+// Returns the nearest value within the limits, rounded if the field is an integer.
 double Clamp(double value, const Limits& limits);
 
 }  // namespace thunderhead::client

@@ -7,7 +7,7 @@ namespace thunderhead::client {
 namespace {
 
 constexpr std::size_t kMaxOrdered = 256;
-// The server takes 30 pointers a second.
+// The server accepts 30 pointers a second.
 constexpr std::chrono::milliseconds kPace{34};
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The messages that wait to be written to a session: those whose order matters, and of those of
-// which only the newest counts the newest. A plain value; whoever shares it locks it.
+// The messages that wait to be written to a session. Some messages are sent in order. For the
+// others only the newest message is kept. This is a plain value: its owner must lock it.
 #pragma once
 
 #include <chrono>
@@ -15,20 +15,20 @@ class Outbox {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  // In order. False, and dropped, where too many wait.
+  // Appends a message, and keeps the order. Drops the message and returns false if too many wait.
   bool Send(v1::InteractRequest request);
-  // The newest wins; sent at most 30 times a second.
+  // Replaces the waiting camera or pointer. These are sent at most 30 times a second.
   void MoveCamera(const v1::Camera& camera) { camera_ = camera; }
   void PointTo(const v1::Point& point) { point_ = point; }
-  // The newest wins.
+  // Replaces the waiting acknowledgement or window.
   void Acknowledge(const v1::Acknowledgement& acknowledgement);
   void Resize(const v1::Window& window) { window_ = window; }
   void DropCamera() { camera_.reset(); }
-  // For a new call: nothing of the old one is sent.
+  // Drops all messages before a new call, which must not send those of the old call.
   void Clear() { *this = Outbox(); }
 
   std::optional<v1::InteractRequest> Next(TimePoint now);
-  // When a paced message is due; nothing where none waits.
+  // Returns when a paced message may be sent; nothing if none waits.
   std::optional<TimePoint> WakeAt() const;
 
  private:

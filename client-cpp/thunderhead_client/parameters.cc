@@ -35,7 +35,7 @@ std::string NameOf(const std::string& field) {
   return Words(field);
 }
 
-// "TONE_MAP_FILMIC" of ToneMap is "filmic".
+// Returns the name of an option: "filmic" for "TONE_MAP_FILMIC" of ToneMap.
 std::string OptionName(const google::protobuf::EnumValueDescriptor& value) {
   std::string prefix;
   for (const char letter : value.type()->name()) {
@@ -49,7 +49,7 @@ std::string OptionName(const google::protobuf::EnumValueDescriptor& value) {
   return words;
 }
 
-// Of the enumerator 0: what it stands for, where the schema says so.
+// Returns what enumerator 0 stands for, if the schema says so.
 std::string DefaultName(const FieldDescriptor& field) {
   const std::string& choice = field.options().GetExtension(v1::default_choice);
   const auto* const value = field.enum_type()->FindValueByName(choice);
@@ -71,7 +71,7 @@ std::optional<Parameter::Kind> KindOf(const FieldDescriptor& field) {
   }
 }
 
-// Walks the messages, and lists their parameters.
+// Walks through the messages and lists their parameters.
 class Walk {
  public:
   void Of(const Message& message, const std::string& prefix) {
@@ -85,7 +85,7 @@ class Walk {
   void Field(const Message& owner, const FieldDescriptor& field, const std::string& prefix) {
     const Reflection& reflection = *owner.GetReflection();
     if (field.is_map()) return;
-    // Of a oneof only the case that is set; an optional field is a oneof of its own.
+    // Lists only the case of a oneof that is set. An optional field is a oneof with one case.
     if (field.real_containing_oneof() != nullptr && !reflection.HasField(owner, &field)) return;
     const bool outermost = steps_.empty();
     if (outermost) group_ = field.name();
@@ -134,7 +134,8 @@ class Walk {
   std::string group_;
 };
 
-// The message that holds the parameter; null if it, or one on the path to it, is absent.
+// Returns the message that holds the parameter; null if it, or a message on the path to it, is
+// absent.
 const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   const Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
@@ -151,7 +152,8 @@ const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   return at;
 }
 
-// Null if an element of a list on the path is not there any more.
+// Returns the message that holds the parameter; null if an element of a list on the path no longer
+// exists.
 Message* MutableHolder(v1::Scene& scene, const Steps& steps) {
   Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {

@@ -35,7 +35,7 @@ absl::Status AvifError(avifResult result) {
       absl::StrCat("the AVIF still cannot be decoded: ", avifResultToString(result)));
 }
 
-// Ordered noise before rounding 10 bits to 8, without which a clear sky would band.
+// Rounds 10 bits to 8 with ordered dithering, because a clear sky would otherwise show bands.
 void DitherTo8Bits(const std::vector<std::uint16_t>& deep, Pixels& pixels) {
   constexpr int kSide = 4;
   constexpr std::array<std::uint16_t, 16> kBayer{0, 8,  2, 10, 12, 4, 14, 6,
@@ -58,7 +58,7 @@ struct PictureDecoder::State {
   vpx_codec_ctx_t video{};
   bool video_open = false;
   bool has_key_frame = false;
-  std::vector<std::uint16_t> deep;  // of an AVIF, 10 bits a channel
+  std::vector<std::uint16_t> deep;  // 10 bits a channel, for AVIF
 
   State() = default;
   ~State() {
@@ -108,7 +108,7 @@ absl::Status PictureDecoder::DecodeJpeg(const std::string& bytes, Pixels& pixels
   return absl::OkStatus();
 }
 
-// Colours are those of JPEG: full-range BT.601 4:2:0.
+// Decodes VP9 with the colours of JPEG: full-range BT.601 4:2:0.
 absl::Status PictureDecoder::DecodeVp9(const v1::Frame& frame, bool wanted, Pixels& pixels) {
   if (!state_->video_open) {
     if (vpx_codec_dec_init(&state_->video, vpx_codec_vp9_dx(), nullptr, 0) != VPX_CODEC_OK) {

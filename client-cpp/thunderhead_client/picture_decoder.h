@@ -1,5 +1,5 @@
-// Decodes frames to pixels: JPEG by TurboJPEG, VP9 by libvpx, AVIF stills by libavif. A decoder is
-// used by one thread at a time.
+// Decodes frames to pixels: JPEG by TurboJPEG, VP9 by libvpx, AVIF images by libavif. Only one
+// thread may use a decoder at a time.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace thunderhead::client {
 
-// 8 bits a channel, sRGB; rows from top to bottom, each of red, green, blue and one unused byte a
-// pixel.
+// Pixels with 8 bits a channel in sRGB. The rows go from top to bottom. A pixel has red, green,
+// blue and one unused byte.
 struct Pixels {
   int width_px = 0;
   int height_px = 0;
@@ -27,14 +27,14 @@ class PictureDecoder {
   PictureDecoder(const PictureDecoder&) = delete;
   PictureDecoder& operator=(const PictureDecoder&) = delete;
 
-  // Encodings besides JPEG, for Join.codecs.
+  // Returns the encodings in addition to JPEG, for Join.codecs.
   static std::vector<v1::Codec> Codecs() { return {v1::CODEC_VP9, v1::CODEC_AVIF}; }
 
-  // Decodes a frame into `pixels`, whose memory is used again; those of a frame of video that is
-  // not `wanted` stay as they are, though the next ones may need it. An error says what could not
-  // be decoded.
+  // Decodes a frame into `pixels`, and reuses their memory. If a video frame is not `wanted`,
+  // `pixels` stay unchanged, but later frames may need the decoded frame. The error says what could
+  // not be decoded.
   absl::Status Decode(const v1::Frame& frame, bool wanted, Pixels& pixels);
-  // A new stream of video begins.
+  // Resets the video decoder for a new stream.
   void Restart();
 
  private:

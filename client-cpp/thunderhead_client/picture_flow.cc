@@ -7,7 +7,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Two frames are in flight at a time; only a decoder that is far too slow leaves so many.
+// The server keeps only two frames in flight. This many frames wait only if the decoder is far too
+// slow.
 constexpr std::size_t kMaxVideo = 30;
 
 bool IsVideo(const v1::Frame& frame) { return !frame.vp9().empty(); }
@@ -89,7 +90,7 @@ void PictureFlow::Run() {
     const bool newest = waiting_.empty();
     if (!newest) ++dropped_;
     lock.unlock();
-    // A frame of video is decoded for those after it.
+    // Every video frame is decoded because later frames depend on it.
     if (newest || IsVideo(next.frame)) Decode(std::move(next), newest);
     lock.lock();
   }

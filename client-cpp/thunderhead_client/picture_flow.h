@@ -1,7 +1,7 @@
-// Frames on their way to the screen: decoded on a thread of their own, of which the newest waits to
-// be shown. A newer frame replaces one that waits, so that a picture is shown at most one frame
-// late however slow decoding or drawing is. Of video every frame is decoded, as the next ones need
-// it, and the newest one converted.
+// Frames between the network and the screen. A separate thread decodes them, and the newest picture
+// waits to be shown. A newer frame replaces a waiting frame. A picture is therefore shown at most
+// one frame late, however slow decoding or drawing is. Every video frame is decoded, because later
+// frames depend on it, but only the newest is converted to pixels.
 #pragma once
 
 #include <chrono>
@@ -21,8 +21,8 @@ namespace thunderhead::client {
 struct Picture {
   v1::Frame frame;  // without its encoded bytes
   Pixels pixels;
-  std::size_t bytes = 0;   // of the message
-  double decode_ms = 0.0;  // of its own, without frames that were skipped
+  std::size_t bytes = 0;   // size of the message
+  double decode_ms = 0.0;  // decode time of this frame alone, without skipped frames
   std::string encoding;    // "JPEG", "VP9" or "AVIF"
   std::chrono::steady_clock::time_point received_at;
 };
@@ -30,28 +30,30 @@ struct Picture {
 class PictureFlow {
  public:
   struct Steps {
-    std::function<void()> ready;                       // a picture waits to be taken
-    std::function<void(const v1::Frame&)> video_lost;  // until the next key frame
-    std::function<void(const std::string&)> failed;    // a picture could not be decoded
+    std::function<void()> ready;  // a picture is ready to be taken
+    std::function<void(const v1::Frame&)>
+        video_lost;  // video is undecodable until the next key frame
+    std::function<void(const std::string&)> failed;  // a picture could not be decoded
   };
 
-  // The steps are called on the decoding thread, without a lock.
+  // The decoding thread calls the steps without holding a lock.
   explicit PictureFlow(Steps steps);
   ~PictureFlow();
   PictureFlow(const PictureFlow&) = delete;
   PictureFlow& operator=(const PictureFlow&) = delete;
 
-  // Ends the thread; what is offered afterwards is dropped. The destructor does it too.
+  // Ends the thread. Frames that are offered afterwards are dropped. The destructor calls this,
+  // too.
   void Stop();
-  // From any thread.
+  // Adds a frame to decode. Any thread may call this.
   void Offer(v1::Frame frame, std::size_t bytes);
-  // The next message belongs to another call.
+  // Begins a new stream: the next message belongs to another call.
   void StartStream();
-  // The newest decoded picture, once.
+  // Returns the newest decoded picture; null if it was already taken.
   std::unique_ptr<Picture> Take();
-  // Gives a picture's memory back to be used again.
+  // Returns a picture's memory so that it can be reused.
   void Return(std::unique_ptr<Picture> picture);
-  // Frames that were never taken, because a newer one was there.
+  // Returns the number of frames that were replaced by newer frames before they were taken.
   std::uint64_t dropped() const;
 
  private:
@@ -66,10 +68,10 @@ class PictureFlow {
   void Decode(Waiting waiting, bool wanted);
 
   const Steps steps_;
-  PictureDecoder decoder_;  // of the thread alone
+  PictureDecoder decoder_;  // used only by the decoding thread
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Waiting> waiting_;  // one, or frames of video
+  std::deque<Waiting> waiting_;  // one frame, or several video frames
   std::unique_ptr<Picture> ready_;
   std::unique_ptr<Picture> spare_;
   std::uint64_t stream_ = 0;

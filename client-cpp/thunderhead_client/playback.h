@@ -1,5 +1,5 @@
-// Plays a storm's times at a chosen rate, and waits for the picture of one time before it goes on
-// to the next. A plain value.
+// Plays a storm's times at a chosen rate. It waits for the picture of one time before it continues
+// with the next. This is a plain value.
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@ class Playback {
   static constexpr std::array<float, 6> kRates{0.5F, 1.0F, 2.0F, 4.0F, 8.0F, 15.0F};
 
   float times_per_second = 2.0F;
-  bool loops = true;  // false: ends at the last time
+  bool loops = true;  // false: stops at the last time
 
   bool playing() const { return playing_; }
   void Pause() { playing_ = false; }
-  // Begins or ends playing. The time to show at once, if any.
+  // Starts or stops playback. Returns the time to show at once, if any.
   std::optional<int> Toggle(int index, int count);
-  // The time `by` steps on, around the ends.
+  // Returns the time `by` steps later. It wraps around at both ends.
   static int Step(int index, int by, int count);
-  // The next time to show, if it is due; `shown` is true once the picture of `index` is on the
-  // screen.
+  // Returns the next time to show, if it is due. `shown` is true once the picture of `index` is on
+  // the screen.
   std::optional<int> Advance(int index, int count, bool shown, TimePoint now);
 
  private:

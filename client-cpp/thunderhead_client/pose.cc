@@ -10,11 +10,11 @@ namespace thunderhead::client {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
-// Dragging across the whole height of the picture turns the camera this far.
+// Angle by which a drag across the picture's whole height turns the camera.
 constexpr double kDegreesPerHeight = 180.0;
-// Dragging across the whole height of the picture walks a spotter this far.
+// Distance that a spotter walks for a drag across the picture's whole height.
 constexpr double kWalkPerHeight_m = 20'000.0;
-// The frame behind a spotter's lens.
+// Height of the image frame behind a spotter's lens.
 constexpr double kFrameHeight_mm = 24.0;
 
 template <typename Message>

@@ -1,6 +1,6 @@
-// Camera motions: how a drag in pixels moves and turns each kind of camera. World axes as in
-// thunderhead/v1/scene.proto: x east, y north, z up, azimuth clockwise from north. Pixels count
-// right and down.
+// Camera motions: how a drag in pixels moves and turns each kind of camera. The world axes are
+// those of thunderhead/v1/scene.proto: x east, y north, z up, azimuth clockwise from north. Pixels
+// count right and down.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct OrbitPose {
   double field_of_view_deg = 0.0;
 };
 
-// Stands on the ground and looks to azimuth and elevation.
+// A camera that stands on the ground and looks to an azimuth and an elevation.
 struct SpotterPose {
   std::array<double, 2> place_m{};
   double eye_height_m = 0.0;
@@ -28,7 +28,7 @@ struct SpotterPose {
   double focal_length_mm = 0.0;
 };
 
-// Looks straight down, north up.
+// A camera that looks straight down, with north up.
 struct TopDownPose {
   std::array<double, 2> center_m{};
   double width_m = 0.0;
@@ -41,27 +41,29 @@ struct PictureSize {
   double height_px = 1.0;
 };
 
-// The pose of a camera with every value filled in by the server; nothing while some are missing.
+// Returns the pose of a camera whose values the server has filled in; nothing while some are
+// missing.
 std::optional<Pose> PoseOf(const v1::Camera& camera);
-// Every value within its limits.
+// Returns the camera of a pose, with every value clamped to its limits.
 v1::Camera CameraOf(const Pose& pose);
-// A camera of that kind with nothing set: the server frames the whole storm.
+// Returns a camera of that kind with no values set, so that the server frames the whole storm.
 v1::Camera HomeCamera(v1::Camera::KindCase kind);
 
-// The scene follows the pointer: an orbit camera goes around, a spotter turns its head, a map
-// moves.
+// Turns or moves the camera so that the scene follows the pointer. An orbit camera turns around its
+// target, a spotter turns its head, and a map moves.
 Pose Drag(Pose pose, double right_px, double down_px, const PictureSize& picture);
-// Turns an orbit camera around its target, clockwise seen from above, and up; a spotter's head to
-// the right and up. A map cannot turn.
+// Turns an orbit camera around its target, clockwise as seen from above, and up. Turns a spotter's
+// head to the right and up. A map cannot turn.
 Pose Turn(Pose pose, double azimuth_deg, double elevation_deg);
-// Moves the camera across the line of sight, so that points at the target's distance follow the
-// pointer. A spotter walks instead: left for a drag to the right, backwards for a drag up.
+// Moves the camera perpendicular to the line of sight, so that points at the target's distance
+// follow the pointer. A spotter walks instead: left for a drag to the right, backwards for a drag
+// up.
 Pose Pan(Pose pose, double right_px, double down_px, const PictureSize& picture);
-// Below 1 shows things larger: an orbit camera comes nearer, a spotter takes a longer lens, a map
-// shows less.
+// Zooms in if the factor is below 1. An orbit camera moves nearer, a spotter uses a longer lens,
+// and a map shows a smaller area.
 Pose Zoom(Pose pose, double factor);
 
-// The same azimuth from 0 to below 360 degrees.
+// Returns the same azimuth in the range from 0 to below 360 degrees.
 double WrapDegrees(double degrees);
 
 }  // namespace thunderhead::client

@@ -5,7 +5,7 @@ namespace {
 
 using Vector3 = std::array<double, 3>;
 
-// Points nearer than this to the plane of a perspective eye have no place in the picture.
+// Minimum depth in front of a perspective eye. Nearer points have no position in the picture.
 constexpr double kNear_m = 1.0;
 
 Vector3 Of(const v1::Vector& vector) { return {vector.x(), vector.y(), vector.z()}; }
@@ -15,7 +15,7 @@ Vector3 Of(const v1::Position& position) {
 
 double Dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// From a to b by a share.
+// Interpolates linearly from a to b.
 Vector3 Between(const Vector3& a, const Vector3& b, double share) {
   const auto at = [&](std::size_t i) { return a.at(i) + share * (b.at(i) - a.at(i)); };
   return {at(0), at(1), at(2)};
@@ -34,7 +34,7 @@ struct Projection {
     const Vector3 point_m = Of(position);
     return {point_m[0] - eye_m[0], point_m[1] - eye_m[1], point_m[2] - eye_m[2]};
   }
-  // Every point of a parallel view is as far away.
+  // All points of a parallel view have the same depth.
   double Depth(const Vector3& from_eye_m) const {
     return parallel ? kNear_m : Dot(from_eye_m, forward);
   }

@@ -1,5 +1,5 @@
-// Where world points are in a picture, and which rays its pixels stand for, by Frame.view. x and y
-// are -1 at the picture's left and bottom edge, 1 at the right and top.
+// Projects world points into a picture by Frame.view. The coordinate x is -1 at the picture's left
+// edge and 1 at the right edge. The coordinate y is -1 at the bottom and 1 at the top.
 #pragma once
 
 #include <array>
@@ -16,10 +16,12 @@ struct PicturePoint {
   double y = 0.0;
 };
 
-// Nothing for a point behind the eye, or a view that is not whole.
+// Returns the position in the picture; nothing if the point is behind the eye or the view is
+// incomplete.
 std::optional<PicturePoint> Project(const v1::View& view, const v1::Position& position);
 
-// The visible parts of a line: what is behind the eye is cut off. None in a view that is not whole.
+// Returns the visible parts of a line, without those behind the eye; none if the view is
+// incomplete.
 std::vector<std::vector<PicturePoint>> ProjectLine(
     const v1::View& view, const google::protobuf::RepeatedPtrField<v1::Position>& positions);
 

@@ -1,4 +1,4 @@
-// scene.proto as protoc describes it, comments included: a serialized
+// The description of scene.proto by protoc, comments included: a serialized
 // google.protobuf.FileDescriptorSet.
 #pragma once
 

@@ -5,10 +5,11 @@
 namespace thunderhead::client {
 namespace {
 
-// Over a far link a drag does not wait for each answer: 26 scenes a second leave where an answer
-// takes 150 ms.
+// Several scenes may be in flight, so that a drag over a slow link need not wait for each response.
+// At a round trip of 150 ms the client sends 26 scenes a second.
 constexpr std::size_t kMaxInFlight = 4;
-// Above that, edits become one: while nothing is answered they would pile up.
+// Above this number edits are merged into one. They would otherwise accumulate while the server
+// does not answer.
 constexpr std::size_t kMaxEdits = 256;
 constexpr std::chrono::milliseconds kBusyRest{500};
 constexpr std::chrono::milliseconds kStaleRest{1000};
@@ -89,8 +90,8 @@ void SceneSync::Taken(std::uint64_t ticket, std::uint64_t revision) {
   if (revision != sent.expected_revision + 1) drains_ = true;
   Drop(sent.last_edit);
   if (!revision_ || revision > *revision_) revision_ = revision;
-  // The scene that a later refusal goes back to: the server tells its own only a few times a
-  // second.
+  // A later refusal returns to this scene, because the server sends its own scene only a few times
+  // a second.
   if (!told_ || told_->revision < revision) told_ = Version{sent.scene, revision};
   Answered();
 }
@@ -100,7 +101,8 @@ void SceneSync::Refused(std::uint64_t ticket, Refusal refusal, TimePoint now) {
   if (found == sent_.end()) return;
   const std::uint64_t last_edit = found->second.last_edit;
   sent_.erase(found);
-  const bool follows = drains_ && refusal == Refusal::kStale;  // one before it said why
+  const bool follows =
+      drains_ && refusal == Refusal::kStale;  // an earlier refusal already gave the reason
   drains_ = true;
   if (!follows) {
     if (refusal == Refusal::kRefused) {
@@ -109,7 +111,8 @@ void SceneSync::Refused(std::uint64_t ticket, Refusal refusal, TimePoint now) {
     } else if (refusal == Refusal::kBusy) {
       rests_until_ = now + kBusyRest;
     } else if (!told_ || !revision_ || told_->revision <= *revision_) {
-      // The newer scene is told soon; else the one that was on its way cannot be drawn.
+      // The server will send the newer scene soon. If it does not, the scene that was in flight
+      // cannot be drawn.
       rests_until_ = now + kStaleRest;
     }
   }

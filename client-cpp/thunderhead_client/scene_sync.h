@@ -1,7 +1,7 @@
-// Keeps the client's scene and the session's the same. Edits are functions of a scene: they are
-// applied to the client's at once, sent a few at a time as whole scenes, the newest winning, and
-// applied again to the server's scene where somebody else changed that meanwhile. A plain value: no
-// threads, no clock of its own.
+// Synchronizes the client's scene with the session's. Edits are functions of a scene. They are
+// applied to the client's scene at once. They are then sent as whole scenes, a few at a time, and
+// the newest wins. If another viewer has changed the session's scene meanwhile, the edits are
+// applied again to that scene. This is a plain value without threads or a clock.
 #pragma once
 
 #include <chrono>
@@ -22,38 +22,40 @@ class SceneSync {
   using Edit = std::function<void(v1::Scene&)>;
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  // The answer to a scene that was not taken.
+  // The reason why a scene was refused.
   enum class Refusal {
-    kStale,    // the session's scene is another one than the edits were made to
-    kBusy,     // the same scene may be taken later
-    kRefused,  // never
+    kStale,    // the edits were made to another scene than the session's current one
+    kBusy,     // the server may accept the same scene later
+    kRefused,  // the server will never accept this scene
   };
 
   struct Outgoing {
-    std::uint64_t ticket = 0;  // names it in its answer
+    std::uint64_t ticket = 0;  // identifies the scene in its response
     v1::Scene scene;
     std::uint64_t expected_revision = 0;
   };
 
-  // The client's scene, with every edit.
+  // Returns the client's scene, with every edit.
   const v1::Scene& scene() const { return scene_; }
-  // The revision that it was made from; 0 before any is known.
+  // Returns the revision that the edits are based on; 0 before any is known.
   std::uint64_t revision() const { return revision_.value_or(0); }
-  // True once the server has taken every edit.
+  // Returns true once the server has accepted every edit.
   bool Settled() const { return edits_.empty(); }
 
   void Edited(Edit edit);
-  // The session's scene.
+  // Updates the session's scene from the server.
   void Told(const v1::Scene& scene, std::uint64_t revision);
-  // Joined, again or another session: the next scene told is adopted whatever its revision.
+  // Reports that a session was joined. The next scene from the server is adopted regardless of its
+  // revision.
   void Rejoined();
-  // Another steers: gives up what the server has not taken. True if that was anything.
+  // Discards the edits that the server has not accepted, because another viewer steers. Returns
+  // true if there were any.
   bool Discard();
 
-  // The next scene to send, if one is to be sent now.
+  // Returns the next scene to send, if one is due now.
   std::optional<Outgoing> Next(TimePoint now);
-  // The earliest time at which Next() may have one that it has not now; nothing where only an event
-  // can bring one.
+  // Returns the earliest time at which Next() may return a scene that it does not return now.
+  // Returns nothing if only an event can cause that.
   std::optional<TimePoint> WakeAt() const;
 
   void Taken(std::uint64_t ticket, std::uint64_t revision);
@@ -82,14 +84,14 @@ class SceneSync {
 
   v1::Scene scene_;
   std::optional<std::uint64_t> revision_;
-  std::optional<Version> told_;  // the newest that the server is known to have
+  std::optional<Version> told_;  // the newest version that the server is known to have
   std::deque<Numbered> edits_;
   std::uint64_t last_edit_ = 0;
-  bool unsent_ = false;                 // edits were made after the last one sent
-  std::map<std::uint64_t, Sent> sent_;  // without an answer, by ticket
+  bool unsent_ = false;                 // edits were made after the last scene was sent
+  std::map<std::uint64_t, Sent> sent_;  // unanswered scenes, by ticket
   std::uint64_t last_ticket_ = 0;
-  std::uint64_t awaited_ = 0;  // the revision that the last one sent becomes
-  bool drains_ = false;        // one was not taken, so the others will not be
+  std::uint64_t awaited_ = 0;  // the revision that the last sent scene will get
+  bool drains_ = false;        // one scene was refused, so those in flight will be refused, too
   std::optional<TimePoint> rests_until_;
 };
 

@@ -10,7 +10,8 @@ namespace {
 
 using Stub = v1::ThunderheadService::Stub;
 
-// A call that lasted so long was sound: the next loss begins with a short delay.
+// A call that lasted this long counts as healthy, so the back-off after its loss begins with a
+// short delay.
 constexpr std::chrono::seconds kSound{5};
 
 bool IsLocked(grpc::StatusCode code) {
@@ -84,7 +85,8 @@ void Session::Run() {
   }
 }
 
-// A session that the server has lost is opened anew by whoever opened it, with the same scene.
+// Opens a new session with the same scene if the server has lost the session that this client
+// opened.
 void Session::Settle(const Outcome& outcome) {
   std::unique_lock lock(mutex_);
   if (outcome.link != Link::kGone) return;
@@ -138,7 +140,8 @@ std::optional<Session::Outcome> Session::Open() {
   const std::string refusal = status.error_message();
   const bool began_anew = RefusesScene(status.error_code());
   if (began_anew) {
-    // Its storm or time may be gone: the server's own first scene, at this window's size.
+    // The scene's storm or time may no longer exist, so this requests the server's own first scene
+    // at this window's size.
     v1::Scene plain;
     *plain.mutable_output() = request.scene().output();
     *request.mutable_scene() = std::move(plain);
@@ -184,8 +187,8 @@ Session::Outcome Session::Interact() {
     sync_.Rejoined();
   }
   changed_.notify_all();
-  // A cancellation here would hide the status that the server ends with; a write that waits fails
-  // with the call.
+  // A cancellation here would hide the status with which the server ended the call. A pending write
+  // fails together with the call.
   writer.join();
   watcher.join();
   const grpc::Status status = call.stream->Finish();
@@ -253,8 +256,8 @@ Session::Clock::time_point Session::WakeAt(const Call& call) const {
   return wake;
 }
 
-// A connection may be cut without either side being told: where nothing was heard for a while,
-// another call must reach the server.
+// Detects a connection that was cut without notice to either side. If the server was silent for a
+// while, another call must reach it.
 void Session::Watch(Call& call) {
   constexpr std::chrono::seconds kSilence{10};
   constexpr std::chrono::seconds kCheck{5};

@@ -1,6 +1,6 @@
-// One session, for a client that stays: opens or joins it by Interact, comes back to the same
-// session after any loss, keeps its scene and the server's the same. Every method may be called
-// from any thread and returns at once.
+// A long-lived client of one session. It opens or joins the session by Interact, and rejoins the
+// same session after every connection loss. It keeps its scene synchronized with the server's. Any
+// thread may call any method, and every method returns at once.
 #pragma once
 
 #include <chrono>
@@ -25,75 +25,75 @@
 namespace thunderhead::client {
 
 struct SessionOptions {
-  std::string key;   // the presenter's or the viewers'; empty: opens a session of its own
-  std::string name;  // that others see, at most 40 characters
-  v1::Scene scene;   // that an own session begins with
+  std::string key;   // the presenter's or the viewers' key; empty: opens a new session
+  std::string name;  // shown to others, at most 40 characters
+  v1::Scene scene;   // the first scene of a new session
   v1::SessionRules rules;
-  std::vector<v1::Codec> codecs;  // besides JPEG
+  std::vector<v1::Codec> codecs;  // in addition to JPEG
   v1::Window window;
-  // Opens a session of its own in place of a joined one that is gone, and never stops trying.
+  // Opens a new session if a joined session no longer exists, and never stops retrying.
   bool never_gives_up = false;
   // Timeout of opening a session, and of joining one.
   std::chrono::seconds patience{20};
 };
 
-// Calls come on the session's thread, one at a time.
+// The session's thread makes these calls, one at a time.
 class SessionListener {
  public:
   virtual ~SessionListener() = default;
-  // SessionState has changed.
+  // Reports that SessionState has changed.
   virtual void Changed() = 0;
-  // A call was joined: frames of an earlier one are of no more use.
+  // Reports that a call has joined. Frames of an earlier call can no longer be used.
   virtual void StreamBegan() = 0;
-  // `bytes` is the message's size.
+  // Reports a received frame. `bytes` is the message's size.
   virtual void Received(v1::Frame frame, std::size_t bytes) = 0;
-  // A scene with edits of this client was sent, and is taken as that revision.
+  // Reports that the server accepted a scene with this client's edits under that revision.
   virtual void SceneTaken(std::uint64_t revision,
                           std::chrono::steady_clock::time_point sent_at) = 0;
 };
 
 class Session {
  public:
-  // The listener outlives the session.
+  // The listener must outlive the session.
   Session(std::shared_ptr<const Connection> connection, SessionOptions options,
           SessionListener& listener);
-  // Leaves the session, which stays on the server.
+  // Leaves the session, which remains on the server.
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
   SessionState State() const;
-  // State() if it is newer than that version.
+  // Returns State() if it is newer than that version.
   std::optional<SessionState> StateAfter(std::uint64_t version) const;
 
-  // Changes the scene. False, and nothing happens, where this client does not steer.
+  // Changes the scene. Does nothing and returns false if this client does not steer.
   bool Edit(SceneSync::Edit edit);
-  // Moves the session's camera for who steers, else the own view, which begins. False where neither
-  // is allowed.
+  // Moves the session's camera if this client steers. Otherwise moves the camera of the client's
+  // own view, and begins that view if needed. Returns false if neither is allowed.
   bool ShowCamera(const v1::Camera& camera);
-  // Ends the own view.
+  // Ends the client's own view.
   void Follow();
 
-  // A picture of this frame is on the screen; acknowledges it.
+  // Acknowledges a frame that is on the screen.
   void Shown(const v1::Frame& frame);
-  // The frame could not be decoded.
+  // Reports that the frame could not be decoded.
   void VideoLost(const v1::Frame& frame);
 
   void SetWindow(const v1::Window& window);
   void SetName(const std::string& name);
-  // Absent: the pointer goes.
+  // Sends the pointer's ray; an absent ray removes the pointer.
   void Point(const std::optional<v1::Ray>& ray);
   void AddMark(const std::vector<v1::Ray>& rays);
-  // Every mark that this person may erase.
+  // Erases every mark that this person may erase.
   void EraseMarks();
   void AskControl();
   void GiveControl(std::uint64_t viewer_id);
   void RefuseControl(std::uint64_t viewer_id);
   void TakeControl();
   void SetRules(const v1::SessionRules& rules);
-  // Ends the wait before the next attempt.
+  // Ends the delay before the next attempt.
   void RetryNow();
-  // After the session has ended: opens one of its own with the same scene.
+  // Opens a new session with the same scene after the old one has ended.
   void OpenAnother();
 
  private:
@@ -123,7 +123,7 @@ class Session {
   // Forgets the session, so that the next attempt opens another one.
   void LeaveSession();
   void Say(const std::string& notice);
-  // Both need mutex_.
+  // Send() and Touch() require mutex_.
   void Send(v1::InteractRequest request);
   void Touch();
 
@@ -131,7 +131,7 @@ class Session {
   Canceller calls_;
   const SessionOptions options_;
   SessionListener& listener_;
-  BackOff back_off_;  // of the runner alone
+  BackOff back_off_;  // used only by the runner thread
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
@@ -143,7 +143,7 @@ class Session {
   std::string name_;
   v1::Window window_;
   bool opened_ = false;          // this client opened the session and has not steered it yet
-  bool opens_sessions_ = false;  // it opened the session that key_ is of
+  bool opens_sessions_ = false;  // this client opened the session that key_ belongs to
   ControlResumption resumption_;
   bool retry_now_ = false;
   bool ends_ = false;

@@ -1,4 +1,4 @@
-// A call of Interact, for the files of Session alone.
+// A call of Interact. Only the files of Session use it.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace thunderhead::client {
 
-// One call of Interact: its stream, and what awaits an answer. Guarded by the session's mutex but
-// for the stream.
+// One call of Interact: its stream and its unanswered requests. The session's mutex guards all
+// members except the stream.
 struct Session::Call {
   static constexpr std::size_t kMaxRemembered = 512;
   struct SentScene {
@@ -29,7 +29,7 @@ struct Session::Call {
   std::optional<Outcome> farewell;
   std::uint64_t last_request = 0;
   std::map<std::uint64_t, SentScene> scenes;                           // by request_id
-  std::map<std::uint64_t, v1::InteractRequest::MessageCase> requests;  // the newest
+  std::map<std::uint64_t, v1::InteractRequest::MessageCase> requests;  // the newest requests
 };
 
 }  // namespace thunderhead::client

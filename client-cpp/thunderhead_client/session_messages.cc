@@ -1,4 +1,4 @@
-// The messages of a session, taken one after another.
+// Handles the messages of a session, one after another.
 #include <utility>
 
 #include "google/rpc/status.pb.h"
@@ -158,11 +158,11 @@ void Session::TakeRefusal(Call& call, const v1::Refused& refused) {
   const auto found = call.requests.find(id);
   if (found == call.requests.end()) return;
   switch (found->second) {
-    case v1::InteractRequest::kPoint:  // late, or too many: of no interest
+    case v1::InteractRequest::kPoint:  // came too late or too often; ignored
     case v1::InteractRequest::kAcknowledge:
       return;
     case v1::InteractRequest::kMoveCamera:
-      // The server has ended the own view.
+      // The refusal means that the server has ended the client's own view.
       if (refused.status().code() == grpc::StatusCode::FAILED_PRECONDITION) {
         state_.looks_around = false;
       }

@@ -1,4 +1,4 @@
-// The acts of a person in a session: each method puts a message in the outbox.
+// The actions of a person in a session. Each method puts a message into the outbox.
 #include <utility>
 
 #include "thunderhead_client/session.h"
@@ -82,7 +82,8 @@ void Session::VideoLost(const v1::Frame& frame) {
 void Session::SetWindow(const v1::Window& window) {
   const std::lock_guard lock(mutex_);
   window_ = window;
-  // Also while a join is on its way, which may carry the former one.
+  // The window is sent even while a join is pending, because the join may carry the previous
+  // window.
   outbox_.Resize(window);
   changed_.notify_all();
 }

@@ -36,7 +36,7 @@ bool SessionState::AsksControl() const {
 }
 
 bool SessionState::SteersWhoAsks() const {
-  // Control that is kept for one who is away is not free, though nobody steers.
+  // Control that is reserved for an absent viewer is not free, although no viewer steers.
   const bool free =
       presence.steering_viewer_id() == 0 && !presence.presenter_away() && !presence.has_awaited();
   return free && presence.rules().viewers_may_steer() && !presence.rules().control_locked();

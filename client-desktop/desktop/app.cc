@@ -14,12 +14,14 @@
 namespace thunderhead::desktop {
 namespace {
 
-// The interface takes a few drawings to come to rest after an event: windows find their sizes, and
-// controls light up. Where a drawing takes long, there are as many.
+// After an event the interface needs several drawings to settle: windows find their sizes, and
+// controls are highlighted. Both the time and the number are minimums, so a slow machine draws this
+// often, too.
 constexpr std::chrono::milliseconds kSettles{200};
 constexpr int kSettlingDraws = 6;
 constexpr std::chrono::milliseconds kFrame{16};
-// ImGui takes a press in one drawing and tells in a later one who has the keys.
+// ImGui handles a press in one drawing, and reports only in a later one which item has the
+// keyboard.
 constexpr int kFocusDraws = 3;
 constexpr std::chrono::milliseconds kResizeSettles{250};
 
@@ -32,7 +34,8 @@ v1::Window WindowOf(const Window& window, bool saves_bytes) {
   return told;
 }
 
-// The pointer at an event of it; where it is now for one that does not tell.
+// Returns the pointer's position in an event. For an event without a position, returns the
+// pointer's current position.
 ScreenPoint PlaceOf(const SDL_Event& event) {
   int x = 0;
   int y = 0;
@@ -46,13 +49,13 @@ bool Differs(const v1::Window& a, const v1::Window& b) {
   return a.width_px() != b.width_px() || a.height_px() != b.height_px() || a.hidden() != b.hidden();
 }
 
-// As the last drawing left it.
+// Returns the keyboard focus as the last drawing left it.
 KeyFocus FocusNow() {
   const ImGuiIO& io = ImGui::GetIO();
   return {io.WantTextInput, io.WantCaptureKeyboard && (io.NavVisible || ImGui::IsAnyItemActive())};
 }
 
-// True for an event after which another control, or none, may have the keyboard.
+// Returns true for an event after which another control, or none, may have the keyboard.
 bool MovesFocus(const SDL_Event& event) {
   if (event.type == SDL_MOUSEBUTTONDOWN || event.type == SDL_MOUSEBUTTONUP) return true;
   if (event.type != SDL_KEYDOWN) return false;
@@ -86,7 +89,8 @@ App::App(Flags flags, std::vector<v1::Scene> views, std::unique_ptr<Window> wind
   ui_.toggle_full_screen = [this] { window_->ToggleFullScreen(); };
 }
 
-// The decoding thread tells the session of lost video, the session's thread offers frames.
+// Stops the decoding thread first: it reports lost video to the session, and the session's thread
+// offers frames to it.
 App::~App() { flow_.Stop(); }
 
 client::SessionOptions App::MakeSessionOptions(const std::vector<v1::Scene>& views) const {
@@ -94,7 +98,8 @@ client::SessionOptions App::MakeSessionOptions(const std::vector<v1::Scene>& vie
   options.key = flags_.key;
   options.name = flags_.name;
   options.scene.set_storm_id(flags_.storm);
-  // Not the server's own view for a moment.
+  // The session starts with the first view, so that the server's default view does not appear
+  // briefly.
   if (!views.empty()) LayView(views.front(), options.scene);
   options.codecs = client::PictureDecoder::Codecs();
   options.window = told_window_;
@@ -167,7 +172,7 @@ void App::Run() {
     if (std::exchange(ui_.texts_changed, false)) Unsettle(now);
     Advance(now);
     stale |= TakePicture();
-    // Once a second in any case: times and figures go on.
+    // The window is drawn at least once a second, because times and figures change.
     stale |= now < redraw_until_ || redraws_ > 0 || now - drawn_at > std::chrono::seconds(1);
     if (window_->minimized()) settling_draws_ = redraws_ = 0;
     if (settling_draws_ > 0) {
@@ -202,7 +207,8 @@ bool App::TakeEvents(int timeout_ms) {
     } else {
       TakeEvent(event);
       if (MovesFocus(event)) settling_draws_ = kFocusDraws;
-      // ImGui sees a key that is down when it draws: a press and a release between two is none.
+      // ImGui sees a key only if the key is down during a drawing. A press and a release between
+      // two drawings would be lost.
       const KeyFocus focus = FocusNow();
       if (event.type == SDL_KEYDOWN && (focus.text || focus.controls)) {
         settling_draws_ = std::max(settling_draws_, 1);
@@ -274,7 +280,8 @@ void App::Turn(Clock::time_point now) {
   });
 }
 
-// The session of its own presenter has the size of that window.
+// Reports the window's size to the server. If this client presents and steers, the session's
+// picture also gets that size.
 void App::TellWindow(Clock::time_point now) {
   if (now - resized_at_ < kResizeSettles) return;
   const v1::Window window = WindowOf(*window_, flags_.saves_bytes);

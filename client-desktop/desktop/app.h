@@ -1,4 +1,4 @@
-// The program between its flags and its end: the window, the session and the loop that joins them.
+// The program after its flags were read: the window, the session, and the loop that connects them.
 #pragma once
 
 #include <atomic>
@@ -32,24 +32,24 @@ class App final : private client::SessionListener {
       std::shared_ptr<const client::Connection> connection);
   ~App() override;
 
-  // Until the window is closed or its time is over.
+  // Runs until the window is closed or the requested time is over.
   void Run();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  // SessionListener, on the session's thread.
+  // SessionListener's methods run on the session's thread.
   void Changed() override { Wake(); }
   void StreamBegan() override;
   void Received(v1::Frame frame, std::size_t bytes) override;
   void SceneTaken(std::uint64_t revision, Clock::time_point sent_at) override;
 
-  // From any thread: the loop goes round.
+  // Wakes the event loop. Any thread may call this.
   void Wake();
   bool TakeEvents(int timeout_ms);
   bool TakeEvent(const SDL_Event& event);
   bool TakePicture();
-  // The interface comes to rest after an event or new texts.
+  // Requests the drawings that the interface needs to settle after an event or new texts.
   void Unsettle(Clock::time_point now);
   void Advance(Clock::time_point now);
   void Turn(Clock::time_point now);
@@ -65,7 +65,7 @@ class App final : private client::SessionListener {
 
   const Flags flags_;
   const std::unique_ptr<Window> window_;
-  v1::Window told_window_;  // that the server knows of
+  v1::Window told_window_;  // last size reported to the server
   client::Statistics statistics_;
   std::atomic<bool> woken_{false};
   Uint32 wake_event_ = 0;
@@ -85,15 +85,15 @@ class App final : private client::SessionListener {
   Clock::time_point last_live_ = Clock::now();
   InputTally input_;
   Clock::time_point redraw_until_{};
-  int redraws_ = 0;  // due at least, however long they take
-  // Drawings that are due before more input is taken: only they tell whether a text field has the
-  // keys.
+  int redraws_ = 0;  // minimum number of drawings left, however long they take
+  // Drawings required before more input is handled. Only a drawing shows whether a text field has
+  // the keyboard.
   int settling_draws_ = 0;
   Clock::time_point resized_at_{};
   Clock::time_point turned_at_{};
 };
 
-// Runs the program; the exit status.
+// Runs the program, and returns the exit status.
 int RunDesktop(Flags flags);
 
 }  // namespace thunderhead::desktop

@@ -1,4 +1,4 @@
-// The open panels and choices of the window: nothing of it is part of the scene.
+// The open panels and the choices of the window. None of them is part of the scene.
 #pragma once
 
 #include <string>
@@ -13,18 +13,19 @@ struct Choices {
   Tool tool = Tool::kNone;
   Panel panel = Panel::kNone;
   Hand hand = Hand::kCamera;
-  bool focuses_panel = false;  // the keyboard goes into the panel with the next frame
-  std::string query;           // of the drawer
-  std::string name;            // typed, not yet sent
+  bool focuses_panel = false;  // the panel gets the keyboard in the next frame
+  std::string query;           // search text of the drawer
+  std::string name;            // typed but not sent yet
 
-  // Opens a tool in place of the one that is open, or closes it. The pen is put down with the
-  // marks.
+  // Opens a tool in place of the open tool, or closes it. Closing the marks tool also puts the pen
+  // down.
   void Toggle(Tool chosen) {
     tool = tool == chosen ? Tool::kNone : chosen;
     if (tool != Tool::kMarks) hand = Hand::kCamera;
   }
   void Toggle(Panel chosen) { panel = panel == chosen ? Panel::kNone : chosen; }
-  // Closes what is uppermost, in the page's order; false if there was nothing to close.
+  // Closes the uppermost panel or tool, in the web page's order. Returns false if there was nothing
+  // to close.
   bool Close();
 };
 

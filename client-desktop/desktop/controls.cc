@@ -15,7 +15,8 @@ namespace {
 using client::Limits;
 using client::Parameter;
 
-// Numbers that may be anywhere are typed; a slider over the Earth moves by kilometres a pixel.
+// Returns true for a number that is typed rather than set by a slider. A slider over the Earth
+// would move by kilometres a pixel.
 bool IsTyped(const Limits& limits) { return limits.maximum > 1e6 && !limits.logarithmic; }
 
 std::string FormatOf(const Limits& limits, const DisplayUnit& unit) {
@@ -61,9 +62,9 @@ void ChoiceSetting(Ui& ui, const Parameter& parameter, const char* label) {
   ui.Edit(parameter.path, [=](v1::Scene& scene) { client::SetNumber(scene, parameter, value); });
 }
 
-// A field to type in: true when its value is entered, or left by Tab or a click. ImGui keeps no
-// value between frames, so what has been typed so far is kept here, of the one field that has the
-// keys.
+// Draws a field to type in. Returns true when its value is entered, or when the field is left by
+// Tab or a click. ImGui keeps no value between frames, so this function keeps what was typed so far
+// in the field that has the keyboard.
 template <typename Value, typename Draw>
 bool TypeInto(const char* id, Value& value, const Draw& draw) {
   static ImGuiID field = 0;
@@ -116,7 +117,7 @@ void Setting(Ui& ui, const std::string& path, const char* label) {
 }
 
 void Setting(Ui& ui, const Parameter& parameter, const char* label) {
-  // The list changes with an edit.
+  // This copies the parameter because an edit changes the list that holds it.
   const Parameter copy = parameter;
   const char* const text = label == nullptr ? copy.name.c_str() : label;
   ImGui::PushID(copy.path.c_str());
@@ -148,7 +149,7 @@ bool Slider(const char* label, const Limits& limits, double& value) {
   const ImGuiSliderFlags flags = limits.logarithmic && limits.minimum >= 0.0
                                      ? ImGuiSliderFlags_Logarithmic
                                      : ImGuiSliderFlags_None;
-  // The number stands beside it, where the grab does not hide it, and can be typed.
+  // The number is next to the slider, where the grab does not hide it and where it can be typed.
   const float number_width = 6.4F * ImGui::GetFontSize();
   ImGui::SetNextItemWidth(-number_width - ImGui::GetStyle().ItemSpacing.x);
   bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, &shown, &minimum, &maximum,

@@ -1,4 +1,4 @@
-// Controls of the panels: a line each, with label, value and unit.
+// Controls of the panels. Each is one line with label, value and unit.
 #pragma once
 
 #include <string>
@@ -9,33 +9,37 @@
 
 namespace thunderhead::desktop {
 
-// The text, or as much of it as fits into `width` with an ellipsis; in the font that is current.
+// Returns the text, or as much of it as fits into `width` with an ellipsis. The current font is
+// measured.
 std::string Shortened(std::string text, float width);
-// The control of a scene's parameter by its path, such as "sun.azimuth_deg"; nothing where the
-// scene has none such now. The label is the parameter's name where none is given.
+// Draws the control of a scene's parameter by its path, such as "sun.azimuth_deg". Draws nothing if
+// the scene does not have the parameter now. The default label is the parameter's name.
 void Setting(Ui& ui, const std::string& path, const char* label = nullptr);
 void Setting(Ui& ui, const client::Parameter& parameter, const char* label = nullptr);
 
-// A slider in the unit that people read; true when it has moved. `value` is in the schema's unit.
+// Draws a slider in the display unit. Returns true when the slider has moved. `value` is in the
+// schema's unit.
 bool Slider(const char* label, const client::Limits& limits, double& value);
-// A number to type, for ranges that no slider covers.
+// Draws a field for a number, for ranges that are too large for a slider.
 bool NumberField(const char* label, const client::Limits& limits, double& value);
 
-// One of several, side by side. The chosen one's index, or -1; true when another was chosen.
+// Draws several options side by side. `chosen` is the index of the chosen option, or -1. Returns
+// true when the user chose another.
 bool Segments(const char* id, const std::vector<const char*>& labels, int& chosen);
 bool Choice(const char* label, const std::vector<std::pair<int, std::string>>& options, int& value);
 bool TextField(const char* label, std::string& text, std::size_t most_bytes);
 bool AccentButton(const char* label);
 
 void Title(const char* text, const char* key);
-// Goes on in the line, with what is that wide at the right; beside the scroll bar where there is
-// one.
+// Continues the line at the right edge, for an item of that width. If there is a scroll bar, the
+// item is to its left.
 void SameLineAtRight(float width);
-// Goes on in the line where what is that wide fits into a panel with `room` inside.
+// Continues the line if an item of that width fits into a panel with `room` inside. Otherwise
+// begins the next line.
 void SameLineIfRoom(float width, float room);
 float ButtonWidth(const std::string& text);
-void Quiet(const std::string& text);  // wrapped, in small grey letters
+void Quiet(const std::string& text);  // draws wrapped text in small grey letters
 void QuietLine(const std::string& text);
-void Label(const char* text);  // above a control, small
+void Label(const char* text);  // draws a small label above a control
 
 }  // namespace thunderhead::desktop

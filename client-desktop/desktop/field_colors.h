@@ -1,5 +1,5 @@
-// The fields' false colours: as the screen and the scene have them, and whether the picture shows
-// them.
+// The fields' false colours in the encodings of the screen and the scene, and whether the picture
+// shows them.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 
 namespace thunderhead::desktop {
 
-// Red, green and blue encoded as sRGB (IEC 61966-2-1), 0 to 1.
+// Red, green and blue in sRGB encoding (IEC 61966-2-1), 0 to 1.
 using ScreenColor = std::array<float, 3>;
 
 ScreenColor ScreenColorOf(const v1::Color& linear);
 v1::Color LinearColorOf(const ScreenColor& color);
 
-// True if the scene's technique shows false colours and the scene asks for them.
+// Returns true if the scene's technique can show false colours and the scene requests them.
 bool DrawsFalseColors(const v1::Scene& scene, const v1::GetServerInfoResponse& server);
 
 }  // namespace thunderhead::desktop

@@ -13,7 +13,7 @@ namespace thunderhead::desktop {
 ParsedFlags ParseFlags(int argc, char** argv) {
   CLI::App app("Shows the storms of a Thunderhead server in a window.");
   Flags flags;
-  flags.access.address = "localhost:50051";  // a server of this machine with its own default port
+  flags.access.address = "localhost:50051";  // a server on this machine with its default port
   app.add_option("server", flags.access.address, "HOST:PORT of the server's gRPC port")
       ->capture_default_str();
   app.add_option("--key", flags.key, "key of the session to join; without it a session is opened");
@@ -39,7 +39,7 @@ ParsedFlags ParseFlags(int argc, char** argv) {
   app.add_flag("--save-bytes", flags.saves_bytes, "takes video however fast the link is");
   app.add_option("--status", flags.status_file,
                  "file that gets a line of JSON a second; at 1 MiB it becomes FILE.1");
-  // Tests wait for states. An empty group hides the flag in the help.
+  // Tests need this flag to wait for states. The empty group hides it in the help.
   app.add_flag("--status-always", flags.status_always)->group("");
   app.add_option("--seconds", flags.seconds, "ends after so long and prints what was shown")
       ->check(CLI::Range(1.0, 1e7));
@@ -49,7 +49,7 @@ ParsedFlags ParseFlags(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    constexpr int kUsage = 64;  // as the server's program says of wrong flags
+    constexpr int kUsage = 64;  // same exit status as the server's program for wrong flags
     return {{}, app.exit(error) == 0 ? 0 : kUsage};
   }
   return {std::move(flags), 0};

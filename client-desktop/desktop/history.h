@@ -1,6 +1,6 @@
-// Undo and redo of this window's own changes: a step knows what it changed and leaves the rest of
-// the scene as it is by then, which somebody else may have changed. Changes of one subject that
-// follow one another within a moment, as of a drag, are one step.
+// Undo and redo of this window's own changes. A step contains what it changed, and leaves the rest
+// of the scene as it is by then, because other viewers may have changed it. Successive changes of
+// one subject within a short time, such as those of a drag, are one step.
 #pragma once
 
 #include <chrono>
@@ -18,15 +18,15 @@ class History {
   using TimePoint = std::chrono::steady_clock::time_point;
   using Edit = client::SceneSync::Edit;
 
-  // The scene was changed; `subject` names what of it.
+  // Records a change of the scene. `subject` names the part that was changed.
   void Record(const v1::Scene& before, const v1::Scene& after, const std::string& subject,
               TimePoint now);
-  // True if another change of the last subject would belong to the last step.
+  // Returns true if another change of the last subject would join the last step.
   bool IsOpen(TimePoint now) const;
-  // The edit that takes the last step back, or makes it again; nothing where there is none.
+  // Returns the edit that undoes or redoes a step; nothing if there is no such step.
   std::optional<Edit> Undo();
   std::optional<Edit> Redo();
-  // The steps belong to another storm's scene.
+  // Forgets the steps, because they belong to another storm's scene.
   void Clear();
 
  private:
@@ -34,8 +34,8 @@ class History {
     v1::Scene before;
     v1::Scene after;
   };
-  // The changes of one gesture, the first one first. Somebody else may have changed the scene
-  // between two of them.
+  // The changes of one gesture, the oldest first. Another viewer may have changed the scene between
+  // two of them.
   using Step = std::vector<Change>;
 
   std::vector<Step> done_;

@@ -9,12 +9,12 @@ namespace {
 using client::Pose;
 
 constexpr double kTurn_deg = 3.0;
-// Moves by this many hundredths of the picture.
+// Pan distance of one key press, as a percentage of the picture.
 constexpr double kPan_px = 5.0;
 constexpr client::PictureSize kPicture{100.0, 100.0};
 constexpr double kZoomFactor = 0.88;
 
-// An arrow key turns an orbit camera around the storm or a spotter's head, and moves a map.
+// Turns an orbit camera around the storm or a spotter's head by an arrow key, or moves a map.
 Pose Look(const Pose& pose, int right, int down) {
   if (std::holds_alternative<client::TopDownPose>(pose)) {
     return client::Pan(pose, -right * kPan_px, -down * kPan_px, kPicture);
@@ -75,8 +75,9 @@ std::optional<Tool> ToolOfDigit(int digit) {
   }
 }
 
-// The digit at a key's place in the row above the letters; 0 for other keys. A French keyboard
-// has other characters there without shift. One that TakeText uses keeps its meaning.
+// Returns the digit at a key's position in the row above the letters; 0 for other keys. A French
+// keyboard has other characters there without Shift. Returns 0 for a character that TakeText uses,
+// so that it keeps its meaning.
 int DigitOf(const SDL_Keysym& key) {
   constexpr std::string_view kUsed = "+=-_,.?";
   const bool used = key.sym > 0 && key.sym < 0x80 &&
@@ -154,7 +155,7 @@ bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyAct
   }
   if (Goes(key, focus.controls, actions)) return true;
   const auto letter = ToolOfLetter(key);
-  // With shift the digit comes as text, if it is one.
+  // With Shift, the digit arrives as text instead, if the layout has a digit there.
   const auto tool = letter || shift ? letter : ToolOfDigit(DigitOf(event.keysym));
   if (tool) {
     actions.toggle_tool(*tool);

@@ -1,5 +1,6 @@
-// The keys: those of the page (docs/guide/look-at-a-storm.md) for what the window has, too. Those
-// of its own are none of the page's. Reads SDL's events and knows no window.
+// The window's keys. A function that the web page also has uses the same key
+// (docs/guide/look-at-a-storm.md). A key that only this window uses has no meaning on the page.
+// This code reads SDL's events and does not depend on the window.
 #pragma once
 
 #include <SDL.h>
@@ -25,19 +26,20 @@ struct KeyActions {
   std::function<void()> redo;
   std::function<void()> full_screen;
   std::function<void()> focus_panel;
-  std::function<void()> escape;  // closes what is open
+  std::function<void()> escape;  // closes the uppermost panel or tool
 };
 
-// The controls of the interface that have the keyboard focus.
+// Says which kind of control has the keyboard focus.
 struct KeyFocus {
-  bool text = false;      // a text is being typed: it uses all keys
-  bool controls = false;  // the focus is on a control: it uses arrows, space and Enter
+  bool text = false;      // a text field has the focus: it uses all keys
+  bool controls = false;  // another control has the focus: it uses arrows, space and Enter
 };
 
-// Letters by the keyboard's layout, digits by their place as well; true if the key did something.
+// Handles a key. Letters follow the keyboard's layout, digits also their position. Returns true if
+// the key had an effect.
 bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyActions& actions);
-// Punctuation and digits as the keyboard's layout makes them, with shift or without
-// (SDL_TEXTINPUT); true if the text did something. `modifiers` are those held now.
+// Handles punctuation and digits as the keyboard's layout produces them, with or without Shift
+// (SDL_TEXTINPUT). `modifiers` are those held now. Returns true if the text had an effect.
 bool TakeText(std::string_view text, Uint16 modifiers, const KeyFocus& focus,
               const KeyActions& actions);
 

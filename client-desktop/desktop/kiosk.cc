@@ -7,9 +7,10 @@
 namespace thunderhead::desktop {
 namespace {
 
-// A connection that comes back at once is of no interest on a wall.
+// A shorter connection loss is not worth a warning on a wall display.
 constexpr std::chrono::seconds kQuietLoss{10};
-// A view whose picture never comes, as its storm cannot be read, is not the last one.
+// A view whose picture never arrives, for example because its storm is unreadable, is left after
+// this time.
 constexpr std::chrono::minutes kMostWait{2};
 
 }  // namespace
@@ -34,15 +35,15 @@ bool Kiosk::ShowsOwnView() const {
 
 void Kiosk::Advance(Ui& ui, TimePoint now) {
   const client::SessionState& state = ui.state;
-  // Who steers is told after joining: a camera that is asked for before would be a view of one's
-  // own.
+  // The server reports who steers only after joining. A camera requested before that would begin an
+  // own view instead.
   const bool known = state.link == client::Link::kLive && state.presence.people_size() > 0;
   if (views_.empty() || !known || (!state.Steers() && !state.MayLookAround())) return;
   const bool first = shown_ < 0;
-  // In another session, or where somebody else has steered meanwhile.
+  // The view was undone by another session or by another viewer who steered meanwhile.
   const bool undone = !first && (state.joined_count != shown_in_ || state.Steers() != steered_ ||
                                  (ShowsOwnView() && !state.Steers() && !state.looks_around));
-  // Its time begins with its picture.
+  // A view's time begins when its picture is shown.
   const bool pictured = !state.Steers() || ui.frame.scene_revision() >= state.scene_revision;
   if (!pictured && now - asked_at_ < kMostWait) shown_at_ = now;
   const bool due = now - shown_at_ >= interval_ && views_.size() > 1;
@@ -65,7 +66,7 @@ void Kiosk::Advance(Ui& ui, TimePoint now) {
 std::string Kiosk::Warning(const Ui& ui, TimePoint last_live, TimePoint now) const {
   if (ui.state.link == client::Link::kLive) {
     if (ui.state.problem) return ui.state.problem->message();
-    // Why the server has refused the view.
+    // The notice says why the server has refused the view.
     return shown_ >= 0 && ui.state.notice_count != notices_ ? ui.state.notice : "";
   }
   if (now - last_live < kQuietLoss) return "";

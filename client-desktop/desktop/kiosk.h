@@ -1,5 +1,5 @@
-// A wall's display: shows views in turn, without controls, and says when its picture is old. A
-// plain value with a clock given.
+// A wall display. It shows views in turn, without controls, and warns when its picture is old. This
+// is a plain value; the caller passes the time.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,8 @@
 
 namespace thunderhead::desktop {
 
-// Makes the view the scene, as `render --scene` reads it: what it does not say is left to the
-// server. Storm and time stay where it names none, and the picture's size.
+// Replaces the scene by the view, like `render --scene`: the server chooses what the view leaves
+// out. The scene keeps its picture size, and also its storm and time if the view names none.
 void LayView(const v1::Scene& view, v1::Scene& scene);
 
 class Kiosk {
@@ -21,19 +21,19 @@ class Kiosk {
 
   Kiosk(std::vector<v1::Scene> views, double view_seconds);
 
-  // Shows the next view if it is due: the whole of it where this window steers, else its camera as
-  // an own view. A view is due when the picture of the one before has been shown for its time, or
-  // has not come for two minutes. Shows a view again at once where another session or somebody else
-  // has undone it.
+  // Shows the next view if it is due. If this window steers, it applies the whole view, otherwise
+  // only the view's camera as an own view. A view is due after the previous picture was shown for
+  // its time, or did not arrive for two minutes. If another session or another viewer has undone a
+  // view, it is shown again at once.
   void Advance(Ui& ui, TimePoint now);
-  // The index of the view shown; -1 before the first.
+  // Returns the index of the view shown; -1 before the first.
   int shown() const { return shown_; }
-  // The warning that the picture is old, as the connection has been lost for a while, or that the
-  // view is refused or cannot be drawn; else empty.
+  // Returns a warning if the picture is old because the connection was lost for a while. Also warns
+  // if the view was refused or cannot be drawn. Otherwise returns an empty string.
   std::string Warning(const Ui& ui, TimePoint last_live, TimePoint now) const;
 
  private:
-  // The view shown has a camera, which is an own view where this window does not steer.
+  // Returns true if the view shown has a camera. It is an own view if this window does not steer.
   bool ShowsOwnView() const;
 
   const std::vector<v1::Scene> views_;
@@ -41,9 +41,9 @@ class Kiosk {
   int shown_ = -1;
   TimePoint asked_at_{};
   TimePoint shown_at_{};
-  int shown_in_ = 0;  // the state's joined_count then
+  int shown_in_ = 0;  // the state's joined_count at that time
   bool steered_ = false;
-  int notices_ = 0;  // the state's notice_count then
+  int notices_ = 0;  // the state's notice_count at that time
 };
 
 }  // namespace thunderhead::desktop

@@ -1,5 +1,6 @@
-// Marks in a picture as strokes, which the page joins to one line: where a corner is repeated, the
-// pen is lifted to the next one (client-web/src/core/lettering.ts).
+// Splits marks in a picture into strokes. The page joins all strokes of a mark to one line. In this
+// line a repeated corner means that the pen is lifted to the next corner
+// (client-web/src/core/lettering.ts).
 #pragma once
 
 #include <vector>
@@ -11,7 +12,8 @@
 namespace thunderhead::desktop {
 
 struct MarkStroke {
-  // A line drawn by hand is thick as of ink; arrows and letters are of thin, straight strokes.
+  // True for a hand-drawn line, which is thick. Arrows and letters consist of thin, straight
+  // strokes.
   bool ink = false;
   std::vector<client::PicturePoint> points;
 };

@@ -1,4 +1,4 @@
-// The newest picture as a texture that the interface can draw.
+// The newest picture, as a texture that the interface can draw.
 #pragma once
 
 #include <imgui.h>
@@ -16,7 +16,7 @@ class PictureTexture {
   PictureTexture(const PictureTexture&) = delete;
   PictureTexture& operator=(const PictureTexture&) = delete;
 
-  // Needs the window's context, as the destructor does.
+  // Uploads the pixels. This and the destructor require the window's OpenGL context.
   void Upload(const client::Pixels& pixels);
   bool empty() const { return texture_ == 0; }
   ImTextureID id() const {

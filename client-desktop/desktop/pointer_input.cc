@@ -8,7 +8,7 @@ namespace {
 
 // One notch of a common wheel changes the distance by 14 %, as on the page.
 constexpr double kZoomPerNotch = 0.13;
-// Fingers that part by the window's diagonal come nearer by about five times.
+// Fingers that move apart by the window's diagonal bring the camera about five times nearer.
 constexpr double kZoomPerPinch = 1.6;
 
 ScreenPoint PointOf(int x, int y) { return {static_cast<float>(x), static_cast<float>(y)}; }
@@ -110,7 +110,7 @@ bool PointerInput::Wheel(const SDL_MouseWheelEvent& wheel) {
   return true;
 }
 
-// Two fingers: the middle between them pans, their distance zooms.
+// Handles two fingers: their midpoint pans, and their distance zooms.
 bool PointerInput::Gesture(const SDL_MultiGestureEvent& gesture) {
   if (gesture.numFingers < 2) return false;
   two_fingers_ = true;

@@ -1,6 +1,7 @@
-// Mouse, touch pad and touch over the picture, as camera motions: a drag turns; with the right or
-// middle button, shift or two fingers it moves; the wheel or a pinch comes nearer. With a tool in
-// the hand the left button uses that. Reads SDL's events and knows no window.
+// Converts mouse, touch pad and touch input over the picture to camera motions. A drag turns the
+// camera. A drag with the right or middle button, Shift or two fingers moves it. The wheel or a
+// pinch zooms. If a tool is active, the left button uses the tool. This code reads SDL's events and
+// does not depend on the window.
 #pragma once
 
 #include <SDL.h>
@@ -17,12 +18,12 @@ struct ScreenPoint {
   float y = 0.0F;  // from the top
 };
 
-// Presses, moves and releases of a tool in the hand.
+// Callbacks of the active tool for presses, moves and releases.
 struct ToolSteps {
   std::function<void(ScreenPoint)> press;
   std::function<void(ScreenPoint)> drag;
   std::function<void(bool cancelled)> release;
-  std::function<void(std::optional<ScreenPoint>)> hover;  // nothing: the pointer left
+  std::function<void(std::optional<ScreenPoint>)> hover;  // absent: the pointer left
 };
 
 class PointerInput {
@@ -32,12 +33,12 @@ class PointerInput {
 
   explicit PointerInput(Move move) : move_(std::move(move)) {}
 
-  // The window's size in the units of its events.
+  // Sets the window's size in the units of its events.
   void SetSize(float width, float height) { size_ = {width, height}; }
-  // The tool in the hand; null for the camera.
+  // Sets the active tool; null for the camera.
   void SetTool(const ToolSteps* tool);
-  // True if the event was one over the picture. `over_picture` is false over a panel, where only
-  // what has begun goes on.
+  // Returns true if the event was one over the picture. The argument `over_picture` is false over a
+  // panel, where only a drag or gesture that has already begun continues.
   bool Take(const SDL_Event& event, bool over_picture);
   bool dragging() const { return held_button_ != 0; }
 
@@ -52,13 +53,13 @@ class PointerInput {
   const Move move_;
   client::PictureSize size_{1.0, 1.0};
   const ToolSteps* tool_ = nullptr;
-  int held_button_ = 0;  // that began over the picture
-  bool draws_ = false;   // with the tool
+  int held_button_ = 0;  // button of a drag that began over the picture
+  bool draws_ = false;   // the drag uses the tool
   bool pans_ = false;
   bool hovers_ = false;
   int fingers_ = 0;
-  bool two_fingers_ = false;               // until all have left
-  std::optional<ScreenPoint> gesture_at_;  // of 0 to 1
+  bool two_fingers_ = false;               // true until all fingers are lifted
+  std::optional<ScreenPoint> gesture_at_;  // coordinates from 0 to 1
 };
 
 }  // namespace thunderhead::desktop

@@ -17,7 +17,7 @@ using google::protobuf::util::MessageDifferencer;
 
 using Fields = std::vector<const FieldDescriptor*>;
 
-// A message with those fields alone.
+// Returns a message that contains only those fields.
 std::unique_ptr<Message> PartOf(const Message& whole, const Fields& fields) {
   std::unique_ptr<Message> part(whole.New());
   part->CopyFrom(whole);
@@ -36,7 +36,7 @@ bool IsSame(const Message& a, const Message& b, const Fields& fields) {
   return MessageDifferencer::Equals(*PartOf(a, fields), *PartOf(b, fields));
 }
 
-// Copies fields as `to` has them, or their absence.
+// Copies fields from `to` to `present`. Clears fields that `to` does not have.
 void Copy(const Message& to, const Fields& fields, Message& present) {
   for (const FieldDescriptor* const field : fields) {
     present.GetReflection()->ClearField(&present, field);
@@ -54,7 +54,7 @@ void ChangeItems(const Message& from, const Message& to, const FieldDescriptor& 
                  Message& present) {
   const Reflection& reflection = *present.GetReflection();
   const int count = reflection.FieldSize(to, &field);
-  // A list of another length is somebody else's.
+  // A list with a different length was changed by another viewer.
   if (reflection.FieldSize(present, &field) != count) return;
   for (int i = 0; i < count; ++i) {
     MakeChange(reflection.GetRepeatedMessage(from, &field, i),
@@ -68,7 +68,7 @@ void ChangeMessage(const Message& from, const Message& to, const FieldDescriptor
   const Reflection& reflection = *present.GetReflection();
   const Message& part_from = reflection.GetMessage(from, &field);
   const Message& part_to = reflection.GetMessage(to, &field);
-  // Absent again, unless somebody else has put something into it.
+  // The message was absent before, so it is removed, unless another viewer has set something in it.
   if (!reflection.HasField(to, &field) &&
       MessageDifferencer::Equals(part_from, reflection.GetMessage(present, &field))) {
     return reflection.ClearField(&present, &field);

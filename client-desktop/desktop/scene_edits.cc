@@ -7,7 +7,8 @@
 namespace thunderhead::desktop {
 namespace {
 
-// An error within reach for every view, and a time per frame that still moves smoothly.
+// First values of the goals: an error that every view can reach, and a time per frame that still
+// gives smooth motion.
 constexpr float kFirstError = 0.5F;
 constexpr float kFirst_ms = 100.0F;
 

@@ -13,7 +13,7 @@
 namespace thunderhead::desktop {
 namespace {
 
-// Corners of a line nearer than this to the last are left out.
+// A corner of a line is left out if it is nearer than this to the last corner.
 constexpr float kNear = 3.0F;
 constexpr std::size_t kMaxCorners = 256;
 
@@ -22,8 +22,8 @@ ImU32 ColorOf(const v1::Color& color) {
   return ImGui::GetColorU32({red, green, blue, 1.0F});
 }
 
-// A line and the dark edge that shows it over bright clouds; the page's measures, but that its ink
-// swells and thins.
+// Width of a line and of its dark edge, which makes the line visible over bright clouds. These are
+// the page's widths, but the page's ink also varies in width.
 struct Pen {
   float thickness;
   float with_edge;

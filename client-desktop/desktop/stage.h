@@ -1,4 +1,4 @@
-// The picture in the window, with the pointers and marks of all over it, and the tools that make
+// The picture in the window, with all people's pointers and marks over it, and the tools that make
 // them.
 #pragma once
 
@@ -15,9 +15,9 @@ class Stage {
  public:
   explicit Stage(Ui& ui);
 
-  // Over everything that the panels leave free: as large as fits, in the middle.
+  // Draws the picture centred, as large as fits into the area that the panels leave free.
   void Draw(const PictureTexture& picture);
-  // Null for the camera.
+  // Returns the active tool; null for the camera.
   const ToolSteps* HandTool() const;
 
  private:

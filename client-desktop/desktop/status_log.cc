@@ -87,7 +87,7 @@ std::string JsonString(const std::string& text) {
 struct View {
   const char* kind = "none";
   double azimuth_deg = 0.0;
-  // Where the camera stands, or what it turns around or hangs over, from the storm's middle.
+  // Camera position, orbit target or map centre, relative to the storm's centre.
   double x_m = 0.0;
   double y_m = 0.0;
 };
@@ -105,7 +105,7 @@ View ViewOf(const Ui& ui) {
   return {"top_down", 0.0, top_down.center_m[0], top_down.center_m[1]};
 }
 
-// Of all threads of this process.
+// Returns the processor time of all threads of this process.
 double ProcessorSeconds() {
   return static_cast<double>(std::clock()) / static_cast<double>(CLOCKS_PER_SEC);
 }
@@ -129,7 +129,7 @@ void RotatedFile::Write(const std::string& line) {
   const auto size = static_cast<std::int64_t>(line.size()) + 1;
   if (bytes_ > 0 && bytes_ + size > max_bytes_) {
     file_.close();
-    // Where it cannot be renamed, such as a pipe, what is there is written over.
+    // A file that cannot be renamed, such as a pipe, is overwritten.
     std::rename(path_.c_str(), (path_ + ".1").c_str());
     file_.open(path_, std::ios::trunc);
     bytes_ = 0;
@@ -140,7 +140,7 @@ void RotatedFile::Write(const std::string& line) {
 
 absl::Status StatusLog::CheckWritable(const std::string& path) {
   std::error_code ignored;
-  // To open a pipe and close it again would end whoever reads it.
+  // An existing pipe is not opened, because closing it again would end its reader.
   const bool other = std::filesystem::exists(path, ignored) &&
                      !std::filesystem::is_regular_file(path, ignored) &&
                      !std::filesystem::is_directory(path, ignored);
@@ -158,7 +158,8 @@ void StatusLog::Write(const Ui& ui, int view, const InputTally& input,
   const auto asking = std::count_if(people.begin(), people.end(),
                                     [](const v1::Person& each) { return each.asks_control(); });
   const v1::AccuracyReport& accuracy = ui.frame.accuracy();
-  // The viewers' key, for others to join by; never the presenter's.
+  // The line contains the viewers' key, so that others can join. It never contains the presenter's
+  // key.
   file_.Write(
       absl::StrFormat(
           R"({"t_s":%.3f,"link":"%s","reason":%s,"problem":%s,"notice":%s,"joined":%d,"role":"%s","steers":%s,"looks_around":%s,"people":%d,"asking":%d,)"

@@ -1,5 +1,5 @@
-// A line of JSON a second for whoever watches the window from outside: monitoring, the soak test.
-// At kMaxBytes the file becomes FILE.1, in place of an older one, and another begins.
+// Writes one line of JSON a second, for monitoring and the soak test. At kMaxBytes the file is
+// renamed to FILE.1, which replaces an older one, and a new file begins.
 #pragma once
 
 #include <chrono>
@@ -13,10 +13,10 @@
 
 namespace thunderhead::desktop {
 
-// Lines in a file of limited size.
+// A writer of lines to a file of limited size.
 class RotatedFile {
  public:
-  // An empty path writes nothing. Begins anew what is there.
+  // Truncates the file. An empty path writes nothing.
   RotatedFile(std::string path, std::int64_t max_bytes);
 
   bool is_open() const { return file_.is_open(); }
@@ -34,10 +34,10 @@ class StatusLog {
   static constexpr std::int64_t kMaxBytes = 1 << 20;
   static constexpr std::chrono::milliseconds kInterval{1000};
 
-  // INVALID_ARGUMENT names the path and why it cannot be written to.
+  // Returns INVALID_ARGUMENT with the path and the reason if the file is not writable.
   static absl::Status CheckWritable(const std::string& path);
-  // An empty path writes nothing. Calls of Write() within `interval` of the last line write
-  // nothing.
+  // Opens the log. An empty path writes nothing. Write() does nothing within `interval` of the last
+  // line.
   StatusLog(const std::string& path, std::chrono::milliseconds interval)
       : file_(path, kMaxBytes), interval_(interval) {}
 
@@ -51,7 +51,7 @@ class StatusLog {
   std::chrono::steady_clock::time_point last_{};
 };
 
-// Of this process, in bytes; 0 where the system does not tell.
+// Returns this process's resident memory in bytes; 0 if the system does not report it.
 std::int64_t ResidentBytes();
 
 }  // namespace thunderhead::desktop

@@ -16,7 +16,8 @@ constexpr char kFolder[] = "/usr/share/fonts/truetype/dejavu/";
 ImFont* bold_font = nullptr;
 ImFont* small_font = nullptr;
 
-// Latin with accents, Greek and Cyrillic, general punctuation, arrows, and a few symbols.
+// The glyphs of the font: Latin with accents, Greek and Cyrillic, general punctuation, arrows, and
+// a few symbols.
 constexpr std::array<ImWchar, 11> kGlyphs{0x20,   0x24F,  0x370,  0x52F,  0x2010, 0x2044,
                                           0x2190, 0x21FF, 0x25A0, 0x25FF, 0};
 
@@ -99,7 +100,7 @@ bool BeginPanel(const char* name, const ImVec2& place, const ImVec2& size, ImGui
 
 void GiveKeysToPanel() {
   ImGui::SetWindowFocus();
-  // A window that is focused so marks no control, and the arrows would still turn the camera.
+  // SetWindowFocus() alone selects no control, so the arrow keys would still turn the camera.
   ImGuiContext& context = *ImGui::GetCurrentContext();
   ImGui::NavInitWindow(context.CurrentWindow, true);
   context.NavDisableHighlight = false;

@@ -1,4 +1,4 @@
-// Colours, fonts and measures of the interface: dark, quiet glass over the picture.
+// Colours, fonts and sizes of the interface: dark, translucent panels over the picture.
 #pragma once
 
 #include <imgui.h>
@@ -11,20 +11,20 @@ inline const ImVec4 kGood{0.43F, 0.91F, 0.72F, 1.0F};
 inline const ImVec4 kBad{1.0F, 0.55F, 0.48F, 1.0F};
 inline const ImVec4 kOnAccent{0.10F, 0.11F, 0.13F, 1.0F};
 
-// Sets style and fonts. `scale` is that of texts and controls, `pixels_per_unit` how many pixels of
-// the screen one unit of the window has.
+// Sets style and fonts. `scale` applies to texts and controls. `pixels_per_unit` is the number of
+// screen pixels per unit of the window.
 void ApplyStyle(float scale, float pixels_per_unit);
 
 ImFont* BoldFont();
 ImFont* SmallFont();
 
-// A panel over the picture: no title bar, does not move. Call ImGui::End() after it whatever it
-// returns.
+// Begins a panel over the picture, which has no title bar and cannot be moved. Call ImGui::End()
+// afterwards, whatever this returns.
 bool BeginPanel(const char* name, const ImVec2& place, const ImVec2& size,
                 ImGuiWindowFlags more = 0);
 
-// Gives the keyboard to the panel that was begun: its first control is marked, arrows choose
-// another one.
+// Gives the keyboard to the panel that was begun. Its first control is selected, and the arrow keys
+// select another.
 void GiveKeysToPanel();
 
 }  // namespace thunderhead::desktop

@@ -15,7 +15,7 @@
 namespace thunderhead::desktop {
 namespace {
 
-// A valid time's parts, UTC.
+// The parts of a valid time, in UTC.
 struct Moment {
   int year = 0;
   int month = 0;
@@ -26,7 +26,7 @@ struct Moment {
 
   // Idealised runs begin in year 1.
   bool IsIdealised() const { return year < 100; }
-  // From an instant of its own, for differences.
+  // Returns the seconds since an arbitrary instant, for differences.
   double Seconds() const {
     const std::chrono::sys_days date =
         std::chrono::year(year) / month / std::chrono::day(static_cast<unsigned>(day));
@@ -36,7 +36,7 @@ struct Moment {
   }
 };
 
-// Nothing for a text that is no time.
+// Parses a valid time. Returns nothing if the text is not a time.
 std::optional<Moment> MomentOf(const std::string& valid_time) {
   Moment moment;
   const int read =
@@ -49,7 +49,7 @@ std::string DateOf(const Moment& moment) {
   return absl::StrFormat("%04d-%02d-%02d", moment.year, moment.month, moment.day);
 }
 
-// "20:00", with seconds where there are any.
+// Returns a text like "20:00", with the seconds if they are not 0.
 std::string ClockOf(const Moment& moment) {
   const std::string seconds = moment.second > 0 ? absl::StrFormat(":%02d", moment.second) : "";
   return absl::StrFormat("%02d:%02d%s", moment.hour, moment.minute, seconds);

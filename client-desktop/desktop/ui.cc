@@ -19,7 +19,7 @@ void Ui::Edit(const std::string& subject, client::SceneSync::Edit edit, Recordin
   if (MessageDifferencer::Equals(before, after) || !session.Edit(std::move(edit))) return;
   ++edits;
   if (recording == Recording::kRecorded) history.Record(before, after, subject, Clock::now());
-  // Refresh() would take another storm for somebody else's choice.
+  // Without this copy, Refresh() would mistake a new storm for another viewer's choice.
   state.scene = std::move(after);
   Refresh();
 }
@@ -104,7 +104,7 @@ bool Ui::Refresh() {
     parameters = client::ParametersOf(state.scene);
     any = true;
   }
-  // Storms may have come while the server was away.
+  // Storms may have been added while the server was unavailable.
   if (state.joined_count != joined || state.catalogue_revision != catalogue_revision) {
     catalogue.Refresh();
   }

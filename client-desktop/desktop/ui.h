@@ -1,5 +1,5 @@
-// The state that the panels show and act upon: copies of the session's state and the catalogue's,
-// taken once a frame, and the choices made in this window.
+// The state that the panels show and act on. It has copies of the session's and the catalogue's
+// state, taken once a frame, and the choices made in this window.
 #pragma once
 
 #include <functional>
@@ -28,12 +28,12 @@ struct Ui {
 
   client::SessionState state;
   client::CatalogueState storms;
-  std::vector<client::Parameter> parameters;  // of the state's scene
+  std::vector<client::Parameter> parameters;  // parameters of the state's scene
   client::Statistics::Figures figures;
   std::uint64_t dropped = 0;
-  v1::Frame frame;       // shown, without its bytes
-  std::string encoding;  // of its picture
-  std::string failure;   // of the last picture that could not be decoded
+  v1::Frame frame;       // the frame shown, without its bytes
+  std::string encoding;  // encoding of the frame's picture
+  std::string failure;   // why the last picture could not be decoded
 
   Choices choices;
   bool typing = false;  // a text field has the keyboard
@@ -42,40 +42,41 @@ struct Ui {
   History history;
   std::function<void()> toggle_full_screen;
   float scale = 1.0F;
-  float width = 0.0F;  // of the window, in its units
+  float width = 0.0F;  // size of the window, in its units
   float height = 0.0F;
 
-  // Whether a change can be undone.
+  // Says whether a change can be undone.
   enum class Recording { kRecorded, kUnrecorded };
 
-  // Changes the scene, if this window steers. `subject` names what is changed, for undo.
+  // Changes the scene if this window steers. `subject` names what is changed, for undo.
   void Edit(const std::string& subject, client::SceneSync::Edit edit,
             Recording recording = Recording::kRecorded);
   // Moves the camera of the view shown.
   void Move(const std::function<client::Pose(const client::Pose&)>& motion);
   void ShowCamera(const v1::Camera& camera);
   void ShowTime(int index, Recording recording = Recording::kRecorded);
-  // Shows a time that is picked. Play ends.
+  // Shows a time that the user picked, and stops playback.
   void ChooseTime(int index);
-  // Shows another storm's last time. Play ends.
+  // Shows another storm's last time, and stops playback.
   void ShowStorm(const std::string& storm_id);
   void TogglePlay();
   void StepTime(int by);
   void Undo();
   void Redo();
 
-  // Of the storm shown; none before it is described.
+  // These belong to the storm shown. They are 0 before it is described.
   int time_count() const;
   int time_index() const;
-  // True once the picture of the newest scene is on the screen.
+  // Returns true once the picture of the newest scene is on the screen.
   bool IsShown() const;
-  // Copies what has changed; true if anything has.
+  // Copies what has changed. Returns true if anything has changed.
   bool Refresh();
-  // Texts appeared or vanished; the interface needs more than one drawing to lay them out.
+  // True after texts appeared or vanished. The interface needs more than one drawing to lay them
+  // out.
   bool texts_changed = false;
 
  private:
-  // A step of the history, if there is one.
+  // Applies a step of the history, if there is one.
   void Make(const std::optional<History::Edit>& step);
 };
 

@@ -22,7 +22,7 @@ absl::Status SdlError(const char* what) {
                    "; it needs a display (DISPLAY or WAYLAND_DISPLAY) and OpenGL 3"));
 }
 
-// 0 where it is not known.
+// Returns the DPI; 0 if it is unknown.
 float DpiOfMonitor(SDL_Window* window) {
   float dpi = 0.0F;
   const int display = SDL_GetWindowDisplayIndex(window);
@@ -41,7 +41,8 @@ float ScaleOfMonitor(float dpi, float pixels_per_unit) {
 
 absl::StatusOr<std::unique_ptr<Window>> Window::Open(const WindowOptions& options) {
   SDL_SetHint(SDL_HINT_VIDEO_ALLOW_SCREENSAVER, options.hides_cursor ? "0" : "1");
-  // A crash of the compositor's wishes is not worth a window without a picture.
+  // SDL must not ask the compositor to let the window bypass it. Some compositors would then leave
+  // the window without a picture.
   SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
   if (SDL_Init(SDL_INIT_VIDEO) != 0) return SdlError("cannot start the display");
   SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
@@ -50,7 +51,8 @@ absl::StatusOr<std::unique_ptr<Window>> Window::Open(const WindowOptions& option
   SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 0);
   Uint32 flags = SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI;
   if (options.full_screen) flags |= SDL_WINDOW_FULLSCREEN_DESKTOP;
-  // Without a window manager, as on a bare wall, nothing else gives a window the display's size.
+  // Without a window manager, as on a bare wall display, nothing else gives a window the display's
+  // size.
   SDL_Rect place{SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, options.width, options.height};
   if (options.full_screen) SDL_GetDisplayBounds(0, &place);
   SDL_Window* const window =
@@ -110,7 +112,7 @@ void Window::Rescale() {
 void Window::Take(const SDL_Event& event) {
   ImGui_ImplSDL2_ProcessEvent(&event);
   if (event.type != SDL_WINDOWEVENT) return;
-  // Moved to another monitor, or that one has changed.
+  // The window was moved to another monitor, or its monitor has changed.
   if (event.window.event == SDL_WINDOWEVENT_DISPLAY_CHANGED ||
       event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
     Rescale();
@@ -149,14 +151,15 @@ bool Window::full_screen() const {
 void Window::ToggleFullScreen() {
   const bool leaves = full_screen();
   SDL_SetWindowFullscreen(window_, leaves ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
-  // It was opened with the display's size.
+  // The window was opened with the display's size, so it needs its normal size now.
   if (leaves && std::exchange(opened_full_screen_, false)) {
     SDL_SetWindowSize(window_, options_.width, options_.height);
   }
 }
 
 bool Window::minimized() const {
-  // Not SDL_WINDOW_HIDDEN, which it also is until the display has mapped it.
+  // SDL_WINDOW_HIDDEN is not checked, because it is also set until the display has mapped the
+  // window.
   return (SDL_GetWindowFlags(window_) & SDL_WINDOW_MINIMIZED) != 0;
 }
 

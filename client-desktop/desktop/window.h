@@ -1,4 +1,4 @@
-// A window with OpenGL and Dear ImGui: opens, scales with its monitor, shows a frame of the
+// A window with OpenGL and Dear ImGui. It opens, scales with its monitor, and shows a frame of the
 // interface.
 #pragma once
 
@@ -16,17 +16,18 @@ struct WindowOptions {
   int height = 800;
   bool full_screen = false;
   bool hides_cursor = false;
-  double scale = 0.0;  // of texts and controls; 0: as the monitor asks
+  double scale = 0.0;  // scale of texts and controls; 0: chosen for the monitor
 };
 
-// Of texts and controls, in the window's units. Monitors report sizes that do not make sense,
-// projectors above all: 1 then. `dpi` counts the monitor's pixels: where a unit is several of them,
-// as under Wayland, the desktop has scaled the window already, and it is 1 as well.
+// Returns the scale of texts and controls, in the window's units. It is 1 if the monitor's reported
+// size is implausible, as is common for projectors. `dpi` counts the monitor's pixels. If a unit
+// has several pixels, as under Wayland, the desktop has already scaled the window, and the scale is
+// also 1.
 float ScaleOfMonitor(float dpi, float pixels_per_unit);
 
 class Window {
  public:
-  // An error says what SDL or OpenGL lacks.
+  // Opens a window. The error says what SDL or OpenGL lacks.
   static absl::StatusOr<std::unique_ptr<Window>> Open(const WindowOptions& options);
   ~Window();
   Window(const Window&) = delete;
@@ -36,18 +37,18 @@ class Window {
   void Take(const SDL_Event& event);
   // Draws the interface that `build` makes, and shows it.
   void Draw(const std::function<void()>& build);
-  // True if a panel of the last frame is there, in the window's units. The interface itself knows
-  // only once it is drawn again, too late for a press that follows a quick motion.
+  // Returns true if a panel of the last frame covers this point, in the window's units. ImGui knows
+  // this only after the next drawing, which is too late for a press that follows a quick motion.
   bool IsOverPanel(float x, float y) const;
   void ToggleFullScreen();
   bool full_screen() const;
   bool minimized() const;
-  // Of texts and controls, in the window's units.
+  // Returns the scale of texts and controls, in the window's units.
   float scale() const { return scale_; }
-  // In physical pixels.
+  // These sizes are in physical pixels.
   int width_px() const;
   int height_px() const;
-  // Sizes of the window in the units of its events.
+  // These sizes are in the units of the window's events.
   float width() const;
   float height() const;
 
@@ -58,7 +59,7 @@ class Window {
   const WindowOptions options_;
   SDL_Window* const window_;
   const SDL_GLContext context_;
-  bool opened_full_screen_;  // and has not left it
+  bool opened_full_screen_;  // true until the window first leaves full screen
   float scale_ = 0.0F;
   float pixels_per_unit_ = 0.0F;
 };

@@ -1,5 +1,5 @@
-// Starts the native client, sends it real input, and reads its state from its status file. The file gets a line after every turn
-// of the window's loop, so that tests wait for states and never for a while.
+// Starts the native client, sends it real input, and reads its state from its status file. The file gets a line after
+// every turn of the window's loop. Tests can therefore wait for states instead of a fixed time.
 import { spawn } from "node:child_process";
 import { closeSync, existsSync, fstatSync, mkdtempSync, openSync, readSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -9,21 +9,21 @@ import { fileURLToPath } from "node:url";
 
 const ROOT = fileURLToPath(new URL("../../", import.meta.url));
 export const PROGRAM = process.env.THUNDERHEAD_DESKTOP ?? `${ROOT}build/desktop/bin/thunderhead-desktop`;
-// The longest wait before a test counts as hung. It is no requirement on speed.
+// The longest wait before a test counts as hung. It is not a performance requirement.
 export const HANG_LIMIT_MS = 600_000;
 const POLL_MS = 20;
-// The interface is at rest after so many drawings: kSettlingDraws in desktop/app.cc.
+// Number of drawings after which the interface has settled: kSettlingDraws in desktop/app.cc.
 const SETTLING_DRAWINGS = 6;
-// A line of the status file is shorter.
+// Every line of the status file is shorter than this.
 const MOST_LINE_BYTES = 8192;
 
-// The last line of a file that is complete; undefined where there is none.
+// Returns the last complete line of a file; undefined if there is none.
 function lastLine(path) {
   let file;
   try {
     file = openSync(path, "r");
   } catch {
-    return undefined; // not yet begun, or just renamed
+    return undefined; // not created yet, or just renamed
   }
   try {
     const { size } = fstatSync(file);
@@ -35,17 +35,18 @@ function lastLine(path) {
   }
 }
 
-// What its last input and texts changed is on the screen.
+// Returns true if the effects of the last input and of changed texts are on the screen.
 export const drawn = (status) => status.drawings >= SETTLING_DRAWINGS;
 
-// A full picture of the newest scene is on the screen.
+// Returns true if a full picture of the newest scene is on the screen.
 export const rests = (status) =>
   status.link === "live" && status.refined && status.revision > 0 && status.shown_revision >= status.revision;
 
-// Like `rests`, and no finer picture follows, where no light is traced: the last picture comes in full quality as AVIF.
+// Returns true if `rests` does and no finer picture will follow. This holds if no light is traced: the last picture
+// arrives in full quality as AVIF.
 export const complete = (status) => rests(status) && status.image_scale >= 1 && status.encoding === "AVIF" && drawn(status);
 
-// Like `rests`, and the controls know the storm's fields and times, which come on their own.
+// Returns true if `rests` does and the controls know the storm's fields and times, which arrive separately.
 export const ready = (status) => rests(status) && status.times > 0 && status.people > 0 && drawn(status);
 
 export function startDesktop(display, port, flags = []) {
@@ -60,14 +61,14 @@ export function startDesktop(display, port, flags = []) {
     });
   }
   const ended = new Promise((resolve) => child.once("exit", resolve));
-  // Just after the file was begun anew the newest line is the last one of the file before.
+  // Just after the status file was restarted, the newest line is the last line of the previous file.
   const status = () => JSON.parse(lastLine(file) ?? lastLine(`${file}.1`) ?? "{}");
   const desktop = {
     child,
     ended,
     status,
     said: () => said,
-    // Waits until its status is as wanted, and returns it.
+    // Waits until `holds` returns true for the status, and returns the status.
     async until(what, holds) {
       const deadline = Date.now() + HANG_LIMIT_MS;
       for (;;) {
@@ -78,9 +79,10 @@ export function startDesktop(display, port, flags = []) {
         await sleep(POLL_MS);
       }
     },
-    // Sends input by `act`, waits until the window has taken it all and drawn what it changed, and returns the status then.
-    // `keys` counts the keys that are released, without Ctrl and the like, `buttons` those pressed or released, and `notches`
-    // those of the wheel. The pointer comes to `at`.
+    // Sends input by `act`. Waits until the window has handled the input and drawn its effects, and returns the status.
+    // The parameter `keys` counts released keys, except Ctrl and the like. The parameters `buttons` and `notches` count
+    // presses and releases of mouse buttons, and notches of the wheel. The parameter `at` is the pointer's final
+    // position.
     async input({ keys = 0, buttons = 0, notches = 0, at }, act) {
       const before = status();
       act();
@@ -97,18 +99,18 @@ export function startDesktop(display, port, flags = []) {
     move(x, y) {
       return this.input({ at: { x, y } }, () => display.xdotool("mousemove", x, y));
     },
-    // All at once: the window draws between a press and its release, however fast they come.
+    // The events are sent together. The window draws between a press and its release, however fast they arrive.
     click(x, y) {
       return this.input({ at: { x, y }, buttons: 2 }, () => display.xdotool("mousemove", x, y, "click", 1));
     },
-    // By the left button, in steps.
+    // Drags with the left button, in steps.
     async drag(from, to, steps = 12) {
       await this.input({ at: from, buttons: 1 }, () => display.xdotool("mousemove", from.x, from.y, "mousedown", 1));
       const at = (a, b, step) => Math.round(a + ((b - a) * step) / steps);
       const path = Array.from({ length: steps }, (_, i) => ["mousemove", at(from.x, to.x, i + 1), at(from.y, to.y, i + 1)]);
       return this.input({ at: to, buttons: 1 }, () => display.xdotool(...path.flat(), "mouseup", 1));
     },
-    // One notch of the wheel, up.
+    // Turns the wheel up by one notch.
     wheel() {
       return this.input({ notches: 1 }, () => display.xdotool("click", 4));
     },
@@ -116,7 +118,7 @@ export function startDesktop(display, port, flags = []) {
     type(text) {
       return this.input({ keys: text.length }, () => display.xdotool("type", "--", text));
     },
-    // Types into a field with a value.
+    // Replaces the value of a field.
     async fill(x, y, text) {
       await this.click(x, y);
       return this.input({ keys: text.length + 2 }, () => {
@@ -125,8 +127,8 @@ export function startDesktop(display, port, flags = []) {
         display.xdotool("key", "Return");
       });
     },
-    // Chooses quality "Fast", in a window of scale 1. By default the server traces light while a picture rests, which would keep the
-    // processors busy during the test.
+    // Chooses quality "Fast", in a window of scale 1. By default the server traces paths while a picture rests, which
+    // would keep the processors busy during the test.
     async chooseFast() {
       await this.key("k");
       await this.click(162, 131);

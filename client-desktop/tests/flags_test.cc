@@ -1,4 +1,4 @@
-// The program's flags.
+// Tests of the program's flags.
 #include "desktop/flags.h"
 
 #include <string>

@@ -1,4 +1,4 @@
-// Mouse, touch and keys as camera motions, from SDL's own events.
+// Tests of mouse, touch and keys as camera motions, with SDL's own events.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -102,7 +102,7 @@ TEST_F(Pointer, WheelAndTouchPadZoomByTheirSteps) {
 TEST_F(Pointer, TwoFingersPinchAndPanAndDoNotTurn) {
   SDL_Event down{};
   down.type = SDL_FINGERDOWN;
-  // SDL makes a mouse of the first finger.
+  // SDL also reports the first finger as a mouse.
   input.Take(Button(SDL_MOUSEBUTTONDOWN, SDL_BUTTON_LEFT, 600, 300), true);
   input.Take(down, true);
   input.Take(down, true);
@@ -137,7 +137,7 @@ TEST_F(Pointer, AToolThatIsPutAwayOrLeftIsTold) {
                        [&](std::optional<ScreenPoint> at) { shown.push_back(at.has_value()); }};
   input.SetTool(&tool);
   input.Take(Motion(600, 300, 1, 0), true);
-  input.Take(Motion(60, 300, 1, 0), false);  // over a panel
+  input.Take(Motion(60, 300, 1, 0), false);  // the pointer is over a panel
   input.Take(Motion(600, 300, 1, 0), true);
   SDL_Event leaves{};
   leaves.type = SDL_WINDOWEVENT;
@@ -197,7 +197,7 @@ TEST(Keyboard, HasThePagesKeys) {
   EXPECT_EQ(keys.undone, 1);
 }
 
-// Keys by which the page saves, compares and probes have no other meaning here.
+// The page uses these keys to save, compare and probe. Here they have no meaning.
 TEST(Keyboard, KeysOfThePageAloneDoNothing) {
   Keys keys;
   for (const SDL_Keycode key : {SDLK_s, SDLK_c, SDLK_p, SDLK_RETURN}) EXPECT_FALSE(keys.Press(key));
@@ -232,7 +232,7 @@ TEST(Choices, AreClosedFromTheUppermostDown) {
   EXPECT_TRUE(choices.Close());
   EXPECT_EQ(choices.panel, Panel::kNone);
   EXPECT_EQ(choices.hand, Hand::kPen);
-  // Every setting stays beside the picture while the pen is put down.
+  // The drawer stays open next to the picture while the pen is put down.
   choices.Toggle(Panel::kDrawer);
   EXPECT_TRUE(choices.Close());
   EXPECT_EQ(choices.hand, Hand::kCamera);
@@ -255,17 +255,18 @@ TEST(Keyboard, ATextUsesAllKeysAndAControlItsOwn) {
 
 double DistanceOf(const Keys& keys) { return std::get<OrbitPose>(keys.pose).distance_m; }
 
-// A key comes with its place, its character without shift, and then its text.
+// A key event contains the key's position and its character without Shift. Its text follows as
+// another event.
 TEST(Keyboard, OnAGermanOneDigitsAndQuestionMarkWork) {
   Keys keys;
   keys.Press(SDL_SCANCODE_7, SDLK_7);
   keys.Type("7");
   EXPECT_EQ(keys.choices.tool, Tool::kMarks);
-  // Shift and the key of the sharp s.
+  // These are Shift and the key of the sharp s.
   keys.Press(SDL_SCANCODE_MINUS, 0xDF, KMOD_LSHIFT);
   keys.Type("?", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.panel, Panel::kHelp);
-  // Shift and 7.
+  // These are Shift and 7.
   keys.Press(SDL_SCANCODE_7, SDLK_7, KMOD_LSHIFT);
   keys.Type("/", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.tool, Tool::kMarks);
@@ -279,11 +280,11 @@ TEST(Keyboard, OnAFrenchOneDigitsWorkWithShiftAndWithout) {
   keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_LSHIFT);
   keys.Type("1", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.tool, Tool::kCamera);
-  // With the caps lock.
+  // Caps Lock is on.
   keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_CAPS);
   keys.Type("1", KMOD_CAPS);
   EXPECT_EQ(keys.choices.tool, Tool::kNone);
-  // Shift and the semicolon's key; the comma's has the question mark above.
+  // These are Shift and the semicolon's key. The comma's key has the question mark above.
   keys.Press(SDL_SCANCODE_COMMA, SDLK_SEMICOLON, KMOD_LSHIFT);
   keys.Type(".", KMOD_LSHIFT);
   EXPECT_EQ(keys.stepped, 1);
@@ -295,7 +296,7 @@ TEST(Keyboard, OnAFrenchOneDigitsWorkWithShiftAndWithout) {
 
 TEST(Keyboard, PlusWithinTheDigitsZoomsAndOpensNoTool) {
   Keys keys;
-  // Czech: the key of 1 without shift. Swiss: with shift.
+  // On a Czech keyboard this is the key of 1 without Shift. On a Swiss keyboard it is with Shift.
   keys.Press(SDL_SCANCODE_1, SDLK_PLUS);
   keys.Type("+");
   EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88, 1.0);
@@ -387,7 +388,7 @@ TEST(Texts, AMeasuredErrorHasItsIntervalAndBias) {
   report.set_error_low(0.081F);
   report.set_error_high(0.094F);
   report.set_bias(-0.02F);
-  // The table's parts stay in the report.
+  // The report keeps the parts from the table.
   report.set_model_error(0.128F);
   report.set_discretisation_error(0.007F);
   EXPECT_EQ(ErrorSource(report), "measured: 8.1 to 9.4 %");

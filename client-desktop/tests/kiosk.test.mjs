@@ -1,4 +1,5 @@
-// A kiosk before the real server: its views in turn, whole; no input moves it; it comes back also where session and storm are gone.
+// Tests a kiosk against the real server. It shows its complete views in turn, and no input moves it. It also recovers
+// after its session and storm were lost.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -11,13 +12,13 @@ import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 640, height: 400 };
 const BAD = [255, 140, 122];
-// Lists and different kinds of cameras: each must replace what the view before has said.
+// The views have lists and different kinds of cameras. Each view must replace what the previous view set.
 const VIEWS = [
   {
     camera: { orbit: { azimuthDeg: 45 } },
     fields: [{ hydrometeor: "HYDROMETEOR_ICE", visible: false }],
     lights: [{ azimuthDeg: 90, elevationDeg: 20 }],
-    // No light is traced, and the exposure is no automatic one: the picture stays the same once it is complete.
+    // No light is traced and the exposure is fixed, so that the picture does not change after it is complete.
     rendering: { preset: "PRESET_FAST" },
     display: { exposureEv: -0.5 },
   },
@@ -50,10 +51,10 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// That view's camera is in the picture.
+// Returns true if that view's camera is in the picture.
 const shows = (at) => (now) => now.view === at && now.camera === ["orbit", "top_down"][at] && now.shown_revision === now.revision;
 
-// The corner has a warning.
+// The lower edge shows a warning.
 const CORNER = { x: 0, y: SIZE.height - 60, width: SIZE.width, height: 60 };
 const warns = () => pixelsLike(region(display.pixels(), CORNER), BAD) > 100;
 
@@ -119,7 +120,7 @@ test("with the viewers' key it shows its views' cameras to itself, without views
     const own = await kiosk.until("the view", (now) => now.camera === "orbit" && Math.abs(now.azimuth_deg - 45) < 0.5);
     assert.deepEqual({ role: own.role, looks_around: own.looks_around }, { role: "viewer", looks_around: true });
     await kiosk.stop();
-    // The presenter hears that the kiosk has left after all that the kiosk did.
+    // The presenter learns that the kiosk has left only after everything that the kiosk did.
     const { camera, revision: later } = await presenter.until("alone again", (now) => now.people === 1);
     assert.deepEqual({ camera, revision: later }, { camera: "top_down", revision }, "it has changed the presenter's scene");
     kiosk = startDesktop(display, serverFlags.grpcPort, key);

@@ -1,4 +1,5 @@
-// Leaves a kiosk running and restarts its server now and then: the picture must come back by itself, and memory stay flat.
+// Runs a kiosk for a long time and restarts its server now and then. The picture must come back automatically, and
+// memory use must stay constant.
 //   node kiosk_soak.mjs [--seconds 3600] [--restart-every 300]
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -16,7 +17,8 @@ const { values } = parseArgs({
 const seconds = Number(values.seconds);
 const restartEvery = Number(values["restart-every"]);
 const VIEWS = ["west.json", "above.json"].map((name) => fileURLToPath(new URL(`../../deploy/views/${name}`, import.meta.url)));
-// Growth over the second half that is taken for a leak, in bytes: a kiosk that leaked a picture of 960 x 540 a view would exceed it.
+// Growth over the second half that counts as a leak, in bytes. A kiosk that leaked one picture of 960 x 540 per view
+// would exceed it.
 const MAX_GROWTH = 2e6;
 
 const display = await startDisplay(960, 540);

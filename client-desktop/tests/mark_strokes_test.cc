@@ -1,4 +1,4 @@
-// Marks as the page makes them: lines, arrows and words of several strokes.
+// Tests of marks as the page makes them: lines, arrows and words of several strokes.
 #include "desktop/mark_strokes.h"
 
 #include <utility>
@@ -8,7 +8,7 @@
 namespace thunderhead::desktop {
 namespace {
 
-// From above, a metre is half a picture.
+// Returns a view from above in which one metre is half the picture.
 v1::View FromAbove() {
   v1::View view;
   view.mutable_forward()->set_z(-1.0F);
@@ -28,7 +28,7 @@ std::vector<MarkStroke> Strokes(const std::vector<std::pair<float, float>>& corn
 }
 
 TEST(MarkStrokes, ARepeatedCornerLiftsThePen) {
-  // An arrow: its shaft, then its head from one barb over the tip to the other.
+  // This is an arrow: its shaft, then its head from one barb over the tip to the other.
   const auto strokes = Strokes({{0, 0}, {1, 0}, {1, 0}, {0.8F, 0.1F}, {1, 0}, {0.8F, -0.1F}});
   ASSERT_EQ(strokes.size(), 2U);
   ASSERT_EQ(strokes[0].points.size(), 2U);

@@ -1,6 +1,6 @@
-// Prints what a picture of 1280 x 720 costs the window while the camera turns, with software GL for the window, too. The server draws
-// nothing (tests/service/fake_server.cc), so that pictures come as fast as the window takes them. Processor time is measured, not
-// pictures a second, as the machine may be busy with other work.
+// Prints the cost of a 1280 x 720 picture in the window while the camera turns. The window uses software GL, too. The
+// server draws nothing (tests/service/fake_server.cc), so that pictures arrive as fast as the window takes them.
+// Processor time is measured instead of frame rate, because the machine may be busy with other work.
 //   node pace.bench.mjs
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -33,7 +33,8 @@ try {
     from = await desktop.until("more pictures", (now) => now.frames >= frames + PICTURES);
     costsMs.push((1000 * (from.processor_s - processor_s)) / (from.frames - frames));
   }
-  // Other programs' use of the caches only adds to it. Up to 33 ms, one core is enough for 30 pictures a second.
+  // Cache use by other programs can only increase the measured time. Up to 33 ms, one core is enough for 30 pictures a
+  // second.
   console.log(`figure: processor time of a picture in the window, least of ${STRETCHES}: ${Math.min(...costsMs).toFixed(1)} ms`);
   console.log(`figure: processor time of a picture in the window, most of ${STRETCHES}: ${Math.max(...costsMs).toFixed(1)} ms`);
 } finally {

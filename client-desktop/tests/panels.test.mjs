@@ -1,4 +1,4 @@
-// The window's panels, pressed by real input before the real server; a browser as the other side of a session.
+// Tests the window's panels by real input against the real server. A browser is the other client of the session.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { launchBrowser, rested, until } from "../../tests/e2e/driver.mjs";
@@ -30,7 +30,7 @@ after(async () => {
   await display?.stop();
 });
 
-// Presses, and waits for the picture of the scene that this makes.
+// Presses a control, and waits for the picture of the changed scene.
 async function change(what, press) {
   const { revision } = desktop.status();
   await press();
@@ -39,7 +39,7 @@ async function change(what, press) {
 }
 
 test("false colours are picked where the picture shows them", async () => {
-  const COLOR = { x: 120, y: 124, width: 14, height: 14 }; // of the first field
+  const COLOR = { x: 120, y: 124, width: 14, height: 14 }; // button of the first field
   const STORM = { x: 560, y: 330, width: 400, height: 200 };
   const shownColor = () => meanColor(region(display.pixels(), COLOR));
   await desktop.key("f");
@@ -51,7 +51,7 @@ test("false colours are picked where the picture shows them", async () => {
   const before = region(display.pixels(), STORM);
   await desktop.click(127, 131);
   display.screenshot("picker");
-  // Blue on the picker's bar of hues.
+  // This point is blue on the picker's hue bar.
   await change("a blue cloud", () => desktop.click(438, 360));
   await desktop.key("Escape");
   assert.ok(difference(before, region(display.pixels(), STORM)) > 0.02, "the cloud has the colour that it had");
@@ -60,7 +60,7 @@ test("false colours are picked where the picture shows them", async () => {
   await desktop.key("Escape", "Escape");
 });
 
-// The bar about who steers, above the time line.
+// The bar above the time line that shows who steers.
 const SESSION_BAR = { x: 300, y: 660, width: 680, height: 36 };
 
 test("rules, control and the pointer reach a viewer's page", async () => {
@@ -73,11 +73,11 @@ test("rules, control and the pointer reach a viewer's page", async () => {
     const ask = page.getByTestId("ask-control");
 
     await desktop.key("h");
-    // The check mark of the first rule, below two people.
+    // This is the check mark of the first rule, below two people.
     const mark = () => pixelsLike(region(display.pixels(), { x: 884, y: 272, width: 24, height: 24 }), [255, 209, 107]);
     await eventually("the rules are not shown", () => mark() > 20);
     display.screenshot("rules");
-    // "Nobody may ask to steer", below two people.
+    // This is the rule that locks control, below two people.
     await desktop.click(895, 318);
     await until("control is locked on the page", () => ask.isDisabled(), HANG_LIMIT_MS);
     await desktop.click(895, 318);
@@ -86,13 +86,13 @@ test("rules, control and the pointer reach a viewer's page", async () => {
 
     await ask.click();
     await desktop.until("a request", (now) => now.asking === 1 && drawn(now));
-    // "No" is right of the button that gives.
+    // The button "No" is to the right of the button that gives control.
     const refused = accentIn(display.pixels(), SESSION_BAR);
     await desktop.click(refused.right + 24, refused.y);
     await desktop.until("the request refused", (now) => now.asking === 0 && now.steers);
     await until("the page may ask again", () => ask.isEnabled(), HANG_LIMIT_MS);
 
-    // Unasked: who was refused must wait before asking again.
+    // The window gives control without a request, because a refused viewer must wait before asking again.
     await desktop.key("h");
     await desktop.click(1186, 224);
     await desktop.until("control given", (now) => !now.steers);
@@ -102,7 +102,7 @@ test("rules, control and the pointer reach a viewer's page", async () => {
     await desktop.until("control taken back", (now) => now.steers);
 
     await desktop.key("d");
-    // The last of three segments: the pointer.
+    // The pointer is the last of three segments.
     await desktop.click(366, 128);
     await desktop.move(700, 300);
     await desktop.move(705, 310);
@@ -138,14 +138,14 @@ test("at a scale of 2 panels lie beside each other, and presses hit", async () =
   try {
     desktop = startDesktop(large, serverFlags.grpcPort, ["--width", "1600", "--height", "1000", "--scale", "2"]);
     await desktop.until("the first picture", ready);
-    // "Look" of the rail, then its second check box, then the storm's people.
+    // This opens "Look" on the rail, then switches its second check box, then opens the people panel.
     await desktop.click(2 * 50, 2 * 245);
     const { revision } = desktop.status();
     await desktop.click(2 * 127, 2 * 230);
     await desktop.until("false colours", (now) => rests(now) && now.revision > revision);
     await desktop.key("h");
     large.screenshot("scale_2");
-    // The panel begins with its margin after the tool, whose right edge is the gap between them.
+    // The panel begins with its margin to the right of the tool. The space between them must be empty.
     const gap = { x: 2 * (100 + 306), y: 2 * 74, width: 2 * 10, height: 2 * 200 };
     assert.ok(pixelsLike(region(large.pixels(), gap), [255, 255, 255], 60) < 40, "text lies between the panels");
     const before = desktop.status();
@@ -196,7 +196,7 @@ test("without --scale texts are as large as the monitor is fine", async () => {
     desktop = startDesktop(fine, serverFlags.grpcPort, ["--width", "1600", "--height", "1000"]);
     const { scale } = await desktop.until("the first picture", ready);
     assert.equal(scale, 2);
-    // "Look" of the rail is where it is at that scale.
+    // This is the position of "Look" on the rail at that scale.
     const TITLE = { x: 2 * 110, y: 2 * 82, width: 2 * 60, height: 2 * 24 };
     const before = region(fine.pixels(), TITLE);
     await desktop.click(2 * 50, 2 * 245);
@@ -208,9 +208,9 @@ test("without --scale texts are as large as the monitor is fine", async () => {
   }
 });
 
-// "Ask to steer" in a viewer's window of 640 x 400.
+// Position of "Ask to steer" in a viewer's window of 640 x 400.
 const ASK = { x: 404, y: 276 };
-// "and 2 more" in the presenter's, of 800 x 500.
+// Position of "and 2 more" in the presenter's window of 800 x 500.
 const MORE = [322, 376];
 const ACCENT = [255, 209, 107];
 
@@ -235,7 +235,7 @@ test("several who ask to steer are answered one by one, in a small window too", 
     small.screenshot("several_ask");
     const rail = { x: 12, y: 250, width: 76, height: 110 };
     assert.equal(pixelsLike(region(small.pixels(), rail), ACCENT), 0, "a button lies over the tools");
-    // Those who do not fit are among the people.
+    // People who do not fit into the bar are listed in the people panel.
     await desktop.click(...MORE);
     small.screenshot("several_ask_and_people");
     const panel = { x: 418, y: 74, width: 370, height: 326 };

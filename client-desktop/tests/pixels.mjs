@@ -1,4 +1,4 @@
-// Measures of a screen's pixels, and buttons found by their colour.
+// Measures a screen's pixels, and finds buttons by their colour.
 import assert from "node:assert/strict";
 import { setTimeout as sleep } from "node:timers/promises";
 import { HANG_LIMIT_MS } from "./desktop_process.mjs";
@@ -6,7 +6,7 @@ import { HANG_LIMIT_MS } from "./desktop_process.mjs";
 const POLL_MS = 50;
 
 export const brightness = ({ rgb }) => rgb.reduce((sum, value) => sum + value, 0) / rgb.length;
-// The share of pixels that differ clearly.
+// Returns the share of pixels that differ clearly.
 export function difference(a, b) {
   let count = 0;
   for (let i = 0; i < a.rgb.length; i += 3) if (Math.abs(a.rgb[i] - b.rgb[i]) > 12) count += 1;
@@ -19,7 +19,7 @@ export function region({ width, rgb }, { x, y, width: w, height: h }) {
   return { rgb: Buffer.concat(rows) };
 }
 
-// The middle of what has the accent's colour: a button that is to be pressed.
+// Returns the centre of the pixels in the accent colour: a button that can be pressed.
 export function accentIn(pixels, { x, y, width, height }) {
   const found = [];
   for (let row = y; row < y + height; row += 1) {
@@ -42,14 +42,14 @@ export async function eventually(what, holds) {
   }
 }
 
-// Mean red, green and blue, 0 to 255.
+// Returns the mean red, green and blue, 0 to 255.
 export function meanColor({ rgb }) {
   const sums = [0, 0, 0];
   for (let i = 0; i < rgb.length; i += 1) sums[i % 3] += rgb[i];
   return sums.map((sum) => (3 * sum) / rgb.length);
 }
 
-// How many pixels have nearly that red, green and blue.
+// Returns the number of pixels that have nearly that red, green and blue.
 export function pixelsLike({ rgb }, color, tolerance = 16) {
   let count = 0;
   for (let i = 0; i < rgb.length; i += 3) if (color.every((value, at) => Math.abs(rgb[i + at] - value) <= tolerance)) count += 1;

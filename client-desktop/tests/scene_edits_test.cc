@@ -1,4 +1,4 @@
-// Edits of a scene, and their undoing where somebody else has changed the scene meanwhile.
+// Tests of scene edits, and of undoing them after another viewer has changed the scene.
 #include "desktop/scene_edits.h"
 
 #include <google/protobuf/util/message_differencer.h>
@@ -101,7 +101,7 @@ TEST(ChooseParticleSizes, HoldsForFieldsThatHadSizesOfTheirOwn) {
 
 class HistoryTest : public ::testing::Test {
  protected:
-  // This window's own change.
+  // Makes and records a change by this window.
   template <typename Edit>
   void Change(const Edit& edit, const std::string& subject = "some") {
     const v1::Scene before = scene;
@@ -171,7 +171,7 @@ TEST_F(HistoryTest, ChangesOfOthersStay) {
   others_stay();
 }
 
-// Somebody else changes the scene in the middle of this window's gesture.
+// Another viewer changes the scene in the middle of this window's gesture.
 TEST_F(HistoryTest, ChangesOfOthersDuringAGestureStay) {
   ChangeTime(4);
   scene.mutable_sky()->set_turbidity(5.0F);
@@ -184,7 +184,7 @@ TEST_F(HistoryTest, ChangesOfOthersDuringAGestureStay) {
 
 TEST_F(HistoryTest, AnotherStormAndBack) {
   Change([](v1::Scene& changed) { ChooseStorm(changed, "supercell"); });
-  // As the server completes it.
+  // The server completes the scene in this way.
   scene.set_time_index(0);
   scene.mutable_sun()->mutable_clock()->set_latitude_deg(40.0);
   scene.add_fields()->set_hydrometeor(v1::HYDROMETEOR_CLOUD);

@@ -1,4 +1,5 @@
-// The controls of the tools and of every setting, by real input before the real server: each must reach the scene that it draws.
+// Tests the controls of the tools and of every setting, by real input against the real server. Each control must change
+// the scene.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { freePort, ROOT, startServer } from "../../tests/e2e/server_process.mjs";
@@ -29,7 +30,7 @@ after(async () => {
   await display?.stop();
 });
 
-// Acts, and waits for the picture of the scene that this makes, which is as wanted.
+// Acts, and waits for the picture of the changed scene for which `holds` returns true.
 async function change(what, act, holds = () => true) {
   const { revision } = desktop.status();
   await act();
@@ -38,7 +39,7 @@ async function change(what, act, holds = () => true) {
   return now;
 }
 
-// A tool or panel, while something is done in it.
+// Opens a tool or panel, acts in it, and closes it.
 async function within(key, act) {
   await desktop.key(key);
   try {
@@ -58,11 +59,11 @@ test("a quality and a goal take each other's place", async () => {
     assert.ok(chosen(), "no quality is chosen");
     await change("a goal", async () => {
       await desktop.click(265, 590);
-      await desktop.click(180, 669); // at most this time a frame
+      await desktop.click(180, 669); // chooses "At most this time a frame"
     });
     display.screenshot("goal");
     await eventually("a quality beside the goal", () => !chosen());
-    // The slider's number, below.
+    // This is the number field of the slider below.
     await change("another time", () => desktop.fill(356, 641, "5000"));
     await change("Fast", () => desktop.click(162, 131));
     await eventually("no quality after the goal", chosen);
@@ -105,7 +106,7 @@ test("a field is switched off and on, and has another amount", async () => {
   const without = picture();
   const apart = difference(whole, without);
   assert.ok(apart > 0.1, "the picture without cloud is the same");
-  // The first pictures are coarser, and the last one is compressed.
+  // The first pictures are coarser, and the last one is compressed, so this comparison has a tolerance.
   const isLike = (one) => difference(one, picture()) < apart / 4;
   await within("f", () => change("cloud", () => desktop.click(127, 131)));
   await eventually("the cloud is another one", () => isLike(whole));

@@ -1,5 +1,5 @@
-// A kiosk whose link to the real server falls silent. Apart from the other tests of a kiosk, because this one mostly waits: the
-// client takes half a minute to tell silence from a server that is slow, and a kiosk's warning comes later still.
+// Tests a kiosk whose link to the real server becomes silent. This test has its own file because it mostly waits. The
+// client takes half a minute to distinguish silence from a slow server, and a kiosk's warning comes even later.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -39,7 +39,7 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// The corner has a warning.
+// The lower edge shows a warning.
 const CORNER = { x: 0, y: SIZE.height - 60, width: SIZE.width, height: 60 };
 const warns = () => pixelsLike(region(display.pixels(), CORNER), BAD) > 100;
 

@@ -1,4 +1,5 @@
-// The native client before a real server that speaks TLS and wants tokens: what it shows, and what it says where it cannot.
+// Tests the native client against a real server that requires TLS and tokens: what it shows, and its messages if it
+// cannot connect.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";

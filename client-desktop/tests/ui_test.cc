@@ -1,4 +1,4 @@
-// The state behind the panels, with a session of a service in this process.
+// Tests of the state behind the panels, with a session of a fake service in this process.
 #include "desktop/ui.h"
 
 #include "client-cpp/tests/fake_service.h"
@@ -20,7 +20,7 @@ class Listener final : public client::SessionListener {
   void SceneTaken(std::uint64_t /*revision*/, std::chrono::steady_clock::time_point) override {}
 };
 
-// This window steers a storm of six times.
+// A window that steers a storm of six times.
 class UiTest : public ::testing::Test {
  protected:
   void SetUp() override {

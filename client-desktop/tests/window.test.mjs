@@ -1,4 +1,5 @@
-// The native client in a window of Xvfb, with real input events, before the real server; a browser as the other side of a session.
+// Tests the native client in a window of Xvfb, with real input events, against the real server. A browser is the other
+// client of the session.
 import assert from "node:assert/strict";
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -12,7 +13,7 @@ import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 1280, height: 800 };
 const WINDOW = ["--width", String(SIZE.width), "--height", String(SIZE.height), "--scale", "1"];
-// The bar about who steers, above the time line.
+// The bar above the time line that shows who steers.
 const SESSION_BAR = { x: 300, y: 660, width: 680, height: 36 };
 const MIDDLE = { x: 700, y: 330 };
 
@@ -31,7 +32,7 @@ before(async () => {
   serverFlags = { httpPort: await freePort(), grpcPort: await freePort(), state };
   server = await startServer(serverFlags);
   desktop = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--name", "Wall"]);
-  // The first one may be smaller.
+  // The first picture may be smaller.
   const fills = (now) => ready(now) && now.width_px === SIZE.width && now.height_px === SIZE.height;
   await desktop.until("a picture of the window's size", fills);
 });
@@ -56,10 +57,10 @@ test("a drag turns the camera, the wheel comes nearer, keys do the same", async 
   const before = desktop.status().azimuth_deg;
   const pictureBefore = display.pixels();
   await desktop.drag(MIDDLE, { x: MIDDLE.x + 200, y: MIDDLE.y });
-  // 200 of 800 pixels are a quarter of half a turn.
+  // A drag of 200 of 800 pixels turns by a quarter of 180 degrees.
   const dragged = await desktop.until("a turned picture", (now) => rests(now) && apart(now.azimuth_deg, before + 45) < 1);
   assert.ok(difference(pictureBefore, display.pixels()) > 0.05, "the picture is the same");
-  // Edits that follow one another within a moment would be undone as one.
+  // Edits that follow one another within a short time would be undone together.
   await desktop.until("the end of the drag's step", (now) => !now.undo_step_open);
   await desktop.key("Right");
   await desktop.until("turned by a key", (now) => rests(now) && apart(now.azimuth_deg, dragged.azimuth_deg + 3) < 0.5);
@@ -77,7 +78,7 @@ test("times are stepped and played by keys", async () => {
   await desktop.key("space");
   await desktop.until("another time", (now) => now.time_index !== last - 1);
   await desktop.key("space");
-  // Played times are no steps of the history.
+  // Times that playback shows are not steps of the history.
   await desktop.key("ctrl+z");
   await desktop.until("the time before the step", (now) => rests(now) && now.time_index === last);
 });
@@ -85,7 +86,7 @@ test("times are stepped and played by keys", async () => {
 const PANELS = { camera: "m", time: "t", light: "l", look: "k", fields: "f", marks: "d" };
 const RIGHT = { storms: "o", people: "h", figures: "i", settings: "x", keys: "question" };
 
-// Where each side's panel has its title.
+// Position of the panel title on each side.
 const TITLE = { left: { x: 110, y: 82, width: 200, height: 24 }, right: { x: 876, y: 82, width: 150, height: 24 } };
 
 test("every tool and panel opens by its key and closes by Escape", async () => {
@@ -107,7 +108,7 @@ test("every tool and panel opens by its key and closes by Escape", async () => {
 
 test("a number that is typed and left by Tab counts", async () => {
   assert.equal((await desktop.key("m")).tool, "camera");
-  // The field beside "Seen from". All that is pressed comes at once, as on a machine that stalls.
+  // This clicks the field next to "Seen from". All input arrives at once, as on a machine that stalls.
   const { typing } = await desktop.input({ at: { x: 366, y: 214 }, buttons: 2, keys: 4 }, () => {
     desktop.child.kill("SIGSTOP");
     display.xdotool("mousemove", 366, 214, "click", 1, "key", "ctrl+a", "type", "--delay", 20, "123");
@@ -129,14 +130,14 @@ test("a browser joins as a viewer and follows", async () => {
     await desktop.until("two people", (now) => now.people === 2);
     const before = desktop.status().azimuth_deg;
     await desktop.drag(MIDDLE, { x: MIDDLE.x - 100, y: MIDDLE.y });
-    // The whole way: pictures on the way may rest, too.
+    // The test waits for the final angle, because pictures during the drag may also be complete.
     const turned = (now) => rests(now) && apart(now.azimuth_deg, before - 22.5) < 0.5;
     const { azimuth_deg } = await desktop.until("a turned picture", turned);
     await until("the browser follows", async () => apart(await azimuthOf(page), azimuth_deg) < 0.5);
 
-    // A line drawn in the window is seen by the browser, and the other way round.
+    // The browser sees a line drawn in the window, and the window sees a line drawn in the browser.
     await desktop.key("d");
-    // The second of three segments below the title.
+    // The pen is the second of three segments below the title.
     await desktop.click(265, 128);
     await desktop.drag({ x: 640, y: 380 }, { x: 820, y: 420 });
     await desktop.until("a mark", (now) => now.marks === 1);
@@ -145,7 +146,7 @@ test("a browser joins as a viewer and follows", async () => {
     display.screenshot("mark");
     await desktop.key("Escape", "Escape");
 
-    // It asks to steer, gets control in the window, and the window follows.
+    // The browser asks to steer, gets control in the window, and the window follows.
     await page.getByTestId("ask-control").click();
     await desktop.until("a request", (now) => now.asking === 1 && drawn(now));
     display.screenshot("asked");
@@ -186,7 +187,7 @@ test("--turn turns the camera by itself", async () => {
 });
 
 test("the server is killed and restarted: the same session comes back", async () => {
-  // The browser had control, and nobody has it since: "Take control".
+  // The browser had control, and no one has it now. The window's button is "Take control".
   await desktop.click(735, 677);
   const { joined, ...before } = await desktop.until("control", (now) => now.steers);
   await server.stop("SIGKILL");

@@ -1,4 +1,4 @@
-// A display without a screen: starts Xvfb, runs xdotool in it, and takes screenshots.
+// A virtual display: starts Xvfb, runs xdotool in it, and takes screenshots.
 import { execFileSync, spawn } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -7,13 +7,14 @@ import { fileURLToPath } from "node:url";
 import { deflateSync } from "node:zlib";
 
 export const OUTPUT = fileURLToPath(new URL("output/", import.meta.url));
-// Only against hangs.
+// This timeout only catches hangs.
 const START_TIMEOUT_MS = 600_000;
 
-// With `dpi` it reports a monitor as fine as that, with `managed` a window manager runs in it, which programs need to change between full screen and a window.
+// Starts a display. With `dpi` it reports a monitor of that resolution. With `managed` it runs a window manager,
+// without which programs cannot switch between full screen and a window.
 export async function startDisplay(width, height, { managed = false, dpi } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "thunderhead-xvfb-"));
-  // Without -r a key whose release comes late, on a busy machine, would be repeated.
+  // -r disables key repeat. Otherwise a key whose release comes late on a busy machine would repeat.
   const flags = ["-screen", "0", `${width}x${height}x24`, "-fbdir", folder, "-r", "-nolisten", "tcp", "-displayfd", "3"];
   if (dpi !== undefined) flags.push("-dpi", String(dpi));
   const child = spawn("Xvfb", flags, { stdio: ["ignore", "ignore", "ignore", "pipe"] });
@@ -26,9 +27,9 @@ export async function startDisplay(width, height, { managed = false, dpi } = {})
     });
   });
   const env = { ...process.env, DISPLAY: `:${number}`, LIBGL_ALWAYS_SOFTWARE: "1", SDL_VIDEODRIVER: "x11" };
-  // Xvfb tells a size of its screen, but none of its outputs by RandR.
+  // Xvfb reports its screen's size, but reports none of its outputs by RandR.
   if (dpi !== undefined) env.SDL_VIDEO_X11_XRANDR = "0";
-  // It needs no file of fonts for that one.
+  // The font "fixed" needs no font file.
   const manager = managed ? spawn("evilwm", ["-fn", "fixed"], { env, stdio: "inherit" }) : undefined;
   const xdotool = (...words) => execFileSync("xdotool", words.map(String), { env, encoding: "utf8" });
   return {
@@ -51,7 +52,7 @@ export async function startDisplay(width, height, { managed = false, dpi } = {})
   };
 }
 
-// The picture of an X window dump with 32 bits a pixel: width, height, and RGB.
+// Reads an X window dump with 32 bits a pixel. Returns width, height and RGB.
 function readXwd(path) {
   const dump = readFileSync(path);
   const word = (at) => dump.readUInt32BE(4 * at);
@@ -69,7 +70,7 @@ function readXwd(path) {
   return { width, height, rgb };
 }
 
-// Of ISO 3309, as PNG has it; node 18 has none of its own.
+// Computes the CRC of ISO 3309, which PNG uses. Node 18 has no such function.
 function crc32(bytes) {
   let crc = 0xffffffff;
   for (const byte of bytes) {

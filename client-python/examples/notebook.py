@@ -1,6 +1,6 @@
 """A notebook's cells as a script; paste each into a cell. python3 notebook.py HOST:PORT FOLDER"""
 
-# %% Open a session of a storm. It stays until it is closed.
+# %% Open a session of a storm. The session exists until it is closed.
 import sys
 
 from thunderhead import Client
@@ -9,11 +9,12 @@ address, folder = sys.argv[1:]
 client = Client(address)
 session = client.session(client.storms()[0].id, {"camera": {"orbit": {}}}, size=(480, 270))
 
-# %% Look from the west, in the evening. A notebook shows the picture as the cell's last line, or with sliders: session.display()
+# %% Look from the west, in the evening. A notebook shows the picture as the cell's last line. With sliders:
+# session.display()
 session.set_all({"camera.orbit.azimuth_deg": 270, "sun.elevation_deg": 6})
 session
 
-# %% What the picture is made of is in the scene.
+# %% The scene has all parameters of the picture.
 print("the camera stands", session.get("camera.orbit.distance_m"), "m away")
 
 # %% Go through the storm's times.
@@ -21,9 +22,9 @@ for time_index in range(len(client.storms()[0].valid_times)):
     frame = session.set("time_index", time_index).wait()
     print("time", time_index, "at revision", frame.scene_revision, len(frame.jpeg), "bytes")
 
-# %% Keep the view at full quality: the PNG has its scene inside, so that the command line can draw it again.
+# %% Save the view at full quality. The PNG contains its scene, so that the command line can draw it again.
 session.picture().save(f"{folder}/notebook.png")
 
-# %% Close it, so that the server has room for others.
+# %% Close the session, so that the server has memory for others.
 session.close()
 client.close()

@@ -33,7 +33,7 @@ SIZE = (160, 90)
 FAST = {"rendering": {"preset": "PRESET_FAST"}}
 
 
-# Longest wait before a test counts as hung. It is no requirement on speed.
+# Longest wait before a test counts as hung. It is not a performance requirement.
 HANG_LIMIT_S = 600.0
 
 
@@ -106,7 +106,7 @@ class ClientTest(unittest.TestCase):
         self.assertEqual((array.dtype, array.shape), (numpy.uint8, (90, 160, 3)))
         numpy.testing.assert_array_equal(numpy.asarray(image), array)
         self.assertGreater(int(array.max()) - int(array.min()), 50, "a picture of one colour")
-        # Another scene is another picture.
+        # A different scene must give a different picture.
         evening = self.client.render_array("supercell", {**FAST, "sun": {"elevationDeg": 3}}, SIZE)
         self.assertGreater(float(numpy.abs(evening.astype(float) - array).mean()), 2.0)
 
@@ -218,13 +218,13 @@ class ClientTest(unittest.TestCase):
         notebook.display = shown.append
         modules = {"IPython": types.ModuleType("IPython"), "IPython.display": notebook}
         with self.client.session("supercell", {**FAST, "camera": {"orbit": {}}}, SIZE) as session:
-            # None in sys.modules is how Python knows a module that is not there.
+            # None in sys.modules makes Python treat the module as missing.
             with unittest.mock.patch.dict(sys.modules, {**modules, "ipywidgets": None}):
                 session.display()
                 with self.assertRaisesRegex(RuntimeError, "sliders need ipywidgets"):
                     session.widget()
             self.assertEqual(shown, [session])
-            # By this a notebook shows it.
+            # A notebook calls this method to show the picture.
             with Image.open(io.BytesIO(shown[0]._repr_jpeg_())) as picture:
                 self.assertEqual(picture.size, SIZE)
             if importlib.util.find_spec("ipywidgets") is None:
@@ -254,7 +254,7 @@ class WatchTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             run = pathlib.Path(folder) / "run42"
             run.mkdir()
-            # Two, as a single file in a folder is a storm of its own name.
+            # The test needs two files, because a single file in a folder is a storm with its own name.
             for file in series[:2]:
                 shutil.copy(file, run)
             server = Server("--data", folder, "--settle-seconds", "1", "--rescan-seconds", "1")
@@ -270,7 +270,7 @@ class WatchTest(unittest.TestCase):
             copying = threading.Thread(target=copy_others)
             copying.start()
             with Client(server.address, timeout_s=HANG_LIMIT_S) as client:
-                # One file may have rested for long enough before the other, and is a storm of its own until then.
+                # Until the second file has been unchanged for long enough, the first may appear as a separate storm.
                 wait_for("the run", lambda: [storm.id for storm in client.storms()] == ["run42"])
                 pictures = list(client.watch("run42", FAST, SIZE, until=4, timeout_s=HANG_LIMIT_S, poll_s=0.2,
                                              product=f"{out}/{{valid:%H%M}}.png"))
@@ -299,7 +299,7 @@ class AccessTest(unittest.TestCase):
             with Client(address, token="a" * 64, tls_ca=cert, timeout_s=HANG_LIMIT_S) as client:
                 self.assertEqual(client.storms()[0].id, "supercell")
                 self.assertEqual(client.render("", FAST, SIZE).size, SIZE)
-                # A pipeline's token draws single pictures and opens no sessions.
+                # A pipeline's token may draw single pictures, but may not open sessions.
                 with self.assertRaises(ThunderheadError) as refused:
                     client.session()
                 self.assertEqual(refused.exception.reason, "ROLE_MAY_NOT")

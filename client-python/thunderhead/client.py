@@ -22,7 +22,7 @@ from .session import Session
 from .v1 import scene_pb2, storm_pb2, thunderhead_pb2, thunderhead_pb2_grpc
 
 _FORMATS = {"png": thunderhead_pb2.IMAGE_FORMAT_PNG, "jpeg": thunderhead_pb2.IMAGE_FORMAT_JPEG}
-# Of an 8192 x 8192 picture, with room to spare.
+# This is more than an 8192 x 8192 picture needs.
 _MAX_ANSWER_BYTES = 256 << 20
 
 
@@ -74,7 +74,7 @@ class Client:
             self._channel = grpc.secure_channel(address, grpc.ssl_channel_credentials(roots), options)
         else:
             self._channel = grpc.insecure_channel(address, options)
-        # Generated, and without types.
+        # The stub is generated code without types.
         make_stub: Any = thunderhead_pb2_grpc.ThunderheadServiceStub
         self._stub: Any = make_stub(self._channel)
 

@@ -36,7 +36,7 @@ def error_of(error: grpc.RpcError) -> ThunderheadError:
     trailers = {item[0]: item[1] for item in error.trailing_metadata() or ()}
     status = status_pb2.Status.FromString(trailers.get("grpc-status-details-bin", b""))
     for detail in status.details:
-        # By the public names, which are those on the wire.
+        # The public type names are also the names in the messages.
         kind = detail.type_url.rpartition(".")[2]
         if kind == "ErrorInfo":
             result.reason = error_details_pb2.ErrorInfo.FromString(detail.value).reason

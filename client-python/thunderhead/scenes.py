@@ -15,7 +15,7 @@ from .v1 import limits_pb2, scene_pb2
 SceneLike = Union[Mapping[str, Any], scene_pb2.Scene, str, "os.PathLike[str]", None]
 Size = Tuple[int, int]
 
-# The text in a PNG that holds its scene.
+# Keyword of the PNG text that contains the picture's scene.
 _SCENE_TEXT = "thunderhead.scene"
 
 
@@ -53,7 +53,7 @@ def _read(path: pathlib.Path, message: scene_pb2.Scene) -> None:
     if text is None:
         raise ValueError(f"{path} is a PNG without a scene in it; give one that Thunderhead made, or a scene's JSON")
     _parse(text, message, str(path))
-    # So that it can show another storm.
+    # The storm is removed, so that the scene can be used for another storm.
     message.storm_id = ""
 
 

@@ -14,7 +14,7 @@ from .picture import Picture
 from .scenes import field_of, limits_of
 from .v1 import frame_pb2, scene_pb2, thunderhead_pb2
 
-# Moved by most people first.
+# The parameters that most people change first.
 _SLIDERS = ("camera.orbit.azimuth_deg", "camera.orbit.elevation_deg", "sun.azimuth_deg", "sun.elevation_deg")
 
 
@@ -39,11 +39,11 @@ class Session:
             created = stub.CreateSession(
                 thunderhead_pb2.CreateSessionRequest(scene=scene), timeout=timeout_s, metadata=metadata
             )
-        #: The presenter's key: whoever has it may steer.
+        #: The presenter's key. Anyone who has it may steer.
         self.id: str = created.session_id
-        #: The viewers' key, for links that only watch.
+        #: The viewers' key, for links with which others can only watch.
         self.viewer_key: str = created.viewer_key
-        #: False if the server could not save the session, as on a full disk; None if it saves no sessions.
+        #: False if the server could not save the session, for example on a full disk; None if it saves no sessions.
         self.durable: Optional[bool] = created.durable if created.HasField("durable") else None
         if self.durable is False:
             warnings.warn("this session is not saved: it ends with the server, unless the server can save it later", stacklevel=3)
@@ -193,7 +193,7 @@ class Session:
     def _slider(self, ipywidgets: Any, path: str) -> Any:
         limits = limits_of(path)
         value = self.get(path)
-        # Whole numbers stay whole: time, seeds, slices.
+        # Integers such as time, seeds and slices must stay integers.
         kind = ipywidgets.IntSlider if isinstance(value, int) else ipywidgets.FloatSlider
         slider = kind(
             value=value,

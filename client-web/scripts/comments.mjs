@@ -1,5 +1,5 @@
-// Writes src/gen/comments.ts: the first sentence of the comment of every field and enum value of the scene's messages, by full
-// name. Generated code has comments for programmers only; the page shows these.
+// Writes src/gen/comments.ts. It contains, by full name, the first sentence of the comment of every field and enum
+// value of the scene's messages. Comments in generated code are for programmers, but the page shows these.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -29,7 +29,8 @@ function firstSentence(comment) {
 }
 
 const named = {};
-// Numbers of fields in descriptor.proto: a file's messages 4 and enums 5; a message's fields 2, messages 3 and enums 4.
+// These are field numbers in descriptor.proto. A file has its messages in 4 and its enums in 5. A message has its
+// fields in 2, its messages in 3 and its enums in 4.
 function ofMessage(message, prefix, path) {
   const name = `${prefix}.${message.name}`;
   message.field.forEach((field, at) => take(`${name}.${field.name}`, `${path}.2.${at}`));

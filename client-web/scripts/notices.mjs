@@ -1,5 +1,5 @@
-// Writes dist/third-party-notices.txt: the licences of the npm packages that the page contains, by the lock file.
-// Debian's package and the image ship it with the page. Fails for a package without a licence's text.
+// Writes dist/third-party-notices.txt: the licences of the npm packages that the page contains, according to the lock
+// file. Debian's package and the image ship it with the page. The script fails for a package without a licence text.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
@@ -10,7 +10,7 @@ const notices = [
   "/usr/share/doc/PACKAGE/copyright.",
 ];
 for (const [folder, found] of Object.entries(lock.packages)) {
-  // The first entry is the page itself. Tools that only build or test it are marked "dev".
+  // The first entry is the page itself. Tools that only build or test the page are marked "dev".
   if (folder === "" || found.dev) continue;
   const file = readdirSync(folder).find((name) => /^(licen[cs]e|copying)/i.test(name));
   if (file === undefined) throw new Error(`${folder} has no licence's text; ask its authors, or use another package`);

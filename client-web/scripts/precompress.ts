@@ -1,5 +1,5 @@
-// Writes a gzip file beside each text file of the built page, named as the file with ".gz" added. The
-// gateway sends those to browsers that accept gzip, so nothing is compressed per request.
+// Writes a gzip file next to each text file of the built page, with ".gz" added to its name. The
+// gateway sends these files to browsers that accept gzip, so it compresses nothing per request.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
@@ -7,7 +7,7 @@ import type { Plugin } from "vite";
 
 const TEXT = /\.(js|mjs|css|html|svg|json|map|wasm|txt|webmanifest)$/;
 
-// A file that gzip does not make smaller gets none beside it.
+// Writes the gzip files of a folder. Omits a gzip file that would not be smaller than its original.
 export function precompressFolder(folder: string): void {
   for (const entry of readdirSync(folder, { withFileTypes: true })) {
     const path = join(folder, entry.name);
@@ -29,7 +29,8 @@ export function precompress(): Plugin {
     configResolved: (config) => {
       folder = join(config.root, config.build.outDir);
     },
-    // When every file has been written, those of public/ too: a gzip file older than its original is not sent.
+    // This runs after every file was written, including those of public/. A gzip file that is older
+    // than its original is not sent.
     closeBundle: () => precompressFolder(folder),
   };
 }

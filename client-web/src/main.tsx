@@ -1,4 +1,5 @@
-// The page's entry: builds it, puts it into the document, and takes it down again on a hot reload.
+// The page's entry point. It builds the page, puts it into the document, and removes it again on a
+// hot reload.
 import { render } from "preact";
 import { AccessToken } from "./core/access_token";
 import { Participant } from "./core/participant";

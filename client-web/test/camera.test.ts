@@ -16,7 +16,7 @@ import {
 
 const PICTURE = { widthPx: 1000, heightPx: 600 };
 
-// Stands due south of the target and looks north.
+// This camera stands due south of the target and looks north.
 const SOUTH: OrbitPose = {
   kind: "orbit",
   targetM: [1000, 2000, 3000],
@@ -138,7 +138,7 @@ describe("the camera above", () => {
   const MAP_PICTURE = { widthPx: 160, heightPx: 90 };
 
   it("moves under the pointer, however it is dragged", () => {
-    // A kilometre a pixel.
+    // The map's scale is one kilometre a pixel.
     expect(drag(MAP, 10, 20, MAP_PICTURE).centerM).toEqual([2000 - 10_000, 3000 + 20_000]);
     expect(pan(MAP, 10, 20, MAP_PICTURE)).toEqual(drag(MAP, 10, 20, MAP_PICTURE));
     expect(turn(MAP, 10, 20)).toEqual(MAP);

@@ -1,4 +1,4 @@
-// Which encodings the page asks for, and what the readout says where video is not among them.
+// Tests the encodings that the page requests, and the readout's text if video is not among them.
 import { afterEach, describe, expect, it, vi } from "vitest";
 import { nameOfEncoding } from "../src/core/encoding";
 import { Codec } from "../src/gen/thunderhead/v1/interact_pb";
@@ -6,7 +6,7 @@ import { learnDecodable } from "../src/view/decodable";
 
 interface Browser {
   readonly secure?: boolean;
-  // The answer of VideoDecoder.isConfigSupported; undefined without WebCodecs.
+  // The result of VideoDecoder.isConfigSupported; undefined without WebCodecs.
   readonly vp9?: boolean | "throws";
   readonly avif?: boolean;
 }
@@ -36,7 +36,8 @@ describe("what a browser decodes", () => {
   });
 
   it.each([
-    // Browsers hide WebCodecs without HTTPS; the reason is not the browser's age.
+    // Browsers hide WebCodecs without HTTPS, so a missing WebCodecs does not mean that the browser
+    // is old.
     [{ secure: false }, "video needs HTTPS or localhost"],
     [{}, "this browser has no WebCodecs"],
     [{ vp9: false }, "this browser decodes no VP9"],

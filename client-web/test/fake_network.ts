@@ -1,4 +1,4 @@
-// Test support: the client's ways to the fake service in memory, which can fail.
+// Test support: in-memory transports to the fake service, which can fail.
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, createRouterTransport, type Interceptor } from "@connectrpc/connect";
 import { InteractRequestSchema } from "../src/gen/thunderhead/v1/interact_pb";
@@ -8,9 +8,9 @@ import type { OpenInteract } from "../src/transport/session_client";
 import type { FakeService } from "./fake_service";
 
 export class FakeNetwork {
-  // Nothing can be reached, and open calls get nothing any more.
+  // No call reaches the server, and open calls receive nothing.
   down = false;
-  // The server wants a token.
+  // The server requires a token.
   locked = false;
   // Open calls break as soon as they are joined.
   breaking = false;
@@ -35,7 +35,7 @@ export class FakeNetwork {
     return new ServerCalls(this.transport());
   }
 
-  // Breaks every call, as a network does that tells.
+  // Breaks every call with an error, as a network does that reports its failure.
   break(): void {
     this.end({ kind: "broken", message: "The server cannot be reached" });
   }

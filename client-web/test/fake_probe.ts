@@ -1,4 +1,5 @@
-// Test support: the made-up storm in numbers, from above and along a ray: a bell of each field around the middle of its blobs.
+// Test support: the made-up storm as numbers, from above and along a ray. Each field is a bell
+// curve around the middle of its blobs.
 import { create } from "@bufbuild/protobuf";
 import {
   GetStormMapResponseSchema,

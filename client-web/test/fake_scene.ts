@@ -1,4 +1,5 @@
-// Test support: the fake's storms and scenes: what DescribeStorm says of one, and a scene with its defaults filled in.
+// Test support: the storms and scenes of the fake. It has the descriptions of storms, and fills in
+// a scene's defaults.
 import { create } from "@bufbuild/protobuf";
 import { cameraOfPose, poseOfCamera } from "../src/core/camera";
 import { azimuthTo } from "../src/core/map_frame";
@@ -34,14 +35,14 @@ const FALSE_COLORS = [
   { red: 0, green: 1, blue: 0 },
 ] as const;
 
-// `later`: times that have come since the start.
+// Describes a storm. `later` is the number of times that were added since the start.
 export function describeStorm(stormId: string, timeIndex: number, later = 0) {
   const count = stormId === "supercell" ? 4 + later : 1;
   return create(StormDescriptionSchema, {
     id: stormId,
     title: stormId,
     timeIndex,
-    // Of one model's runs; the others' domains are not known.
+    // These two storms are runs of one model. The domains of the others are unknown.
     grid: ["supercell", "late"].includes(stormId)
       ? { nx: 200, ny: 160, nz: 68, dxM: 1000, dyM: 1000, dzM: 300 }
       : undefined,
@@ -73,7 +74,7 @@ export function describeStorm(stormId: string, timeIndex: number, later = 0) {
   });
 }
 
-// Stands where the whole storm is in view.
+// This camera sees the whole storm.
 const HOME = cameraOfPose({
   kind: "orbit",
   targetM: [4000, 0, 7000],

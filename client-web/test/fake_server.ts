@@ -1,5 +1,6 @@
-// Test support: an HTTP server for the built page and the fake service over gRPC-Web and WebSocket, with the flags of
-// `thunderhead serve`, to try the page and the browser test without the real program:
+// Test support: an HTTP server for the built page and the fake service over gRPC-Web and WebSocket.
+// It has the flags of `thunderhead serve`. With it the page and the browser tests run without the
+// real program:
 //   npm run fake -- serve --http 127.0.0.1:8099 --page dist
 import { createReadStream, existsSync, statSync } from "node:fs";
 import { createServer } from "node:http";

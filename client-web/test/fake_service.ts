@@ -1,4 +1,5 @@
-// Test support: a fake of Thunderhead's service in memory: storms, clouds, sessions; tests can make it fail.
+// Test support: an in-memory fake of Thunderhead's service with storms, clouds and sessions. Tests
+// can make it fail.
 import { create } from "@bufbuild/protobuf";
 import { Code, ConnectError, type ConnectRouter } from "@connectrpc/connect";
 import type { InteractRequest } from "../src/gen/thunderhead/v1/interact_pb";
@@ -12,7 +13,7 @@ import { FAKE_PRESETS, FAKE_TECHNIQUES } from "./fake_techniques";
 // The server's end of one Interact call.
 export interface FakeCall {
   receive(request: InteractRequest): void;
-  // The client has gone.
+  // Reports that the client has left.
   leave(): void;
 }
 
@@ -21,9 +22,9 @@ export const END_NOT_SAVED =
 
 export class FakeService {
   readonly sessions: FakeSession[] = [];
-  // No map is sent.
+  // The server sends no map.
   mapless = false;
-  // This storm cannot be described.
+  // The storm that cannot be described.
   undescribed = "";
   // Sessions and their ends are not saved.
   diskFull = false;
@@ -34,13 +35,14 @@ export class FakeService {
     { id: "single", title: "One time only", timeCount: 1, deletable: false },
   ];
 
-  // With `tracing`, a session at rest sends frames with ever more traced paths; without, it sends nothing.
+  // With `tracing`, a resting session sends frames with more and more traced paths. Without it, a
+  // resting session sends nothing.
   constructor(
     readonly draw: Draw,
     readonly tracing = false,
   ) {}
 
-  // The supercell has another time, and there is another storm, as if their files had arrived.
+  // Adds a time to the supercell, and adds a storm, as if their files had arrived.
   grow(): void {
     this.#later += 1;
     this.#storms.push({ id: "late", title: "Came late", timeCount: 1, deletable: false });
@@ -127,13 +129,14 @@ export class FakeService {
     };
   }
 
-  // Closes a session. With a delay its clients are to come back, as to a server that restarts.
+  // Closes a session. With a delay the clients are told to come back, as after a restart of the
+  // server.
   end(session: FakeSession, message: string, retryAfterMs?: number): void {
     session.close(message, retryAfterMs);
     if (retryAfterMs === undefined) this.forget(session);
   }
 
-  // As a server does that lost its sessions.
+  // Forgets the session, like a server that lost its sessions.
   forget(session: FakeSession): void {
     this.sessions.splice(this.sessions.indexOf(session), 1);
   }

@@ -1,5 +1,6 @@
-// Test support: one session of the fake service: its scene, its people with their roles and control, frames to each of them,
-// pointers and marks. A coarse frame for each scene, and a refined one after a rest.
+// Test support: one session of the fake service. It has the scene, the people with their roles and
+// control, frames for each person, pointers and marks. It sends a coarse frame for each scene, and
+// a refined frame after a rest.
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { type Any, anyPack } from "@bufbuild/protobuf/wkt";
 import { Code } from "@connectrpc/connect";
@@ -35,7 +36,7 @@ const COLORS = [
 
 type Outgoing = MessageInitShape<typeof InteractResponseSchema>["message"];
 
-// Frames of one view to one person.
+// The frames of one view for one person.
 class FrameLane {
   sent: bigint[] = [];
   waiting: Frame | undefined;
@@ -70,9 +71,9 @@ export class FakeSession {
   });
   readonly people: FakePerson[] = [];
   marks: Mark[] = [];
-  // So many marks are refused, as the one before is still being placed.
+  // Number of marks to refuse, as if the previous mark was still being placed.
   placing = 0;
-  // False while nothing tells the server that a connection is lost.
+  // False while the server does not notice that a connection is lost.
   noticesLosses = true;
   held: { stormId: string; timeIndices: number[] } = { stormId: "", timeIndices: [] };
   #steering: bigint | undefined;
@@ -148,14 +149,14 @@ export class FakeSession {
     this.#tellPresence();
   }
 
-  // It is noticed in the end that a person's connection is lost, and what it had is that of who came back.
+  // Notices the loss of a person's connection. The person who came back inherits control.
   replace(lost: FakePerson, back: FakePerson): void {
     this.people.splice(this.people.indexOf(lost), 1);
     if (this.#steering === lost.viewerId) this.giveControl(back.viewerId);
     else this.#tellPresence();
   }
 
-  // To a person, or to nobody (0).
+  // Gives control to a person. 0 means that no person steers.
   giveControl(viewerId: bigint): void {
     this.#presenterSteered = false;
     this.#steering = viewerId === 0n ? undefined : viewerId;
@@ -173,7 +174,7 @@ export class FakeSession {
     }
   }
 
-  // Asks everybody for a sign of life.
+  // Asks all clients to confirm that they are alive.
   checkAlive(): void {
     this.#tellAll({ case: "checkAlive", value: {} });
   }
@@ -272,7 +273,7 @@ export class FakeSession {
     }
   }
 
-  // A scene by somebody else than the people, such as a client without Interact.
+  // Changes the scene as a client without Interact would.
   changeScene(scene: Scene): void {
     this.scene = completeScene(scene);
     this.revision += 1n;
@@ -311,7 +312,8 @@ export class FakeSession {
     this.#tellPresence();
   }
 
-  // From a viewer the presenter, from the presenter nobody.
+  // Returns the person who gets control back. A viewer returns it to the presenter. If the
+  // presenter returns it, no one steers.
   #whoGetsItBack(fromPresenter: boolean): bigint {
     const presenter = this.people.find(({ role }) => role === Role.PRESENTER);
     return fromPresenter ? 0n : (presenter?.viewerId ?? 0n);
@@ -361,7 +363,7 @@ export class FakeSession {
     this.#pump(person, person.own);
   }
 
-  // Those that were shown, and one that is read ahead.
+  // Keeps the times that were shown in memory, and reads one time ahead.
   #read(): void {
     const { stormId, timeIndex } = this.scene;
     if (this.held.stormId !== stormId) this.held = { stormId, timeIndices: [] };
@@ -377,7 +379,8 @@ export class FakeSession {
     this.#refine = setTimeout(() => this.#rest(0n), REFINE_AFTER_MS);
   }
 
-  // The refined frame, and then frames with ever more traced paths if the scene has traced light.
+  // Sends the refined frame. If the scene traces paths, then sends frames with more and more of
+  // them.
   #rest(tracedPaths: bigint): void {
     this.#publish(true, tracedPaths);
     if (!this.tracing || !tracesLight(this.scene) || tracedPaths >= MAX_PATHS) return;

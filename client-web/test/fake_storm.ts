@@ -1,5 +1,5 @@
-// Test support: pictures of a made-up storm. A few soft blobs over a sky that follow the scene's camera, sun and fields;
-// enough to see whether the page sends the right scene.
+// Test support: pictures of a made-up storm. They show a few soft blobs over a sky that follow the
+// scene's camera, sun and fields. This is sufficient to see whether the page sends the right scene.
 import jpeg from "jpeg-js";
 import { poseOfCamera } from "../src/core/camera";
 import { settingsOf, sharedSettingsOf } from "../src/core/rendering";
@@ -28,7 +28,7 @@ export function drawFakeStorm(scene: Scene, widthPx: number, heightPx: number): 
   const light = Math.max(0.05, Math.sin((elevation * Math.PI) / 180)) ** 0.5;
   const gain = 2 ** (scene.display?.exposureEv ?? 0);
   const { transport, detail, falseColors } = sharedSettingsOf(settingsOf(scene.rendering));
-  // Makes transport, detail and false colours visible, without looking like the real ones.
+  // Transport, detail and false colours change the picture visibly, although not realistically.
   const brightness = (transport === Transport.DIFFUSION ? 100 : 20) + (detail ? 20 : 0);
   const tint = falseColors ? [1, 0.2, 0.2] : [1, 1, 1];
   for (let y = 0; y < heightPx; y += 1) {

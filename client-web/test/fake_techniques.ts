@@ -32,7 +32,7 @@ import {
 
 const MEDIUM = { slices: 128, thetaFDeg: 20, perFieldPhase: true, falseColors: false };
 
-// The transports that techniques of the medium accept.
+// The transports that volume techniques accept.
 const TRANSPORTS = [
   Transport.CONSISTENT,
   Transport.LOW_ALBEDO,

@@ -1,4 +1,5 @@
-// Test support: the view of a camera as the server puts it into a frame, and what a ray of it meets.
+// Test support: a camera's view as the server puts it into a frame, and the point that a ray of the
+// view hits.
 
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { poseOfCamera } from "../src/core/camera";
@@ -55,7 +56,7 @@ export function viewOfCamera(
   };
 }
 
-// The plane through the camera's target, in place of the storm.
+// Returns the point on the plane through the camera's target, which replaces the storm.
 export function placeMet(ray: Ray, camera: Camera | undefined) {
   const pose = poseOfCamera(camera);
   const distanceM = pose?.kind === "orbit" ? pose.distanceM : OTHER_DISTANCE_M;

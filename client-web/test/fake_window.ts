@@ -1,4 +1,4 @@
-// Test support: as much of a browser's window as the page's wiring uses.
+// Test support: the parts of a browser's window that the page uses.
 import { vi } from "vitest";
 
 export class FakeStorage {
@@ -38,7 +38,7 @@ export class FakeCanvas extends Target {
   getContext() {
     return { fillRect: () => undefined, drawImage: () => undefined };
   }
-  // A gesture of the left button over these places.
+  // Makes a gesture of the left button over these places.
   dragOver(places: readonly (readonly [number, number])[]): void {
     const event = (place: readonly [number, number] | undefined) => ({
       pointerId: 1,
@@ -94,7 +94,7 @@ export class FakeWindow extends Target {
   }
 }
 
-// The browser's globals that the page uses.
+// Replaces the browser's globals that the page uses.
 export function stubGlobals(): void {
   vi.stubGlobal(
     "ResizeObserver",

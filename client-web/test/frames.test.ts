@@ -7,7 +7,7 @@ interface Sequenced {
   readonly sequence: bigint;
 }
 
-// A pipeline whose decoder and screen refresh the test controls.
+// Makes a pipeline. The test controls its decoder and its screen refresh.
 function bench() {
   const decoding: { frame: Sequenced; done(): void; fail(): void }[] = [];
   const paints: (() => void)[] = [];

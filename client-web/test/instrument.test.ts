@@ -1,4 +1,5 @@
-// Annotations over the picture and on the map, the comparison, the probe, and the list of every parameter.
+// Tests of annotations over the picture and on the map, the comparison, the probe, and the list of
+// all parameters.
 import { create } from "@bufbuild/protobuf";
 import { afterEach, expect, test } from "vitest";
 import {
@@ -54,7 +55,7 @@ afterEach(() => {
   lengthUnits.value = "metric";
 });
 
-// Looks north from the middle of the world, 60 degrees wide.
+// This view looks north from the middle of the world, and is 60 degrees wide.
 const HALF = Math.tan(Math.PI / 6);
 const NORTH: Projection = {
   eyeM: [0, 0, 2],
@@ -136,13 +137,13 @@ test("degrees stand along the horizon where they are", () => {
   );
   const at = Object.fromEntries(shapes.map(({ text, x }) => [text, x]));
   expect(at.N).toBeCloseTo(400, 3);
-  // 20 degrees from the centre are tan(20 deg) / tan(30 deg) of the half width.
+  // A tick at 20 degrees from the centre is at tan(20 deg) / tan(30 deg) of the half width.
   expect(at["020°"]).toBeCloseTo(400 + (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at["340°"]).toBeCloseTo(400 - (400 * Math.tan(Math.PI / 9)) / HALF, 3);
   expect(at.S).toBeUndefined();
 });
 
-// As wide as letters of common fonts are.
+// Returns a text's box. The letters have the width of common fonts.
 function boxOf({ x, y, anchor, text: words }: TextShape, letterPx: number) {
   const widthPx = 0.6 * letterPx * words.length;
   const left = { start: x, middle: x - widthPx / 2, end: x - widthPx }[anchor];
@@ -182,7 +183,7 @@ test("no text lies on another, wherever the horizon is", () => {
             );
         }
     }
-  // Most degrees are named nevertheless.
+  // Most degrees still have a name.
   expect(named / (4 * 241)).toBeGreaterThan(4);
 });
 
@@ -204,7 +205,7 @@ test("the scale bar is as long as it says", () => {
   const lengthPx = (bar?.[2]?.[0] ?? 0) - (bar?.[1]?.[0] ?? 0);
   expect(texts(shapes).map(({ text }) => text)).toEqual(["20 km"]);
   expect(lengthPx).toBeCloseTo((800 * 20) / 160, 6);
-  // Letters that go below their line end above the bar.
+  // Descenders of letters must end above the bar.
   const [words] = texts(shapes);
   expect((words?.y ?? 0) + 0.25 * PICTURE.letterPx).toBeLessThan(bar?.[0]?.[1] ?? 0);
 });
@@ -212,7 +213,7 @@ test("the scale bar is as long as it says", () => {
 test("rings of distance are drawn at their distance", () => {
   const shapes = annotationsOf(PICTURE, { ...FIRST_ANNOTATIONS, compass: false, rings: true });
   const lines = shapes.flatMap((shape) => (shape.kind === "line" ? [shape.points] : []));
-  // The ring of 10 km, straight ahead: 2 m below the eye at 10 km.
+  // This is the ring of 10 km, straight ahead. It is 2 m below the eye at a distance of 10 km.
   const ahead = lines[0]?.find(([x]) => Math.abs(x - 400) < 1e-3);
   expect(ahead?.[1]).toBeCloseTo(200 + (200 * 2) / 10_000 / (HALF / 2), 3);
   expect(texts(shapes).map(({ text }) => text)).toContain("10 km");
@@ -272,8 +273,9 @@ test("the sun's clock is set in local time for the time that is shown", () => {
   expect(evening.toISOString()).toBe("2013-05-20T23:30:00.000Z");
   expect(firstDateTime(evening, 3600)).toBe("2013-05-20T22:30:00Z");
   const { sunrise, sunset } = sunriseAndSunset(here, "America/Chicago");
-  // By the declination of that day, 20.0 degrees, and the sun's upper edge on the horizon with 34' of refraction; noon is at the
-  // meridian of the place, 3.5 minutes early by the equation of time. Whole minutes.
+  // The expected times follow from the declination of that day, 20.0 degrees. The sun's upper edge
+  // is on the horizon with 34' of refraction. Noon is at the meridian of the place, 3.5 minutes
+  // early by the equation of time. The results are whole minutes.
   const [latitude, declination, edge] = [35.2, 20.0, -0.833].map((deg) => (deg * Math.PI) / 180);
   const cosine =
     (Math.sin(edge ?? 0) - Math.sin(latitude ?? 0) * Math.sin(declination ?? 0)) /
@@ -307,7 +309,8 @@ test("the map shows the domain and a camera near it, and leads back to the world
   expect(standOf(orbit)?.placeM[0]).toBeCloseTo(500, 6);
 });
 
-// Places by PROJ (`echo LON LAT | proj STRING`), less the same of the domain's middle.
+// The expected places are by PROJ (`echo LON LAT | proj STRING`), minus the result for the domain's
+// middle.
 test("places of the map are those of the model's projection", () => {
   const check = (
     projection: string,
@@ -357,7 +360,7 @@ test("letters and arrows are one line that is parted again", () => {
   expect(letterStrokes("a", { left: 0, top: 0 }, 12)).toEqual(
     letterStrokes("A", { left: 0, top: 0 }, 12),
   );
-  // A session takes 256 corners.
+  // A session accepts 256 corners.
   const longest = joined(letterStrokes("8".repeat(99), { left: 0, top: 0 }, 12));
   expect(longest.length).toBeLessThanOrEqual(256);
 });

@@ -1,4 +1,5 @@
-// The edges of the instrument: runs without a common time, days without a sunrise, words that no mark can hold.
+// Tests of edge cases: runs without a common time, days without a sunrise, texts that do not fit
+// into a mark.
 import { create } from "@bufbuild/protobuf";
 import { expect, test } from "vitest";
 import { awayInWords, type ComparisonChoice, timeOfB } from "../src/core/comparison";
@@ -58,7 +59,7 @@ test("the polar day has no sunset and no night, the polar night no sunrise", () 
 });
 
 test("a day whose sun sets after midnight is light from then on until midnight", () => {
-  // Fairbanks keeps a zone far east of its sun.
+  // Fairbanks uses a time zone far east of its solar time.
   const here = dayAt("2020-06-21T20:00:00Z", 64.8, -147.7);
   const zone = "America/Anchorage";
   expect(dayInWords(here, zone)).toMatch(/^Sunrise 02:\d\d · sunset 00:\d\d$/);
@@ -77,7 +78,8 @@ test("German words and the signs of a forecast are written in full", () => {
     expect(written(sign).length, sign).toBeGreaterThan(0);
     expect(leftOutInWords(sign), sign).toBeUndefined();
   }
-  // No stroke is a mere point, which a repeated corner would be: that lifts the pen.
+  // No stroke may be a single point, because that repeats a corner, and a repeated corner lifts the
+  // pen.
   const same = (a: StrokePoint, b: StrokePoint) => a.left === b.left && a.top === b.top;
   for (const sign of "?!:.,ÄÖÜ°%")
     expect(parted(joined(written(sign)), same).length, sign).toBe(written(sign).length);

@@ -1,4 +1,4 @@
-// The framing of a bidirectional call over a WebSocket, against a real one.
+// Tests the framing of a bidirectional call over a real WebSocket.
 import { once } from "node:events";
 import type { AddressInfo } from "node:net";
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
@@ -76,7 +76,7 @@ describe("a call over a WebSocket", () => {
   }
 
   const until = async (holds: () => boolean) => {
-    // The test's own limit ends a wait in vain.
+    // The test's own timeout ends a wait that never succeeds.
     while (!holds()) await new Promise((r) => setTimeout(r, 5));
   };
 

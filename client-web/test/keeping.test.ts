@@ -1,4 +1,5 @@
-// Saving and restoring: texts in PNG files, scenes in files, undo, named views, the pictures of a movie.
+// Tests of saving and restoring: texts in PNG files, scenes in files, undo, named views, the
+// pictures of a movie.
 
 import { deflateSync } from "node:zlib";
 import { create, equals } from "@bufbuild/protobuf";
@@ -37,7 +38,7 @@ function chunk(type: string, data: Uint8Array): Buffer {
   return whole;
 }
 
-// One grey pixel.
+// This PNG is one grey pixel.
 const PNG = new Uint8Array(
   Buffer.concat([
     Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]),
@@ -58,7 +59,7 @@ function someScene(): Scene {
 
 test("checksums are those of ISO 3309", () => {
   expect(crc32(new TextEncoder().encode("123456789"))).toBe(0xcbf43926);
-  // As every PNG ends.
+  // Every PNG ends with this checksum.
   expect(crc32(new TextEncoder().encode("IEND"))).toBe(0xae426082);
 });
 
@@ -77,7 +78,7 @@ test("a text in a PNG is found again", () => {
 test("what is no PNG gets no text and has none", () => {
   expect(withPngText(new Uint8Array([1, 2, 3]), "a", "b")).toBeUndefined();
   expect(pngText(new Uint8Array([1, 2, 3]), "a")).toBeUndefined();
-  // A length beyond the file.
+  // The chunk's length extends beyond the file.
   const cut = PNG.slice(0, 40);
   expect(pngText(cut, "a")).toBeUndefined();
 });
@@ -187,13 +188,13 @@ test("two views of one name are two views", () => {
   const views = new NamedViews(undefined, () => "a");
   views.load();
   const view = { camera: cameraOfPose(ORBIT), picture: "", validTime: "" };
-  // Without storage it does not outlast the page.
+  // Without storage the view does not outlast the page.
   expect(views.keep({ ...view, name: "Inflow", timeIndex: 1 })).toBe(false);
   views.keep({ ...view, name: "Inflow", timeIndex: 2 });
   expect(views.all.value.map(({ name }) => name)).toEqual(["Inflow", "Inflow 2"]);
   views.forget("Inflow");
   expect(views.all.value.map(({ timeIndex }) => timeIndex)).toEqual([2]);
-  // As an earlier page kept them.
+  // These entries have the format of an earlier page.
   const stored = JSON.stringify({
     a: ["x", "x"].map((name) => ({ name, camera: { orbit: {} }, timeIndex: 0 })),
   });
@@ -212,7 +213,7 @@ test("a named view finds its time again where times came before it, and in anoth
   expect(index("20:00", "20:10", "20:20")).toBe(1);
   expect(index("19:50", "20:00", "20:10", "20:20")).toBe(2);
   expect(index("20:05", "20:15", "20:45")).toBe(0);
-  // Nothing near: the same number, as far as there are times.
+  // No date is near, so the index stays the same, limited to the available times.
   expect(
     views.at([create(StormTimeSchema, { validTime: "1999-05-03_00:00:00" })])[0]?.timeIndex,
   ).toBe(0);
@@ -301,7 +302,7 @@ describe("pictures of a job", () => {
   const all = { index: 0, state: RenderJobPictureState_State.DRAWN };
   const drawn = [all, { ...all, index: 1 }, { ...all, index: 2 }];
 
-  // A server whose first connections are cut after so many results each.
+  // Makes a server whose first connections are cut after the given numbers of results.
   function callsTo(cuts: number[], states = drawn) {
     const fetched: number[] = [];
     let left = 0;

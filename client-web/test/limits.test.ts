@@ -96,7 +96,7 @@ describe("slider positions", () => {
     for (const limits of [...Object.values(LIMITS), SLICES]) {
       for (const position of [0.1, 0.35, 0.5, 0.77, 0.99]) {
         const value = valueAtPosition(position, limits);
-        // An integer may lie half a step from where the slider stands.
+        // An integer may differ by half a step from the slider's position.
         const halfStep = limits.logarithmic ? 0.06 : 0.5 / (limits.maximum - limits.minimum);
         const tolerance = 0.005 + (limits.integer ? halfStep : 0);
         expect(Math.abs(positionOfValue(value, limits) - position)).toBeLessThan(tolerance);

@@ -1,4 +1,5 @@
-// The page's wiring without its widgets: a teacher's and viewers' pages before the fake service, in simulated time.
+// Tests of the page's wiring without its widgets: a teacher's and viewers' pages with the fake
+// service, in simulated time.
 import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { poseOfCamera } from "../src/core/camera";
@@ -74,7 +75,7 @@ describe("the page in a session", () => {
     return { teacher, viewer };
   };
 
-  // The messages of the newest person after joining.
+  // Returns the messages of the newest person after joining.
   const said = (at = -1): InteractRequest["message"][] =>
     session()
       .people.at(at)
@@ -190,7 +191,7 @@ describe("the page in a session", () => {
     await pass(300);
     for (const { page } of [teacher, viewer])
       expect(page.state.heldTimes.value).toEqual([...new Set([0, 1, first, first + 1])]);
-    // Told of one storm, it says nothing of another.
+    // Times of another storm must not be shown for this storm.
     session().held.stormId = "another";
     viewer.page.state.timesInMemory.value = create(TimesInMemorySchema, session().held);
     expect(viewer.page.state.heldTimes.value).toEqual([]);
@@ -220,7 +221,7 @@ describe("the page in a session", () => {
     const [detach] = saidOf("detach");
     const camera = detach?.case === "detach" ? detach.value.camera : undefined;
     const pose = poseOfCamera(camera);
-    // 180 degrees across the picture's height of 360 pixels.
+    // A drag across the picture's height of 360 pixels is 180 degrees.
     expect(pose?.kind === "orbit" && pose.azimuthDeg).toBeCloseTo(218, 3);
     expect(viewer.canvas.dataset).toMatchObject({ ownView: "true", azimuth: "218.00" });
     expect(teacher.canvas.dataset).toMatchObject({ ownView: "false", azimuth: "200.00" });
@@ -276,7 +277,7 @@ describe("the page in a session", () => {
     viewer.page.showTime(3);
     await pass(400);
     expect(teacher.page.state.timeIndex.value).toBe(3);
-    // Who steers another's session does not change its picture's size.
+    // A viewer who steers another person's session does not change its picture size.
     expect(session().scene.output).toMatchObject({ widthPx: 640, heightPx: 360 });
     viewer.page.actions.giveControl();
     await pass(50);
@@ -569,7 +570,7 @@ describe("the page in a session", () => {
     expect(notices(viewer)).not.toMatch(/not taken/);
   });
 
-  // Somebody with the presenter's key beside the pages.
+  // Joins a person who has the presenter's key but no page.
   const colleague = () => {
     const sessionKey = session().presenterKey;
     const message = { case: "join", value: { sessionKey } } as const;
@@ -582,7 +583,8 @@ describe("the page in a session", () => {
     return person;
   };
 
-  // A teacher who steers loses the connection with an edit, and comes back after `meanwhile`.
+  // A teacher who steers loses the connection while an edit is unanswered, and reconnects after
+  // `meanwhile`.
   const comesBack = async (teacher: Place, meanwhile: () => void) => {
     network.down = true;
     network.break();

@@ -1,11 +1,11 @@
-// Frames of two views: the one that is wanted is painted, and every frame is acknowledged.
+// Tests of frames of two views. The requested view is painted, and every frame is acknowledged.
 import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { FrameSchema } from "../src/gen/thunderhead/v1/frame_pb";
 import { PictureFlow } from "../src/view/picture_flow";
 import { FakeCanvas, stubGlobals } from "./fake_window";
 
-// A browser's decoder that shows each picture at once; fail() breaks it.
+// Replaces the browser's decoder by one that outputs each frame at once. fail() makes it fail.
 function stubVideo() {
   const types: string[] = [];
   const decoders: FakeDecoder[] = [];

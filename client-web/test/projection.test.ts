@@ -1,4 +1,4 @@
-// Rays and places in a picture, strokes, the picture's box.
+// Tests of rays and places in a picture, strokes, and the picture's rectangle.
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { cameraOfPose } from "../src/core/camera";
@@ -56,7 +56,7 @@ describe("a projection", () => {
     expect(target?.x).toBeCloseTo(0, 4);
     expect(target?.y).toBeCloseTo(0, 4);
     expect(project(projection, [4000, -2000, 12_000])?.y).toBeGreaterThan(0.1);
-    // Seen from the south-south-west, east is right.
+    // Seen from the south-south-west, east is at the right.
     expect(project(projection, [9000, -2000, 7000])?.x).toBeGreaterThan(0.1);
   });
 

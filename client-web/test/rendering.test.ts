@@ -126,7 +126,8 @@ describe("another technique", () => {
     const kept = { falseColors: true, perFieldPhase: false, thetaFDeg: 10 };
     const shared = sharedSettingsOf(halfAngle);
     expect(shared).toMatchObject({ slices: 77, ...kept });
-    // Not kept: half-angle slices refuse diffusion, and have no detail by default.
+    // These settings are not kept. Half-angle slices do not support diffusion, and have no detail
+    // by default.
     expect(shared.transport).toBe(Transport.UNSPECIFIED);
     expect(shared.detail).toBeUndefined();
     const expected = create(HalfAngleSchema, { slices: 77, ...kept });
@@ -275,7 +276,7 @@ describe("the page's rendering", () => {
     });
     expect(state.settings.value).toMatchObject({ perFieldPhase: true, falseColors: false });
     expect(state.technique.value).toMatchObject({ showsLights: true, drawsImages: false });
-    // The same rendering again does not change the scene, so no control is rendered again.
+    // Setting the same rendering again does not change the scene, so no control is rendered again.
     const { value } = state.scene;
     state.adoptCompleted({
       ...state.scene.value,
@@ -295,7 +296,7 @@ describe("the page's rendering", () => {
     expect(state.drawnTechnique.value?.name).toBe(NAME.metaballs);
     expect(state.falseColorsShown.value).toBe(true);
     expect(state.detailShown.value).toBe(false);
-    // The controls still show the scene's own technique, and it draws again without the goal.
+    // The controls still show the scene's own technique, which draws again without the goal.
     expect(state.technique.value?.name).toBe(NAME.lightVolume);
     state.edit((scene) => ({ ...scene, accuracy: undefined }));
     expect(state.drawnTechnique.value?.name).toBe(NAME.lightVolume);

@@ -11,7 +11,7 @@ import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 
 const sceneOf = (timeIndex: number): Scene => create(SceneSchema, { timeIndex });
 
-// A server whose answers and scenes the test controls.
+// Makes a server whose answers and scenes the test controls.
 function bench(first: Scene = sceneOf(0)) {
   const sent: {
     scene: Scene;
@@ -76,7 +76,7 @@ function bench(first: Scene = sceneOf(0)) {
 const taken = (revision: bigint): SceneVerdict => ({ kind: "taken", revision });
 
 describe("scenes on their way to the server", () => {
-  // A page that steers, and knows revision 1.
+  // Makes a page that steers and knows revision 1.
   function steering() {
     const b = bench();
     b.sync.told(sceneOf(0), 1n);
@@ -465,7 +465,8 @@ describe("back-off", () => {
   it("spreads a class over a second, also after a delay that is the same for all", () => {
     for (const leastMs of [0, 3000]) {
       const delays = Array.from({ length: 500 }, () => new BackOff().next(leastMs) - leastMs);
-      // Of 500 draws some are below 50 ms and some above 950 ms, but for one time in 10^10.
+      // 500 random delays include some below 50 ms and some above 950 ms. This fails only once in
+      // 10^10 runs.
       expect(Math.min(...delays)).toBeLessThan(50);
       expect(Math.max(...delays)).toBeGreaterThan(950);
     }

@@ -1,4 +1,4 @@
-// The session client against the fake service in memory, with simulated network failures.
+// Tests of the session client with the in-memory fake service and simulated network failures.
 import { create } from "@bufbuild/protobuf";
 import { Code } from "@connectrpc/connect";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
@@ -125,7 +125,7 @@ describe("the session client", () => {
     expect(seen.frames).toHaveLength(2);
     client.acknowledge(seen.frames[1]?.sequence ?? 0n, false);
     await pass(10);
-    // Of the five frames drawn meanwhile only the newest arrives.
+    // Five frames were drawn meanwhile, of which only the newest arrives.
     expect(seen.frames).toHaveLength(3);
     expect(seen.frames[2]?.sceneRevision).toBe(6n);
     expect(session().mostUnacknowledged).toBe(2);

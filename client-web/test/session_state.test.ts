@@ -1,4 +1,4 @@
-// The state that a session's messages give the person at the page; the keys that the page keeps.
+// Tests of the session's state for the person at the page, and of the keys that the page keeps.
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { OwnKeys, trimmedName } from "../src/core/own_keys";
@@ -144,7 +144,7 @@ describe("a session's state", () => {
     expect(session.pendingMarks.value).toHaveLength(3);
     const own = create(MarkSchema, { markId: 2n, viewerId: 2n });
     session.takeMarks(marks({ marks: [own], onlyChanges: true }));
-    // Not the one that waits to be sent again.
+    // The mark that waits to be sent again is not replaced.
     expect(session.pendingMarks.value).toEqual([pending(undefined, 4), pending(6n)]);
     expect(session.marks.value).toHaveLength(2);
   });

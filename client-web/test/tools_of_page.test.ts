@@ -1,4 +1,5 @@
-// The tools' wiring before the fake service, in simulated time: links to a view, the probe, the map, undo, notices.
+// Tests of the tools' wiring with the fake service, in simulated time: links to a view, the probe,
+// the map, undo, notices.
 import { create } from "@bufbuild/protobuf";
 import { afterEach, beforeEach, expect, it, vi } from "vitest";
 import { FIRST_ANNOTATIONS } from "../src/core/annotations";
@@ -127,7 +128,7 @@ it("words stay in the picture, whole", async () => {
   const written = (words: string) => joined(letterStrokes(words, { left: 0, top: 0 }, 12)).length;
   for (const words of ["HAIL 2 CM", "ROTATING WALL CLOUD AND TAIL CLOUD"]) {
     marking.words.value = words;
-    // At an edge, and in the middle.
+    // One text is at an edge, and one in the middle.
     marking.write({ left: 395, top: 52 });
     marking.markMiddle("text");
     for (const each of rays.splice(0)) expect(each).toHaveLength(written(words));

@@ -1,4 +1,4 @@
-// Test support: pages before the fake service, in simulated time.
+// Test support: pages with the fake service, in simulated time.
 import { vi } from "vitest";
 import { Page } from "../src/view/page";
 import { FakeNetwork } from "./fake_network";
@@ -35,7 +35,7 @@ export class Visits {
     return { page, window, canvas };
   }
 
-  // The session that was opened first.
+  // Returns the session that was opened first.
   get session(): FakeSession {
     const [first] = this.service.sessions;
     if (first === undefined) throw new Error("there is no session");

@@ -19,30 +19,30 @@ import exr
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 SAMPLES = os.path.join(HERE, "..", "..", "samples")
-BLOCK = 8  # pixels along an edge of the blocks whose means are compared as well
+BLOCK = 8  # edge length in pixels of the blocks whose means are also compared
 MARKS = ("<!-- ./dev blender writes from here -->", "<!-- to here -->")
-WITHOUT_LIMIT = 1025  # the largest number of scatterings that Cycles traces
+WITHOUT_LIMIT = 1025  # largest number of scatterings that Cycles traces
 
 
 @dataclass
 class Case:
     name: str
-    storm: str  # in samples/, or a preset of `thunderhead generate`
+    storm: str  # a file in samples/, or a preset of `thunderhead generate`
     camera: str
     scatterings: int
     asymmetry: float = 0.85
-    only: str = ""  # the one field that is visible, with its own asymmetry
-    step: float = 0.125  # of Cycles, in edges of the smallest voxel
+    only: str = ""  # the only visible field, with its own asymmetry
+    step: float = 0.125  # step of Cycles, in edges of the smallest voxel
     picture: bool = False
 
 
 CASES = [
-    # One scattering: extinction, place, phase function and shadow.
+    # Single scattering tests extinction, place, phase function and shadow.
     Case("1-km storm, ice alone", "supercell.nc", "orbit", 1, 0.7, only="ice"),
     Case("1-km storm, graupel alone", "supercell.nc", "orbit", 1, 0.3, only="graupel"),
     Case("1-km storm", "supercell.nc", "orbit", 1),
     Case("1-km storm", "supercell.nc", "top-down", 1),
-    # Several: the transport of light.
+    # Multiple scattering tests the transport of light.
     Case("1-km storm", "supercell.nc", "orbit", 64, 0.0),
     Case("1-km storm", "supercell.nc", "orbit", 64, 0.5, step=1.0),
     Case("1-km storm", "supercell.nc", "orbit", 64, 0.5, step=0.5),
@@ -100,7 +100,7 @@ def render_both(number, case, arguments):
     truth = base + ".reference.exr"
     run(arguments.program, "render", *common, "--renderer", "reference", "--no-air", "--peak-cut", "0",
         "--max-scatterings", str(case.scatterings), "--spp", str(arguments.reference_samples), "-o", truth)
-    # The medium is grey: the three colours of a path are the same number.
+    # The medium is grey, so the three colours of a path have the same value.
     error = exr.read_rgb(truth, "stderr.")[..., 0]
     return halves, exr.read_rgb(truth)[..., 0], error, middle - began, time.monotonic() - middle
 

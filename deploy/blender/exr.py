@@ -9,7 +9,7 @@ import zlib
 
 import numpy as np
 
-COMPRESSIONS = {0: 1, 2: 1, 3: 16}  # none, ZIPS, ZIP: scan lines a block
+COMPRESSIONS = {0: 1, 2: 1, 3: 16}  # none, ZIPS, ZIP: scan lines per block
 FLOAT = 2
 
 
@@ -43,7 +43,8 @@ def _channels(value):
 def _unzip(packed, size):
     if len(packed) == size:
         return packed
-    # Bytes are differences to the ones before, the lower halves of the file's words after the upper.
+    # Each byte is the difference from the previous byte. The first half has the bytes at even positions, the second
+    # half those at odd positions.
     deltas = np.frombuffer(zlib.decompress(packed), np.uint8).astype(np.int64)
     deltas[1:] -= 128
     shuffled = np.cumsum(deltas).astype(np.uint8)

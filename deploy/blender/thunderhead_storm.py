@@ -17,7 +17,8 @@ import sys
 import bpy
 from mathutils import Matrix, Vector
 
-# Cycles leaves out what scatters less than 1e-5 a unit: an optical depth of 1 in 100 km, if the unit was a metre.
+# Cycles ignores a medium that scatters less than 1e-5 per unit. With a unit of one metre this would be an optical depth
+# of 1 in 100 km.
 METRES_PER_UNIT = 1000.0
 
 
@@ -83,7 +84,7 @@ def add_medium(material, grids):
     extinctions = [attribute(grid["name"]) for grid in grids]
     scatterings = [calculate("MULTIPLY", extinction, METRES_PER_UNIT * grid["albedo"])
                    for extinction, grid in zip(extinctions, grids)]
-    # Scattering and absorption, a node each: with these colours a node's density is its coefficient.
+    # Scattering and absorption have one node each. With these colours the density of a node is its coefficient.
     scatter = nodes.new("ShaderNodeVolumeScatter")
     scatter.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     scattering = weighted_sum(scatterings, [1.0] * len(grids))
@@ -112,7 +113,7 @@ def add_medium(material, grids):
 def add_storm(scene, path, grids, step_voxels):
     volume = bpy.data.volumes.new("storm")
     volume.filepath = os.path.abspath(path)
-    # Optical depths are those of the file: no compression to halves, nothing thin left out.
+    # These settings keep the optical depths of the file: no compression to halves, and no thin parts left out.
     volume.render.precision = "FULL"
     volume.render.space = "WORLD"
     volume.render.clipping = 0.0
@@ -121,7 +122,7 @@ def add_storm(scene, path, grids, step_voxels):
     storm = bpy.data.objects.new("storm", volume)
     storm.scale = (1.0 / METRES_PER_UNIT,) * 3
     if grids:
-        # Cycles 3.4 shows a voxel's value half a voxel east, north and above the place that the file gives it.
+        # Cycles 3.4 shows a voxel's value half a voxel east, north and above the position in the file.
         storm.location = -0.5 * in_units(grids[0]["voxelM"])
     material = bpy.data.materials.new("storm")
     add_medium(material, grids)
@@ -131,7 +132,7 @@ def add_storm(scene, path, grids, step_voxels):
 
 def add_sun(scene, sun, diameter_deg):
     light = bpy.data.lights.new("sun", "SUN")
-    # Irradiance on a plane that faces the sun.
+    # The energy is the irradiance on a plane that faces the sun.
     light.energy = sun["irradiance"]
     light.angle = math.radians(diameter_deg)
     light.cycles.max_bounces = 1024
@@ -166,7 +167,8 @@ def set_up_cycles(scene, arguments):
     cycles.seed = arguments.seed
     cycles.use_adaptive_sampling = False
     cycles.use_denoising = False
-    # Radiance as it is: nothing clamped, nothing blurred, and no scattering left out before the last.
+    # These settings keep the radiance unchanged: no clamping, no blur, and no scattering order left out before the
+    # last.
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.max_bounces = cycles.volume_bounces = arguments.scatterings - 1
     cycles.transparent_max_bounces = 1024

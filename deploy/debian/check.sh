@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Installs the packages of folder $1 in a clean Debian root, as root, and starts each: the server, at first with nothing beside it
-# whose libraries it could live on, draws a picture for the Python client, and the desktop shows one on a display without a screen.
+# Installs the packages of folder $1 in a clean Debian root, as root, and starts each program. The server is first
+# tested alone, so that it cannot use libraries of another package. It draws a picture for the Python client. The
+# desktop client shows a picture on a virtual display.
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive
 packages=$(realpath "$1")
 root=$(mktemp -d "${TMPDIR:-/var/tmp}/thunderhead-root.XXXXXX")
 trap 'rm -rf "$root"' EXIT
 
-# The bare system is kept beside the packages for the next time.
+# The bare system is saved next to the packages, so that the next run can reuse it.
 base=$packages/../packages-root.tar
 [ -f "$base" ] || mmdebstrap --mode=root --variant=apt --include=ca-certificates bookworm "$base"
 tar -C "$root" -xf "$base"
@@ -19,12 +20,12 @@ cp "$packages"/*.deb "$root/root/"
 cat > "$root/root/serve.sh" <<'END'
 thunderhead serve --data /usr/share/thunderhead/samples --http 127.0.0.1:58080 --grpc 127.0.0.1:58051 --state none >/tmp/serve.log 2>&1 &
 server=$!
-# What the server says counts where something fails.
+# The server's log is printed only if something fails.
 trap 'status=$?; [ $status = 0 ] || cat /tmp/serve.log; kill $server 2>/dev/null || true; exit $status' EXIT
 for _ in $(seq 120); do grep -q http:// /tmp/serve.log || ! kill -0 $server 2>/dev/null && break; sleep 1; done
 grep -q http:// /tmp/serve.log || { echo "the server has ended, or is not ready after two minutes" >&2; exit 1; }
 END
-# The names are the root's.
+# The shell inside the root expands the file names.
 add() { chroot "$root" sh -c "apt-get install -y -qq --no-install-recommends $1 >/dev/null"; }
 add '/root/thunderhead_*.deb'
 chroot "$root" sh -euc '

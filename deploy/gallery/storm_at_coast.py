@@ -11,10 +11,10 @@ import numpy
 
 COASTS = "/usr/share/gmt-gshhg/binned_GSHHS_h.nc"
 MIDDLE_DEG = (29.4, -94.9)
-INLAND_DEG = 30.6  # all is land there
+INLAND_DEG = 30.6  # farther north there is only land
 PARALLELS_DEG = (25.0, 35.0)
 RADIUS_M = 6_370_000.0
-WATER, GRASSLAND = 16, 7  # of USGS' classes
+WATER, GRASSLAND = 16, 7  # USGS classes
 
 
 class Lambert:

@@ -23,7 +23,7 @@ import threading
 import time
 
 INCLUDE = re.compile(rb'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
-# Debian's clang-tidy, 14, does not know the coroutines of GCC's library, which Asio's need.
+# Debian's clang-tidy 14 does not support the coroutines of GCC's library, which Asio uses.
 COROUTINES = "gateway/awaitable.h"
 FILES_AT_ONCE = 12
 

@@ -16,9 +16,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_WORDS = 30
 KEEP = "words: keep"
-# How a comment that is a whole line begins, by the name's ending.
+# Start of a comment line, by file extension.
 COMMENTS = {".cc": "//", ".h": "//", ".glsl": "//", ".proto": "//", ".ts": "//", ".mjs": "//", ".py": "#", ".cmake": "#", ".sh": "#"}
-# Text that others wrote, or that a program writes.
+# Texts that other people or programs wrote.
 LEFT_OUT = re.compile(r"^(LICENSE|docs/lab/|docs/gallery/|docs/accuracy/|samples/|data/|docs/decisions/)")
 BEGINNINGS = re.compile(r"^(Of|Whose|Where) ")
 
@@ -48,7 +48,7 @@ def paragraphs_of_code(text: str, mark: str) -> list[tuple[int, str, bool]]:
         if lines and (not is_comment or not lines[-1]):
             found.append((first, " ".join(lines).replace(KEEP, "").strip(), any(KEEP in each for each in lines)))
             lines = []
-        # A comment behind code.
+        # This handles a comment behind code.
         behind = line.find(f"  {mark} ")
         if not is_comment and behind > 0:
             found.append((number, line[behind + len(mark) + 2 :].replace(KEEP, "").strip(), KEEP in line))

@@ -10,7 +10,7 @@
 namespace thunderhead::access {
 namespace {
 
-// In quotes, and without anything that could begin a line or end the quotes.
+// Returns the text in quotes, without any character that could begin a line or end the quotes.
 std::string Quoted(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {

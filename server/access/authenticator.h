@@ -1,4 +1,4 @@
-// Finds out who calls: by the client's address alone, by a file of tokens, or by JWT.
+// Identifies the caller: by the client's address alone, by a file of tokens, or by JWT.
 #pragma once
 
 #include <memory>
@@ -14,19 +14,20 @@ namespace thunderhead::access {
 class Authenticator {
  public:
   virtual ~Authenticator() = default;
-  // UNAUTHENTICATED if it does not know them. Safe from any thread.
+  // Returns UNAUTHENTICATED if the credentials are unknown. Safe from any thread.
   virtual absl::StatusOr<Identity> Identify(const Credentials& credentials) = 0;
 };
 
-// Everybody is an operator, named by the network that they come from.
+// Makes every caller an operator, named by the network from which it connects.
 std::unique_ptr<Authenticator> TrustEverybody();
 
-// By the tokens that the file at `path` allows (token_list.h), read again when it changes. `time`,
-// by which its storage is waited for, must outlive the authenticator.
+// Identifies callers by the tokens in the file at `path` (token_list.h). The file is read again
+// when it changes. `time` measures the wait for its storage and must outlive the authenticator.
 absl::StatusOr<std::unique_ptr<Authenticator>> TrustTokens(
     const std::string& path, const base::TimeSource& time = base::SteadyTime());
 
-// By JWTs that the key in the file at `path` verifies (jwt_key.h), read again when it changes.
+// Identifies callers by JWTs that the key in the file at `path` verifies (jwt_key.h). The file is
+// read again when it changes.
 absl::StatusOr<std::unique_ptr<Authenticator>> TrustJwt(const std::string& path,
                                                         const JwtClaims& wanted);
 

@@ -1,4 +1,4 @@
-// The caller, and the role. Plain values.
+// The caller and the caller's role. These are plain values.
 #pragma once
 
 #include <chrono>
@@ -10,15 +10,15 @@
 
 namespace thunderhead::access {
 
-// The rights of a caller; docs/operating.md has the table, MayCall the rules.
+// The rights of a caller. The table is in docs/operating.md, and the rules are in MayCall.
 enum class Role {
   kViewer,     // watches sessions that others opened
-  kPresenter,  // also opens sessions, makes clouds and single pictures
-  kPipeline,   // a program: single pictures, no sessions
+  kPresenter,  // also opens sessions, makes clouds and single images
+  kPipeline,   // a program: single images, no sessions
   kOperator,   // everything
 };
 
-// "viewer", "presenter", "pipeline" or "operator". INVALID_ARGUMENT lists them.
+// Parses "viewer", "presenter", "pipeline" or "operator". INVALID_ARGUMENT lists them.
 absl::StatusOr<Role> ParseRole(std::string_view text);
 const char* NameOf(Role role);
 
@@ -28,7 +28,7 @@ struct Identity {
   std::optional<std::chrono::system_clock::time_point> expires_at = {};
 };
 
-// The credentials shown at the door.
+// The credentials that a caller presents.
 struct Credentials {
   std::string token;  // empty: none
   std::string peer;   // the client's address with its port; empty: this machine's local socket

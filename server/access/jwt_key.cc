@@ -23,12 +23,12 @@ namespace {
 
 using Time = std::chrono::system_clock::time_point;
 
-// Of the key's length, as RFC 7518, 3.2 and 3.3 demand.
+// Minimum lengths of keys, as RFC 7518, 3.2 and 3.3 require.
 constexpr std::size_t kMinSecretBytes = 32;
 constexpr int kMinRsaBits = 2048;
 constexpr std::size_t kMaxTokenBytes = 8192;
 constexpr std::size_t kMaxClaimBytes = 64;
-// Between the clocks of the issuer and the server.
+// Tolerated difference between the clocks of the issuer and the server.
 constexpr std::chrono::seconds kClockSkew{30};
 constexpr char kRoleClaim[] = "thunderhead_role";
 
@@ -57,8 +57,9 @@ std::string TextClaim(jwt_t* token, const char* name) {
   return text == nullptr ? "" : text;
 }
 
-// The epoch if the token has no such claim, or not as a number, for which libjwt gives -1 or 0; a
-// day before the last time that the clock can tell, in the year 2262, for a later one.
+// Returns the time in a claim. A missing claim, or one that is not a number, becomes the epoch,
+// because libjwt then returns -1 or 0. The time is limited to a day before the last time that the
+// clock can represent, in the year 2262.
 Time TimeClaim(jwt_t* token, const char* name) {
   constexpr long kLast_s =
       std::chrono::floor<std::chrono::seconds>(Time::max() - std::chrono::hours(24))
@@ -81,9 +82,9 @@ bool IsFor(jwt_t* token, const std::string& audience) {
          std::ranges::any_of(list, [&](const nlohmann::json& each) { return each == audience; });
 }
 
-// Checks what libjwt overlooks: it takes a signature with characters behind it that are of no
-// alphabet, and a header that names extensions which every reader must understand (crit, RFC 7515,
-// 4.1.11). This reader understands none.
+// Checks what libjwt overlooks. It accepts a signature that is followed by characters outside the
+// alphabet. It also accepts a header that names extensions which every reader must understand
+// (crit, RFC 7515, 4.1.11). This reader understands none.
 absl::Status CheckForm(const std::string& token) {
   constexpr std::string_view kBase64Url =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
@@ -104,9 +105,9 @@ absl::Status CheckForm(const std::string& token) {
   return absl::OkStatus();
 }
 
-// False if the token has a time before which it is not valid (nbf, RFC 7519, 4.1.5), which may have
-// fractions, and `now` is before it, or if that is no number. libjwt takes what is no whole number
-// for 0.
+// Returns false if `now` is before the token's start of validity (nbf, RFC 7519, 4.1.5), or if that
+// is not a number. That time may have fractions. The claim is parsed here, because libjwt returns 0
+// for anything but a whole number.
 bool HasBegun(jwt_t* token, Time now) {
   const std::unique_ptr<char, decltype(&std::free)> json(jwt_get_grants_json(token, nullptr),
                                                          &std::free);
@@ -158,7 +159,7 @@ absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaim
       jwt_decode(&decoded, token.c_str(), reinterpret_cast<const unsigned char*>(key_.data()),
                  static_cast<int>(key_.size()));
   const Token owned(decoded, &jwt_free);
-  // A public key is no secret: whoever signs with its text by HS256 must not be believed.
+  // A public key is no secret, so a token that is signed with its text by HS256 must be rejected.
   if (error != 0 || jwt_get_alg(decoded) != (is_public_ ? JWT_ALG_RS256 : JWT_ALG_HS256)) {
     return Wrong("is not signed as this server demands");
   }

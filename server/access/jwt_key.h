@@ -1,5 +1,5 @@
-// Verifies JSON Web Tokens (RFC 7519) that another system issues: signed by HS256 with a shared
-// secret, or by RS256. The key decides which of the two, never the token.
+// Verifies JSON Web Tokens (RFC 7519) that another system issues. They are signed by HS256 with a
+// shared secret, or by RS256. The key decides which algorithm applies, never the token.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 namespace thunderhead::access {
 
-// Claims that a token must have besides sub, exp and the role.
+// Claims that a token must have in addition to sub, exp and the role.
 struct JwtClaims {
   std::string issuer;    // empty: any
   std::string audience;  // empty: any
@@ -18,11 +18,12 @@ struct JwtClaims {
 
 class JwtKey {
  public:
-  // A PEM public key is for RS256; any other text, less the newline at its end, is a secret for
-  // HS256. INVALID_ARGUMENT for a private key, and for a secret of less than 32 bytes.
+  // Parses a key. A PEM public key is for RS256. Any other text, without the newline at its end, is
+  // a secret for HS256. Returns INVALID_ARGUMENT for a private key, and for a secret of less than
+  // 32 bytes.
   static absl::StatusOr<JwtKey> Parse(const std::string& text);
 
-  // UNAUTHENTICATED if the token is forged, expired, not yet valid, or lacks a claim.
+  // Returns UNAUTHENTICATED if the token is forged, expired, not yet valid, or lacks a claim.
   absl::StatusOr<Identity> Verify(const std::string& token, const JwtClaims& wanted,
                                   std::chrono::system_clock::time_point now) const;
 

@@ -8,7 +8,7 @@
 namespace thunderhead::access {
 namespace {
 
-// People leave one after another.
+// Retry delay: streams end one after another as people leave.
 constexpr std::chrono::seconds kStreamRetry{10};
 
 absl::Status TooMany(std::size_t maximum, const std::string& message, const char* reason,
@@ -34,7 +34,7 @@ absl::Status TooManyAnswers(std::size_t maximum, const char* whose) {
                  "ANSWERS_NOT_TAKEN", "answers");
 }
 
-// OK where none has to be waited for.
+// Returns OK if there is no wait.
 absl::Status TooManyRequests(double per_second, std::optional<std::chrono::milliseconds> wait) {
   if (!wait.has_value()) return absl::OkStatus();
   return base::WithDetails(

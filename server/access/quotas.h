@@ -1,5 +1,5 @@
-// How much one identity may ask for, and all together: calls that stay open, and requests a second.
-// Each refusal is RESOURCE_EXHAUSTED with the time after which to try again. Safe from any thread.
+// Limits of how much each identity, and all together, may request: calls that stay open, and
+// requests per second. Each refusal is RESOURCE_EXHAUSTED with a retry delay. Safe from any thread.
 #pragma once
 
 #include <chrono>
@@ -18,22 +18,22 @@ namespace thunderhead::access {
 struct QuotaLimits {
   std::size_t max_streams = 2048;
   std::size_t max_streams_per_identity = 512;
-  // The mean; twice as many at once after a second of rest. 0: no limit.
+  // The mean rate. A burst of twice as many is allowed after a second of rest. 0 means no limit.
   double requests_per_second = 500.0;
-  // Of invalid tokens from one network: beyond this limit it may only show tokens that were valid
-  // before.
+  // Rate of invalid tokens from one network. Beyond this limit the network may only present tokens
+  // that were valid before.
   double wrong_tokens_per_second = 5.0;
 };
 
-// Requests that are allowed now: they come back with time.
+// A budget of requests that refills with time.
 class RequestBudget {
  public:
   using Time = base::Allowance::Time;
 
-  // `per_second` 0: no limit.
+  // With `per_second` = 0 there is no limit.
   RequestBudget(double per_second, Time now) : per_second_(per_second), left_(per_second, now) {}
 
-  // RESOURCE_EXHAUSTED if there is none left.
+  // Returns RESOURCE_EXHAUSTED if no request is left.
   absl::Status Take(Time now);
 
  private:
@@ -50,17 +50,18 @@ class Quotas {
 
   absl::Status TakeRequest(const std::string& identity, Time now);
 
-  // The place of a call that stays open, given back with the last copy. Must not outlive this.
+  // Reserves the place of a call that stays open. The last copy of the result releases it. It must
+  // not outlive this object.
   absl::StatusOr<std::shared_ptr<const void>> TakeStream(const std::string& identity);
 
-  // The same for an answer of a unary call, until its client has taken it. There may be as many of
-  // them as of calls that stay open, beside those.
+  // Does the same for an answer of a unary call, until its client has taken it. Answers have a
+  // separate limit, equal to that of calls that stay open.
   absl::StatusOr<std::shared_ptr<const void>> TakeAnswer(const std::string& identity);
 
   const QuotaLimits& limits() const { return limits_; }
 
  private:
-  // How many of a kind there are.
+  // The number of places taken of one kind.
   struct Count {
     std::size_t all = 0;
     std::map<std::string, std::size_t> by_identity;

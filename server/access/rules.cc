@@ -13,7 +13,7 @@ struct Rule {
   bool pipeline;
 };
 
-// An operator may call everything that is here.
+// An operator may call every method in this list.
 constexpr std::array kRules = {
     Rule{"GetServerInfo", true, true, true},
     Rule{"ListStorms", true, true, true},

@@ -1,5 +1,5 @@
-// Which role may call what. A session's two keys say more: an identity that may call UpdateScene
-// still needs the presenter's key to that session.
+// The rules that say which role may call what. A session's two keys add restrictions: an identity
+// that may call UpdateScene still needs the presenter's key to that session.
 #pragma once
 
 #include <string_view>
@@ -8,13 +8,14 @@
 
 namespace thunderhead::access {
 
-// True if a role may call the service's method of that name. A method without a rule is nobody's.
+// Returns whether a role may call the service's method of that name. No role may call a method
+// without a rule.
 bool MayCall(Role role, std::string_view method);
 
-// True if there is a rule for the method.
+// Returns whether there is a rule for the method.
 bool HasRule(std::string_view method);
 
-// False for a role that is a viewer in every session, whichever of its keys it brings.
+// Returns false for a role that is a viewer in every session, even with a presenter key.
 bool MayPresent(Role role);
 
 }  // namespace thunderhead::access

@@ -1,5 +1,5 @@
-// Reads files that decide who may enter: only such as nobody else on the machine could have
-// written, or, where they are secret, read.
+// Reads files that control access. It accepts only files that no other user of the machine could
+// have written, and that not every user can read.
 #pragma once
 
 #include <chrono>
@@ -16,26 +16,26 @@
 
 namespace thunderhead::access {
 
-// FAILED_PRECONDITION, with the command that mends it, for a file that belongs to another user,
-// that others may write, or that everybody may read.
+// Reads the file. Returns FAILED_PRECONDITION, with the command that repairs it, for a file that
+// belongs to another user, that its group may write, or that other users may read or write.
 absl::StatusOr<std::string> ReadSecretFile(const std::string& path);
 
-// The text of a file, read again when it has changed. The error of a changed file is logged,
-// and the last good contents stay valid: a slip of the editor locks nobody out. So they do while
-// the file's storage hangs. Safe from any thread.
+// The parsed text of a file, read again when it has changed. The error of a changed file is logged,
+// and the last good contents stay valid, so that an editing mistake locks no one out. They also
+// stay valid while the file's storage hangs. Safe from any thread.
 template <typename Value>
 class KeptFile {
  public:
   using Parse = std::function<absl::StatusOr<Value>(const std::string& text)>;
 
-  // `time`, by which the file's storage is waited for, must outlive this.
+  // `time` measures the wait for the file's storage, and must outlive this object.
   static absl::StatusOr<std::unique_ptr<KeptFile>> Open(
       const std::string& path, Parse parse, const base::TimeSource& time = base::SteadyTime());
 
   std::shared_ptr<const Value> Current();
 
  private:
-  // Looked at and changed by the thread that looks alone, but for the value.
+  // All members except `mutex` and `value` are used only by the checking thread.
   struct State {
     absl::Status Read();
     void Look();
@@ -56,7 +56,7 @@ class KeptFile {
   base::Looks looks_;
 };
 
-// Logs that the file at `path` has been read again, or why not.
+// Logs that the file at `path` has been read again, or why that failed.
 void TellOfReload(const std::string& path, const absl::Status& status);
 
 template <typename Value>
@@ -69,7 +69,7 @@ absl::StatusOr<std::unique_ptr<KeptFile<Value>>> KeptFile<Value>::Open(
 
 template <typename Value>
 std::shared_ptr<const Value> KeptFile<Value>::Current() {
-  // At every call, so that a token that was taken away is refused from then on.
+  // The file is checked at every call, so that a token that was removed is refused from then on.
   looks_.LookAgain();
   const std::lock_guard lock(state_->mutex);
   return state_->value;
@@ -82,7 +82,7 @@ void KeptFile<Value>::State::Look() {
 
 template <typename Value>
 absl::Status KeptFile<Value>::State::Read() {
-  // Before reading, so that a change meanwhile is seen by the next look.
+  // The stamp is taken before reading, so that the next check sees a change that happens meanwhile.
   stamp = base::StampOf(path);
   const absl::StatusOr<std::string> text = ReadSecretFile(path);
   if (!text.ok()) return text.status();

@@ -1,6 +1,6 @@
-// The tokens that a file allows: a line each with a name, a role and the SHA-256 of the token. The
-// tokens themselves are nowhere on the server. They must be random, as by `openssl rand -hex 32`: a
-// word that somebody thought of could be found by trying.
+// The tokens in a file. Each line has a name, a role and the SHA-256 of the token. The tokens
+// themselves are not stored on the server. They must be random, for example from `openssl rand -hex
+// 32`, because a chosen word could be found by trial.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@ namespace thunderhead::access {
 
 class TokenList {
  public:
-  // INVALID_ARGUMENT names the line.
+  // Parses the file's text. INVALID_ARGUMENT names the line.
   static absl::StatusOr<TokenList> Parse(const std::string& text);
 
-  // Takes the same time whichever token is given.
+  // Returns the identity of a token. It takes the same time for every token.
   std::optional<Identity> Find(const std::string& token) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace thunderhead::access {
 namespace {
 
-// Tokens that are remembered.
+// Maximum number of tokens that are remembered.
 constexpr std::size_t kMax = 4096;
 
 std::string DigestOf(const std::string& token) {
@@ -42,7 +42,7 @@ void WrongTokens::WasRight(const Credentials& shown) {
 void WrongTokens::WasWrong(const Credentials& shown, Time now) {
   if (!Counts(shown)) return;
   const std::lock_guard lock(mutex_);
-  // A token that was right and is not any more is tried like any other.
+  // A token that was right and no longer is must be treated like any other.
   right_.erase(DigestOf(shown.token));
   (void)left_.Take(base::NetworkOf(shown.peer), now);
 }

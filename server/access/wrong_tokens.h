@@ -1,6 +1,6 @@
-// Holds back who tries tokens: a network that has shown many wrong ones may show no other for a
-// while, but those that were right, which others behind the same address have. Safe from any
-// thread.
+// Limits attempts to guess tokens. A network that has presented many wrong tokens may present no
+// new ones for a while. It may still present tokens that were right before, because other clients
+// share its address. Safe from any thread.
 #pragma once
 
 #include <chrono>
@@ -18,13 +18,14 @@ class WrongTokens {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // Of one network; twice as many at once after a second of rest. 0: no limit.
+  // `per_second` is the rate for one network. A burst of twice as many is allowed after a second of
+  // rest. 0 means no limit.
   explicit WrongTokens(double per_second) : left_(per_second) {}
 
-  // RESOURCE_EXHAUSTED with the time after which to try again if the token is not to be looked at.
+  // Returns RESOURCE_EXHAUSTED with a retry delay if the token must not be checked.
   absl::Status MayShow(const Credentials& shown, Time now);
   void WasRight(const Credentials& shown);
-  // A call without a token tries none.
+  // Records a wrong token. A call without a token does not count.
   void WasWrong(const Credentials& shown, Time now);
 
  private:
@@ -33,8 +34,8 @@ class WrongTokens {
   }
 
   std::mutex mutex_;
-  base::Allowances left_;        // by network
-  std::set<std::string> right_;  // their digests, not the tokens
+  base::Allowances left_;        // limits by network
+  std::set<std::string> right_;  // digests of right tokens, not the tokens
 };
 
 }  // namespace thunderhead::access

@@ -10,23 +10,23 @@
 
 namespace thunderhead::accuracy {
 
-// Why an asked-for accuracy or speed is not reached.
+// The reason why a requested accuracy or speed is not reached.
 struct Unmet {
   enum class Code { kErrorOutOfReach, kTimeOutOfReach } code = Code::kErrorOutOfReach;
-  std::string message;  // the limit, and the nearest that is reached
+  std::string message;  // the limit, and the nearest value that can be reached
 
   bool operator==(const Unmet&) const = default;
 };
 
 struct AccuracyReport {
   scene::Technique technique;         // with its settings at full quality
-  int slices = 0;                     // of this picture; or metaballs
+  int slices = 0;                     // of this picture; for metaballs their number
   double image_scale = 1.0;           // of this picture
   std::optional<double> expected_ms;  // of a frame at full quality, on this machine
-  double model_error = 0.0;           // by the table
+  double model_error = 0.0;           // from the table
   std::optional<double> discretisation_error;
-  double estimated_error = 0.0;           // as measured; until then both parts together
-  std::optional<MeasuredError> measured;  // by paths traced through the picture
+  double estimated_error = 0.0;           // the measured error; without one, both parts together
+  std::optional<MeasuredError> measured;  // measured by tracing paths through the picture
   std::optional<Unmet> unmet;
 
   bool operator==(const AccuracyReport&) const = default;

@@ -9,21 +9,23 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// Prior standard deviation of a texel's factor from that of the texel above, and of each term that
-// depends on direction, over the spread of factors (docs/decisions/0012-traced-light.md); and, as a
-// share of these, of single colours, whose estimates are the noisiest.
+// kStep is a prior standard deviation divided by the spread of the factors
+// (docs/decisions/0012-traced-light.md). It applies to a texel's factor relative to the texel above
+// and to each term that depends on direction. Single colours get kColorShare of it because their
+// estimates are the noisiest.
 constexpr double kStep = 1.5;
 constexpr double kColorShare = 0.2;
-// The spread is of a level with at most so many texels along a side, each with many rays.
+// The spread is computed on a level with at most this many texels along a side, each with many
+// rays.
 constexpr int kSpreadTexels = 12;
 constexpr double kMinSpread = 0.03;
 constexpr double kMaxSpread = 1.0;
 
 constexpr double kMinDrawn = 1e-9;
-// Share of the mean over a ray's colours: a colour drawn darker than that uses the factor of the
+// A colour drawn darker than this share of the mean over the ray's colours uses the factor of the
 // mean.
 constexpr double kMinColorShare = 0.05;
-// Limit of a single ray's error in the estimate of the rays' spread, against outliers.
+// Limits a single outlier's error in the estimate of the rays' spread.
 constexpr double kMaxRayError = 10.0;
 
 std::size_t Offset(const glm::ivec3& size, const glm::ivec3& texel) {
@@ -53,7 +55,7 @@ struct Corner {
   float share = 0.0F;
 };
 
-// The texels of a linear fetch at `place`, clamped at the edges.
+// Returns the texels of a linear fetch at `place`, clamped at the edges.
 std::array<Corner, 8> CornersAt(const glm::ivec3& size, const glm::dvec3& place) {
   const glm::dvec3 at = glm::clamp(place, 0.0, 1.0) * glm::dvec3(size) - 0.5;
   const glm::dvec3 low = glm::floor(at);
@@ -180,7 +182,7 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
   const glm::dvec4 color_ridge = ridge / (kColorShare * kColorShare);
   std::vector<Factors> factors(level.normals.size());
   ForEachTexel(level.size, [&](const glm::ivec3& texel) {
-    // A texel above covers two of these along each side; the last one may cover one.
+    // A texel above covers two texels of this level along each side; the last one may cover one.
     const glm::dvec3 place = (glm::dvec3(texel) + 0.5) / (2.0 * glm::dvec3(size_above));
     const Factors prior = FetchedAt(above, size_above, place);
     const std::size_t offset = Offset(level.size, texel);
@@ -200,7 +202,7 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
   return factors;
 }
 
-// By the method of moments: the squares that noise of that variance adds are taken out.
+// Uses the method of moments: subtracts the squares that noise of that variance adds.
 double CorrectionFit::SpreadOf(const Level& level, double variance) {
   double weights = 0.0;
   double sum = 0.0;
@@ -238,7 +240,7 @@ std::vector<Factors> CorrectionFit::Solve() const {
   std::vector<Factors> above(1, kNone);
   glm::ivec3 size_above(1);
   for (std::size_t i = coarser.size() + 1; i-- > 0;) {
-    // All rays together settle the first texel, however far it is from 1.
+    // The first texel uses all rays, so it may differ from 1 by any amount.
     const double step = i == coarser.size() ? kMaxSpread : spread;
     above = SolveLevel(level(i), above, size_above, variance, step);
     size_above = level(i).size;

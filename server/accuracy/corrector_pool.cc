@@ -10,8 +10,8 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// A correction is fitted again when the number of paths has grown by this factor, or after this
-// time: a fit takes as long as several steps of tracing.
+// A correction is fitted again when the number of paths has grown by this factor or after this
+// time. A fit takes as long as several steps of tracing.
 constexpr double kPublishedGrowth = 1.2;
 constexpr double kMaxUnpublished_ms = 2000.0;
 
@@ -39,7 +39,7 @@ void CorrectorPool::DropUnused() {
   });
 }
 
-// The end if all are busy or claimed.
+// Returns the end if all correctors are busy or claimed.
 std::list<CorrectorPool::Kept>::iterator CorrectorPool::OldestIdle() {
   const auto idle_ms = [](const Kept& kept) {
     return kept.IsClaimed() ? -1.0 : kept.since_traced.ElapsedMs();
@@ -102,7 +102,7 @@ absl::StatusOr<LightProgress> CorrectorPool::Trace(
     kept->published = std::make_unique<TracedLights::Entry>(lights_, scene, fields);
   }
   if (claim != nullptr) *claim = kept->claim;
-  kept->since_traced.Restart();  // busy from now on
+  kept->since_traced.Restart();  // counts as busy from now on
   kept->corrector->LookAs(scene);
   THUNDERHEAD_RETURN_IF_ERROR(kept->corrector->Step());
   kept->since_traced.Restart();

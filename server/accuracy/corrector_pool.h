@@ -1,5 +1,6 @@
-// Light correctors for several scenes in view at once; each keeps its traced light, and publishes
-// corrections for threads that draw. Owns GL objects: use it on the context's thread.
+// Light correctors for several scenes that are in view at the same time. Each keeps its traced
+// light and publishes corrections for drawing threads. Owns GL objects: use it on the context's
+// thread.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +23,10 @@ namespace thunderhead::accuracy {
 
 class CorrectorPool {
  public:
-  // Programs are linked in `programs`. At most `max_correctors`, as each takes up to a hundred
-  // megabytes, besides the storm's extinction, which is reserved in `memory`. One that was traced
-  // within `busy_s`, or that is claimed, is not replaced; one that was not used for `unused_s` goes
-  // with the next call.
+  // Programs are linked in `programs`. There are at most `max_correctors`, because each takes up to
+  // a hundred megabytes in addition to the storm's extinction. The extinction is reserved in
+  // `memory`. A corrector that was traced within `busy_s` or is claimed is not replaced. A
+  // corrector that was not used for `unused_s` is dropped at the next call.
   explicit CorrectorPool(
       std::shared_ptr<gl::ProgramCache> programs,
       std::shared_ptr<TracedLights> lights = std::make_shared<TracedLights>(),
@@ -38,20 +39,20 @@ class CorrectorPool {
         programs_(std::move(programs)),
         lights_(std::move(lights)) {}
 
-  // Null if there is none for the scene, or the scene has no traced light.
+  // Returns null if there is no corrector for the scene or the scene has no traced light.
   const LightCorrector* Find(const scene::Scene& scene,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
-  // Traces one step for the scene. RESOURCE_EXHAUSTED if there are `max_correctors` already and all
-  // are busy or claimed, or their storms leave no memory for another. `claim`, which may be null,
-  // is given a claim on the scene's light. The correction is published now and then, and once
-  // `wanted_paths` are traced.
+  // Traces one step for the scene. RESOURCE_EXHAUSTED if `max_correctors` exist and all are busy or
+  // claimed. Also RESOURCE_EXHAUSTED if their storms leave no memory for another. `claim` may be
+  // null; otherwise it receives a claim on the scene's light. The correction is published at
+  // intervals, and once `wanted_paths` are traced.
   absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       LightClaim* claim = nullptr, std::int64_t wanted_paths = kTracedPaths);
 
-  // Drops the one that was traced longest ago, unless all are busy or claimed; false then. May be
-  // called while another is traced.
+  // Drops the corrector that was traced longest ago. Returns false if all are busy or claimed. May
+  // be called while another one is traced.
   bool DropOldest();
 
  private:
@@ -62,7 +63,7 @@ class CorrectorPool {
     base::Stopwatch since_traced;
     base::Stopwatch since_published;
     std::int64_t published_paths = 0;
-    LightClaim claim = std::make_shared<int>();  // of which others may have copies
+    LightClaim claim = std::make_shared<int>();  // others may have copies of it
 
     bool IsClaimed() const { return claim.use_count() > 1; }
   };
@@ -71,7 +72,7 @@ class CorrectorPool {
                 const std::shared_ptr<const volume::HydrometeorFields>& fields);
   std::list<Kept>::iterator OldestIdle();
   absl::Status MakeRoom();
-  // Drops idle correctors, the oldest first, where their storms leave no room for another.
+  // Reserves memory. If it does not suffice, drops idle correctors, the oldest first.
   absl::StatusOr<base::MemoryReservation> Reserve(std::size_t bytes);
   static void Publish(Kept& kept, std::int64_t wanted_paths);
   void DropUnused();

@@ -6,15 +6,15 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// The weight of a measurement falls to a third in five frames: fast enough to follow a camera that
-// flies into the cloud, slow enough to tell a from b.
+// The weight of a measurement falls to a third in five frames. That is fast enough to follow a
+// camera that flies into the cloud, and slow enough to separate a from b.
 constexpr double kForgetting = 0.8;
 // Below this variance of x (relative to its mean square) a and b cannot be determined separately.
 constexpr double kMinRelativeVariance = 1e-3;
-// The line holds up to this multiple of the size of the frames that it was fitted to: a full frame
-// has 64 times that of the coarsest with all its pixels. Those of a server's start have a hundredth
-// of a million samples and mostly fixed cost: by their line a still of 3840 x 2160 would take an
-// hour.
+// The line holds up to this multiple of the size of the fitted frames. A full frame has 64 times
+// the size of the coarsest frame with all its pixels. Frames at a server's start have a hundredth
+// of a million samples and mostly fixed cost. Their line would predict an hour for an image of 3840
+// x 2160.
 constexpr double kReach = 100.0;
 
 bool IsPreparation(const scene::StageTime& cost) {
@@ -33,8 +33,9 @@ void Follow(double measured_ms, double* mean_ms) {
 }  // namespace
 
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
-  // Of a sparse picture's whole time over that with a ray for each pixel, as measured at 1280 x 720
-  // (docs/performance.md); a smaller picture takes more, which is learnt from the next frames.
+  // The ratio of a sparse picture's whole time to that with one ray per pixel, measured at 1280 x
+  // 720 (docs/performance.md). A smaller picture takes a larger share, which is learnt from the
+  // next frames.
   constexpr double kSparseShare = 0.2;
   const double scale = scene.rendering.image_scale * quality.Scale();
   const double pixels =
@@ -93,8 +94,8 @@ void CostModel::Observe(double mega_samples, double total_ms,
 void CostModel::Fit() {
   FitLine();
   reach_mega_samples_ = kReach * std::sqrt(sum_xx_ / weight_);
-  // The frames' own mean together with the assumed cost, which weighs as much as a frame of a
-  // million samples: much smaller frames say less than it.
+  // Combines the frames' own mean with the assumed cost, which weighs as much as a frame of a
+  // million samples. Much smaller frames carry less information than the assumption.
   const double mean = (sum_xy_ / weight_ + kUnknownMsPerMegaSample) / (sum_xx_ / weight_ + 1.0);
   ms_beyond_reach_ = std::min(ms_per_mega_sample_, mean);
 }
@@ -106,8 +107,8 @@ void CostModel::FitLine() {
     fixed_ms_ = (sum_y_ - ms_per_mega_sample_ * sum_x_) / weight_;
     if (ms_per_mega_sample_ > 0.0 && fixed_ms_ >= 0.0) return;
   }
-  // Frames of one size, or a fit that noise has bent below zero: all of the cost grows with the
-  // size.
+  // All frames have one size, or noise has made the fit negative. So the whole cost is assumed to
+  // grow with the size.
   fixed_ms_ = 0.0;
   ms_per_mega_sample_ = sum_xx_ > 0.0 ? sum_xy_ / sum_xx_ : ms_per_mega_sample_;
 }

@@ -1,6 +1,6 @@
 // Predicts the cost of a frame from the costs of earlier frames: milliseconds = a + b pixels x
-// slices, fitted by least squares in which older frames count for less, plus the time that
-// preparing the fields and carrying the light took when they changed. Plain values, no clock.
+// slices. The fit is a least-squares fit with decaying weights. If the fields or the light changed,
+// the time for preparing the fields and propagating the light is added. Plain values, no clock.
 #pragma once
 
 #include <limits>
@@ -13,25 +13,25 @@
 
 namespace thunderhead::accuracy {
 
-// The size that the cost of drawing `scene` at `quality` grows with: pixels times slices, or times
-// the balls or ellipsoids over them, in millions.
+// Returns the size that the cost of drawing `scene` at `quality` grows with, in millions. It is
+// pixels times slices, or times the metaballs or ellipsoids over them.
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality);
 
-// The part of a frame's `total_ms` from the view on: the cost of a moved camera. None if the frame
-// drew no view.
+// Returns the part of a frame's `total_ms` from the view on, which is the cost of a moved camera.
+// None if the frame drew no view.
 std::optional<double> ViewMs(double total_ms, const std::vector<scene::StageTime>& stages);
 
 class CostModel {
  public:
-  // Before anything was measured: between a GPU's 0.1 and a software renderer's 15, so that the
-  // first frame is coarse but not the coarsest.
+  // The cost before any measurement. It lies between a GPU's 0.1 and a software renderer's 15, so
+  // that the first frame is coarse but not the coarsest.
   static constexpr double kUnknownMsPerMegaSample = 2.0;
 
-  // The cost of a frame if `first_dirty` is the first stage to rerun.
+  // Returns the predicted cost of a frame if `first_dirty` is the first stage to rerun.
   double EstimateMs(double mega_samples, scene::Stage first_dirty) const;
 
-  // A frame of that size took `total_ms`, divided among `stages`. Frames that drew no slices and no
-  // view are ignored.
+  // Records that a frame of that size took `total_ms`, divided among `stages`. Frames that drew no
+  // slices and no view are ignored.
   void Observe(double mega_samples, double total_ms, const std::vector<scene::StageTime>& stages);
 
  private:

@@ -1,5 +1,5 @@
-// The texts of docs/accuracy, built into the program by cmake/embed_texts.cmake, by view: "orbit",
-// "spotter", "top-down".
+// The texts of docs/accuracy by view: "orbit", "spotter", "top-down". cmake/embed_texts.cmake
+// builds them into the program.
 #pragma once
 
 #include <map>

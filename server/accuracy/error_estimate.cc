@@ -13,13 +13,13 @@ namespace {
 // Student's t at 97.5 % for kGroups - 1 = 39 degrees of freedom.
 constexpr double kStudent = 2.0227;
 constexpr std::int64_t kMinPixels = 160;
-// Minimum half widths of the intervals, as shares of the error and of the mean radiance: the
-// uncertainty of a reference of 1000 samples a pixel itself.
+// Minimum half widths of the intervals, as shares of the error and of the mean radiance. They are
+// the uncertainty of a reference with 1000 samples per pixel.
 constexpr double kMinReach = 0.03;
 constexpr double kMinBiasReach = 0.002;
 
-// Half the width of the 95 % interval of `whole` by Tukey's jackknife; `without` has the estimates
-// with each of the groups left out.
+// Returns half the width of the 95 % interval of `whole` by Tukey's jackknife. `without` holds the
+// estimates with one group left out each.
 double Reach(double whole, const std::vector<double>& without) {
   const auto count = static_cast<double>(without.size());
   double squares = 0.0;
@@ -27,9 +27,9 @@ double Reach(double whole, const std::vector<double>& without) {
   return kStudent * std::sqrt((count - 1.0) / count * squares);
 }
 
-// Bound of the bias of the squared error as clamped light is given back to other pixels than those
-// that lost it: light with the root mean square `lost`, in the worst case all of it where the
-// picture has the same error.
+// Returns a bound on the bias of the squared error. The bias arises because clamped light is added
+// back to other pixels than those that lost it. `lost` is the root mean square of that light. In
+// the worst case all of it falls on pixels with the same error.
 double Misplaced(double squared_error, double lost) {
   return 2.0 * std::sqrt(std::max(squared_error, 0.0)) * std::abs(lost) + lost * lost;
 }
@@ -112,7 +112,7 @@ ErrorEstimate::Group ErrorEstimate::All() const {
 ErrorEstimate::Ratios ErrorEstimate::RatiosOf(const Group& group, std::size_t clamp) const {
   const Sums& clamped = group.clamped[clamp];
   const double whole_truth = group.clamped.back().truth;
-  // Gives the clamped light back, spread over all pixels.
+  // Adds the clamped light back, spread over all pixels.
   const double scale = clamped.truth > 0.0 ? whole_truth / clamped.truth : 1.0;
   const double squared_error = group.squared_drawn - 2.0 * scale * clamped.drawn_truth +
                                scale * scale * clamped.squared_truth;
@@ -142,7 +142,7 @@ std::size_t ErrorEstimate::BestClamp(const Group& all) const {
 
 std::optional<MeasuredError> ErrorEstimate::Result() const {
   const Group all = All();
-  // The difference is the true mean radiance, which must be positive.
+  // The difference is the mean reference radiance, which must be positive.
   if (pixels_ < kMinPixels || !(mean_drawn_ * all.pixels > all.drawn - all.clamped.back().truth)) {
     return std::nullopt;
   }
@@ -168,9 +168,9 @@ std::optional<MeasuredError> ErrorEstimate::Result() const {
   return error;
 }
 
-// With k paths through each of P / k pixels the variance of the mean squared error is about
-// (2 V / (k - 1) + k E) / P plus what does not depend on k, where V is the mean square of the
-// paths' variance and E the variance of the squared error from pixel to pixel.
+// With k paths through each of P / k pixels, the variance of the mean squared error is about (2 V /
+// (k - 1) + k E) / P plus a constant. V is the mean square of the paths' variance. E is the
+// variance of the squared error from pixel to pixel.
 int ErrorEstimate::BestPathsPerPixel(int most) const {
   const double pixels = std::max(static_cast<double>(pixels_), 1.0);
   const Noise& noise = noise_[BestClamp(All())];

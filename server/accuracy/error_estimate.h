@@ -1,7 +1,6 @@
-// Estimates a picture's error from independent estimates of the true radiance of some of its
-// pixels: relative RMSE and bias, as measure/image_error.h defines them, each with the interval
-// that holds it in 95 of 100 cases (docs/decisions/0051-measured-error.md). Plain values; knows no
-// scene.
+// Estimates a picture's error from independent estimates of the reference radiance of some of its
+// pixels. Errors are relative RMSE and bias, as measure/image_error.h defines them. Each has a 95 %
+// confidence interval (docs/decisions/0051-measured-error.md). Plain values; knows no scene.
 #pragma once
 
 #include <array>
@@ -23,7 +22,7 @@ struct Estimated {
 };
 
 struct MeasuredError {
-  Estimated relative_rmse;  // 0 and more
+  Estimated relative_rmse;  // 0 or more
   Estimated relative_bias;  // above 0: the picture is too bright
   std::int64_t paths = 0;
 
@@ -31,11 +30,11 @@ struct MeasuredError {
 };
 
 // Paths are clamped at these multiples of their pixel's usual radiance. A few paths are a hundred
-// times brighter than the rest, and squares of so few tell nothing; clamped paths lose a little
-// light, which is given back evenly. The last multiple clamps nothing.
+// times brighter than the rest, and squares of so few paths are unreliable. Clamped paths lose a
+// little light, which is added back evenly. The last multiple clamps nothing.
 inline constexpr std::array<double, 8> kClamps = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 60.0, 1e300};
 
-// Independent estimates, hardly biased, of the true radiance of one pixel.
+// Independent, almost unbiased estimates of the reference radiance of one pixel.
 class PixelTruth {
  public:
   struct Sums {
@@ -43,16 +42,16 @@ class PixelTruth {
     glm::dvec3 squares{0.0};
   };
 
-  // `usual` is what its radiance is about, above 0. `weight`: the pixels of the picture that it
-  // stands for, over their mean: 1 over the number of pixels times the probability that it was
-  // chosen with.
+  // `usual` is the pixel's approximate radiance, above 0. `weight` is the number of the picture's
+  // pixels that it stands for, divided by the mean of that number. It equals 1 / (number of pixels
+  // x probability of choosing this pixel).
   explicit PixelTruth(double usual, double weight = 1.0) : usual_(usual), weight_(weight) {}
 
   void Add(const glm::dvec3& estimate);
 
   double Weight() const { return weight_; }
   std::int64_t Paths() const { return paths_; }
-  // Of the estimates clamped by kClamps[clamp].
+  // Returns the sums of the estimates clamped by kClamps[clamp].
   const Sums& Clamped(std::size_t clamp) const { return sums_[clamp]; }
 
  private:
@@ -64,27 +63,28 @@ class PixelTruth {
 
 class ErrorEstimate {
  public:
-  // `mean_drawn` is the mean over all pixels of the picture, and over colours. Knowing it, only the
-  // difference between drawn and true radiance is estimated.
+  // `mean_drawn` is the mean of the drawn radiance over all pixels and colours. Because it is
+  // known, only the difference between drawn and reference radiance is estimated.
   explicit ErrorEstimate(double mean_drawn) : mean_drawn_(mean_drawn) {}
 
-  // Adds a pixel, of at least two paths. Their noise does not count as error: the mean product of
-  // two different ones' distances from `drawn` is the square of the true radiance's (a
-  // U-statistic).
+  // Adds a pixel with at least two paths. The paths' noise does not count as error: the mean
+  // product of two different paths' differences from `drawn` is an unbiased estimate of the squared
+  // error (a U-statistic).
   void Add(const glm::dvec3& drawn, const PixelTruth& truth);
 
-  // None before 160 pixels, or while the true mean radiance is not above 0.
+  // Returns none before 160 pixels, or while the mean reference radiance is not above 0.
   std::optional<MeasuredError> Result() const;
 
-  // The number of paths through each pixel that would have given the smallest variance for the
-  // paths traced so far: many where the pixels' errors are alike and paths are noisy, few where
+  // Returns the number of paths per pixel that would have given the smallest variance for the paths
+  // traced so far. It is large if the pixels' errors are alike and paths are noisy, and small if
   // errors differ from pixel to pixel. At least 2.
   int BestPathsPerPixel(int most) const;
 
   std::int64_t Pixels() const { return pixels_; }
 
  private:
-  // Sums over pixels, each of the mean over colours, by weight. Truth is of clamped paths.
+  // Weighted sums over pixels; each term is the mean over colours. The reference radiance is that
+  // of clamped paths.
   struct Sums {
     double truth = 0.0;
     double drawn_truth = 0.0;    // of the product
@@ -102,28 +102,28 @@ class ErrorEstimate {
     Group operator-(const Group& other) const;
     void operator+=(const Group& other);
   };
-  // Of the sums: the squared relative RMSE, the relative bias, and the share of the light that
-  // clamping takes.
+  // Results of the sums: the squared relative RMSE, the relative bias, and the share of the light
+  // that clamping removes.
   struct Ratios {
     double squared_rmse = 0.0;
     double bias = 0.0;
     double lost = 0.0;
   };
-  // For BestPathsPerPixel: sums over pixels of the paths' variance, squared, and of the squared
-  // error's estimate, squared.
+  // Sums over pixels for BestPathsPerPixel: of the paths' squared variance, and of the square of
+  // the squared error's estimate.
   struct Noise {
     double squared_error = 0.0;
     double variance_squares = 0.0;
     double error_squares = 0.0;
-    double pair_noise = 0.0;  // what of `error_squares` is the paths' noise
+    double pair_noise = 0.0;  // the part of `error_squares` that is the paths' noise
   };
 
   Group All() const;
   Ratios RatiosOf(const Group& group, std::size_t clamp) const;
-  // The lowest clamp that takes little light.
+  // Returns the lowest clamp that removes little light.
   std::size_t BestClamp(const Group& all) const;
 
-  // Pixels are dealt out to groups in turn, for the jackknife.
+  // Number of groups, to which pixels are assigned in turn, for the jackknife.
   static constexpr std::size_t kGroups = 40;
 
   double mean_drawn_;

@@ -16,19 +16,20 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// Before anything is known of the picture, and the pixels that are enough to know it.
+// Paths per pixel before anything is known of the picture, and the number of pixels after which
+// enough is known.
 constexpr int kFirstPathsPerPixel = 16;
 constexpr std::int64_t kPilotPixels = 320;
 constexpr int kMaxPathsPerPixel = 64;
-// Some tenths of a second on two cores.
+// Number of paths that take some tenths of a second on two cores.
 constexpr int kPathsPerBatch = 4096;
 constexpr std::uint64_t kSeed = 0x6572726f72;
 
-// Share of the pixels that are chosen evenly over the picture, so that no error is missed; of the
-// rest, the weight of those that show no storm.
+// kEvenShare of the pixels are chosen evenly over the picture, so that no error is missed. Among
+// the rest, kWithoutStorm is the weight of pixels that show no storm.
 constexpr double kEvenShare = 0.2;
 constexpr double kWithoutStorm = 0.05;
-// Of the mean radiance; what is drawn darker may be brighter in truth.
+// A share of the mean radiance. Pixels drawn darker than this may be brighter in the reference.
 constexpr double kDark = 0.25;
 
 double MeanColor(const glm::vec3& color) {
@@ -49,7 +50,7 @@ ErrorMeter::ErrorMeter(reference::RayTracer tracer, reference::Surroundings surr
 absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     int threads, std::uint64_t seed, const reference::MakesTracer& makes_tracer) {
-  // As the reference shows it: each field with its own phase function.
+  // Each field has its own phase function, as in the reference.
   scene::Scene truth = scene;
   truth.rendering.technique =
       scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
@@ -83,7 +84,8 @@ void ErrorMeter::Show(picture::LinearPicture drawn) {
   }
 }
 
-// Most of the noise and of the error is where the storm is bright.
+// Weighs pixels by radiance because most of the noise and the error is in the bright parts of the
+// storm.
 void ErrorMeter::Weigh() {
   const std::vector<bool> left_out = reference::NearSun(camera_, surroundings_.towards_sun,
                                                         drawn_.size_px, reference::kPeakCut_deg);
@@ -119,7 +121,8 @@ double ErrorMeter::ChanceOf(std::size_t index) const {
   return chances_[index] - (index > 0 ? chances_[index - 1] : 0.0);
 }
 
-// Pixel `count` of an endless sequence that is even in chance (multiples of the golden ratio).
+// Returns pixel `count` of an endless sequence that is even in probability (multiples of the golden
+// ratio).
 std::size_t ErrorMeter::ChoosePixel(std::uint64_t count) const {
   constexpr double kGolden = 0.6180339887498949;
   const double place = glm::fract(0.5 + static_cast<double>(count) * kGolden) * chances_.back();

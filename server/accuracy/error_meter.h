@@ -1,6 +1,6 @@
-// Measures the error of a drawn picture by tracing some of its pixels: what the picture shows
-// against the reference (reference/trace_scene.h), on the scene and storm that it shows. Knows no
-// GL, though paths may be traced by it.
+// Measures the error of a drawn picture by tracing some of its pixels. It compares the picture with
+// the reference (reference/trace_scene.h) for the same scene and storm. Knows no GL itself, but its
+// tracer may use GL.
 #pragma once
 
 #include <cstdint>
@@ -23,31 +23,32 @@ namespace thunderhead::accuracy {
 
 class ErrorMeter {
  public:
-  // Of pictures of `scene` with any number of pixels, of the aspect that its output has. Fails as
-  // reference::MediumOf and `makes_tracer`. Traces on `threads` threads, 0: all cores, where it is
-  // the processors that trace; other random paths by `seed`.
+  // Creates a meter for pictures of `scene` with any number of pixels and the aspect ratio of its
+  // output. Fails as reference::MediumOf and `makes_tracer` do. If the CPU traces, it uses
+  // `threads` threads (0: all cores). `seed` selects the random paths.
   static absl::StatusOr<std::unique_ptr<ErrorMeter>> Create(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       int threads, std::uint64_t seed = 0,
       const reference::MakesTracer& makes_tracer = reference::TracerOnProcessors);
 
-  // The picture whose error is measured from now on. Paths traced before count for it too, if it
-  // has as many pixels as the one before; else they are given up.
+  // Sets the picture to measure. Paths traced before are kept if the picture has as many pixels as
+  // the previous one; otherwise they are dropped.
   void Show(picture::LinearPicture drawn);
 
-  // False if the picture shown last looks at hardly anything but the sun, next to which nothing is
-  // measured (reference/near_sun.h).
+  // Returns false if the last shown picture shows almost nothing but the sun. Nothing is measured
+  // next to the sun (reference/near_sun.h).
   bool IsMeasurable() const;
 
-  // Traces pixels of the picture for some tenths of a second; one that is measurable must have been
-  // shown. Fails only as `wanted` does, and has traced nothing then.
+  // Traces pixels of the picture for some tenths of a second. A measurable picture must have been
+  // shown. Fails only if `wanted` fails, and has then traced nothing.
   absl::Status Step(const reference::IsWanted& wanted = nullptr);
-  // Steps for about `seconds`, or until `stop` asks to stop; not at all if nothing is measurable.
+  // Steps for about `seconds`, or until `stop` is requested. Does nothing if the picture is not
+  // measurable.
   void Measure(double seconds, const std::stop_token& stop);
 
-  // Of the picture shown last. None while too few pixels are traced.
+  // Returns the error of the last shown picture. None while too few pixels are traced.
   std::optional<MeasuredError> Result() const;
-  // So far, by steps.
+  // Returns the time spent in steps so far.
   double TracedSeconds() const { return traced_s_; }
 
  private:
@@ -70,8 +71,8 @@ class ErrorMeter {
   const std::uint64_t seed_;
   picture::LinearPicture drawn_;
   double mean_drawn_ = 0.0;
-  std::size_t pixels_ = 0;  // of it, without those that are left out
-  // Cumulative probability with which each pixel is chosen; by the picture shown first.
+  std::size_t pixels_ = 0;  // number of pixels of drawn_ that are not left out
+  // Cumulative probabilities of choosing the pixels, from the first shown picture.
   std::vector<double> chances_;
   std::vector<TracedPixel> traced_;
   std::optional<ErrorEstimate> estimate_;

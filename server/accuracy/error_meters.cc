@@ -12,22 +12,23 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// The picture is drawn again when this many times as many paths correct its light.
+// The picture is drawn again when the number of paths that correct its light has grown by this
+// factor.
 constexpr double kRedrawnGrowth = 1.3;
 
-// An interval this much narrower than the error is enough, and more time than this is not spent on
-// one scene.
+// An interval whose width is at most this share of the error is narrow enough. At most kMaxTraced_s
+// is spent on one scene.
 constexpr double kEnoughWidth = 0.25;
 constexpr double kMaxTraced_s = 30.0;
 
-// Relief below this is drawn as level ground.
+// Relief below this height is drawn as level ground.
 constexpr float kLevel_m = 1.0F;
 
 bool IsEnough(const Estimated& error) {
   return error.high - error.low <= kEnoughWidth * error.value;
 }
 
-// The settings that change neither light nor view.
+// Returns the scene without the settings that change neither light nor view.
 scene::Scene WithoutDisplay(scene::Scene scene) {
   scene.display = {};
   scene.accuracy = {};

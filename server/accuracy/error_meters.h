@@ -1,6 +1,6 @@
-// Error meters for several scenes at rest, which get better step by step: each draws its scene's
-// picture as the light stands, and traces some of its pixels. Used on one thread; drawing is left
-// to the caller.
+// Error meters for several scenes at rest, which improve step by step. Each meter gets its scene's
+// picture with the current light and traces some of its pixels. Used on one thread; the caller does
+// the drawing.
 #pragma once
 
 #include <cstddef>
@@ -22,22 +22,23 @@
 namespace thunderhead::accuracy {
 
 struct ErrorProgress {
-  // None while too few paths are traced for an interval that says anything.
+  // None while too few paths are traced for a useful interval.
   std::optional<MeasuredError> error;
   double traced_s = 0.0;
-  // True if more paths are not worth it while the light stays as it is, or nothing can be measured.
+  // True if more paths are not worthwhile while the light stays the same, or if nothing can be
+  // measured.
   bool ended = false;
 
   bool HasTraced(double wanted_s) const { return ended || traced_s >= wanted_s; }
   bool operator==(const ErrorProgress&) const = default;
 };
 
-// A picture that the reference can be compared with: `scene` at full quality and in its own size,
-// but without what the reference leaves out or shows otherwise: turbulent detail and rings of
-// distance.
+// Returns the scene of a picture that can be compared with the reference. It is `scene` at full
+// quality and in its own size, without features that the reference does not show in the same way:
+// turbulent detail and range rings.
 scene::Scene MeasuredScene(const scene::Scene& scene);
 
-// False where pictures show what the reference does not: uneven ground.
+// Returns false for fields with uneven ground, because the reference does not show it.
 bool IsMeasurable(const volume::HydrometeorFields& fields);
 
 class ErrorMeters {
@@ -45,9 +46,9 @@ class ErrorMeters {
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
   using Draw = std::function<absl::StatusOr<picture::LinearPicture>(const scene::Scene& measured)>;
 
-  // At most `max_meters`, as each has a copy of its storm's extinction, reserved in `memory`. One
-  // that was used within `busy_s` is not replaced; one that was not for `unused_s` goes with the
-  // next call.
+  // There are at most `max_meters`, because each holds a copy of its storm's extinction, which is
+  // reserved in `memory`. A meter that was used within `busy_s` is not replaced. A meter that was
+  // not used for `unused_s` is dropped at the next call.
   explicit ErrorMeters(std::shared_ptr<base::MemoryBudget> memory = base::MemoryBudget::Unlimited(),
                        std::size_t max_meters = 8, double busy_s = 3.0, double unused_s = 60.0,
                        reference::MakesTracer makes_tracer = reference::TracerOnProcessors)
@@ -57,15 +58,15 @@ class ErrorMeters {
         unused_s_(unused_s),
         makes_tracer_(std::move(makes_tracer)) {}
 
-  // A step for the scene: draws with `draw` if it is new or its light is corrected by many more
-  // paths than it was (`light_paths`), and else traces, unless it has ended or is not `wanted`.
-  // RESOURCE_EXHAUSTED if too many other scenes are being measured, or there is no memory for
-  // another storm.
+  // Does one step for the scene. Draws with `draw` if the scene is new, or if many more paths
+  // (`light_paths`) correct its light than before. Otherwise traces, unless the measurement has
+  // ended or `wanted` fails. RESOURCE_EXHAUSTED if too many other scenes are being measured or
+  // memory does not suffice for another storm.
   absl::StatusOr<ErrorProgress> Step(const scene::Scene& scene, const Fields& fields,
                                      std::int64_t light_paths, const Draw& draw,
                                      const reference::IsWanted& wanted = nullptr);
 
-  // Drops the one that was used longest ago, unless all are busy; false then.
+  // Drops the meter that was used longest ago. Returns false if all are busy.
   bool DropOldest();
 
  private:
@@ -74,7 +75,7 @@ class ErrorMeters {
     Fields fields;
     base::MemoryReservation reserved;
     std::unique_ptr<ErrorMeter> meter;
-    std::optional<std::int64_t> drawn_paths;  // that corrected the light of the measured picture
+    std::optional<std::int64_t> drawn_paths;  // paths behind the measured picture's light
     base::Stopwatch since_used;
   };
 

@@ -10,7 +10,7 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// The setting of a frame of that quality, its light corrected by `traced_paths`.
+// Returns the setting of a frame of that quality whose light is corrected by `traced_paths`.
 Setting DrawnWith(Setting setting, const FrameQuality& quality, std::int64_t traced_paths) {
   if (const auto slices = scene::SlicesOf(setting.technique); slices.has_value()) {
     const int drawn = static_cast<int>(std::ceil(*slices * quality.slice_share));
@@ -53,8 +53,8 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   report.image_scale = drawn.image_scale;
   report.model_error = row->relative_rmse;
   report.discretisation_error = evidence.discretisation_error;
-  // The table's error has some of the slices' in it already; counting it twice errs on the safe
-  // side.
+  // The table's error already includes some of the slices' error; counting it twice is
+  // conservative.
   report.estimated_error =
       std::hypot(row->relative_rmse, evidence.discretisation_error.value_or(0.0));
   report.measured = evidence.measured;
@@ -62,8 +62,8 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   const double expected_ms = costs_.SettingMs(*table, *timed, scene);
   const bool asks = !std::holds_alternative<std::monostate>(scene.accuracy);
   if (asks || costs_.Knows(full)) report.expected_ms = expected_ms;
-  // A coarse frame, or one with few paths, is on its way to the full one, which is what was asked
-  // for.
+  // A coarse frame, or one with few paths, only precedes the full one, which is what the scene
+  // requests.
   const PricedSetting& full_row = *NearestRow(*table, full);
   const bool is_full =
       quality == FrameQuality{} && row->setting.million_paths == full_row.setting.million_paths;

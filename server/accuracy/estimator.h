@@ -1,7 +1,7 @@
-// Tells the error of a picture: as measured by paths that were traced through it, or, where there
-// are none yet, from everything that is known without the reference: the row of its setting in the
-// table (the error of the light model), the paths that corrected its light, and how much half the
-// slices change it. Plain values.
+// Reports the error of a picture. It is measured by paths traced through the picture if there are
+// any. Otherwise it is estimated without the reference. The estimate uses the setting's row in the
+// table (the error of the light model), the paths that corrected its light, and the change with
+// half the slices. Plain values.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@
 
 namespace thunderhead::accuracy {
 
-// Properties of a picture that its error is estimated from.
+// Properties of a picture from which its error is estimated.
 struct Evidence {
-  std::int64_t traced_paths = 0;               // that corrected its light
-  std::optional<double> discretisation_error;  // by DiscretisationError
+  std::int64_t traced_paths = 0;               // paths that corrected its light
+  std::optional<double> discretisation_error;  // from DiscretisationError
   std::optional<MeasuredError> measured;       // of the whole picture
   bool is_last = false;                        // no better picture of the scene follows
 };
 
-// Relative RMSE between a picture with half the slices and the full one, four values a pixel of
-// which the last does not count. No less than the full one's distance from endlessly many slices,
-// where that falls with their number at first order or faster.
+// Returns the relative RMSE between a picture with half the slices and the full one. Pixels have
+// four values, of which the last is ignored. It bounds the full picture's difference from
+// infinitely many slices if that falls with their number at first order or faster.
 double DiscretisationError(const std::vector<float>& half, const std::vector<float>& full);
 
 class Estimator {
@@ -36,14 +36,14 @@ class Estimator {
   Estimator(const OfferTables& tables, const MachineCosts& costs)
       : tables_(tables), costs_(costs) {}
 
-  // The report of a frame of `scene` (decided) with that quality; none where the tables do not know
-  // its technique, mode and transport.
+  // Returns the report of a frame of `scene` (decided) with that quality. None if the tables do not
+  // cover its technique, mode and transport.
   std::optional<AccuracyReport> Report(const scene::Scene& scene, const FrameQuality& quality,
                                        const Evidence& evidence) const;
 
-  // The paths that a picture of `scene` (decided) outside any session waits for, if it waits: the
-  // fewest with which it keeps within the error that it asks for, by the tables and what measuring
-  // its pictures has told of them.
+  // Returns the number of paths for which an image of `scene` (decided) outside any session waits,
+  // if it waits. It is the smallest number that keeps the requested error, according to the tables
+  // and the measured `errors`.
   std::int64_t PathsFor(const scene::Scene& scene, const MeasuredErrors& errors = {}) const;
 
  private:

@@ -23,25 +23,24 @@ namespace {
 
 constexpr int kWidth_px = 128;
 constexpr int kHeight_px = 96;
-// With more texels the result was noisier for the same number of paths, and no better after many.
+// More texels made the result noisier for the same number of paths, and no better after many paths.
 constexpr int kMaxTexels = 96;
 constexpr double kMaxTexelCount = 262144.0;
-// Rays with a higher transmittance through the storm carry little information on its light.
+// Rays with a higher transmittance through the storm carry little information about its light.
 constexpr double kMaxTransmittance = 0.8;
-// Gives less noise than a cut of 3 degrees; the change in pictures was too small to measure
+// This gives less noise than a cut of 3 degrees. The change in pictures was too small to measure
 // (docs/decisions/0012).
 constexpr double kPeakCut_deg = 20.0;
 
-// Drawing a picture takes as long as tracing it once, so its rays have two paths each; the first
-// pictures one, as they must show the storm from enough sides (docs/decisions/0012).
+// Drawing a picture takes as long as tracing it once, so its rays have two paths each. The first
+// pictures have one, because they must show the storm from enough directions (docs/decisions/0012).
 constexpr int kPathsOfRay = 2;
 constexpr std::uint64_t kPicturesOfOnePath = 8;
 
 constexpr int kGroundTexels = 64;
-constexpr int kGroundRays = 2048;       // of a pass
-constexpr int kGroundPassesOfStep = 2;  // of the first steps
-constexpr int kFirstGroundPasses =
-    32;  // before the first picture, in which the ground is background
+constexpr int kGroundRays = 2048;       // in one pass
+constexpr int kGroundPassesOfStep = 2;  // in each of the first steps
+constexpr int kFirstGroundPasses = 32;  // before the first picture, whose background is the ground
 constexpr int kPicturesPerGround = 16;  // pictures after which the ground's correction is updated
 constexpr double kAboveGround_m = 1.0;
 constexpr std::uint64_t kGroundSeed = 0x67726f756e64;
@@ -54,7 +53,7 @@ glm::ivec3 TexelsFor(const volume::WorldBox& box, const glm::dvec3& cell_m) {
   return glm::clamp(glm::ivec3(glm::ceil(size_m / texel_m)), glm::ivec3(1), glm::ivec3(kMaxTexels));
 }
 
-// Half the sides of the rectangle of ground whose light the storm changes.
+// Returns half the side lengths of the rectangle of ground whose light the storm changes.
 glm::dvec2 GroundReach_m(const volume::WorldBox& box) {
   const glm::dvec2 half_m = 0.5 * glm::dvec2(box.high_m - box.low_m);
   return half_m + 0.5 * std::max(half_m.x, half_m.y);
@@ -64,8 +63,8 @@ glm::dvec2 Middle_m(const volume::WorldBox& box) {
   return 0.5 * glm::dvec2(box.low_m + box.high_m);
 }
 
-// The scene that probes draw: without light that the light volume cannot show, without structure
-// finer than texels, and on plain ground as bright as the scene's.
+// Returns the scene that probes draw. It has no light that the light volume cannot show, no
+// structure finer than texels, and plain ground as bright as the scene's.
 scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFields& fields) {
   scene::Scene scene = scene::WithGroundOf(asked, fields);
   scene.ground = {};
@@ -77,7 +76,7 @@ scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFie
   return scene;
 }
 
-// The sizes that the storm's box is of: fields that differ are taken as the model has them.
+// Returns the particle sizes for the storm's box. If fields differ, the model's sizes are used.
 physics::SizeSource SizesOf(const scene::Scene& scene) {
   const bool papers = std::ranges::all_of(scene.fields, [](const scene::FieldParameters& field) {
     return field.sizes == physics::SizeSource::kPapers;
@@ -204,7 +203,7 @@ absl::Status LightCorrector::TraceProbe(const Probe& probe) {
   if (probe.storm.empty()) return absl::OkStatus();
   const reference::Camera camera = reference::CameraOf(scene_, *fields_);
   std::vector<reference::Ray> rays;
-  std::vector<std::size_t> firsts;  // of each ray's pixel
+  std::vector<std::size_t> firsts;  // indices of the rays' pixels
   for (int y = 0; y < kHeight_px; ++y) {
     for (int x = 0; x < kWidth_px; ++x) {
       const std::size_t first = 4 * static_cast<std::size_t>(y * kWidth_px + x);
@@ -236,8 +235,8 @@ absl::Status LightCorrector::TraceProbe(const Probe& probe) {
   return absl::OkStatus();
 }
 
-// Rays from random places on the ground in cosine-distributed directions, so that their mean
-// radiance is the ground's irradiance over pi.
+// Traces rays from random places on the ground in cosine-distributed directions, so that their mean
+// radiance is the ground's irradiance divided by pi.
 absl::Status LightCorrector::TraceGround() {
   const std::uint64_t pass = ground_passes_ + 1;
   if (!over_ground_.ground.has_value() || !over_ground_.sky) {
@@ -262,7 +261,7 @@ absl::Status LightCorrector::TraceGround() {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec3> traced,
                                Traced(over_ground_, rays, kGroundSeed + pass, 1));
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Control variate: with the clear sky's known mean, rays that miss the storm add no noise.
+    // The clear sky's known mean is a control variate: rays that miss the storm add no noise.
     ground_fit_.Add({places[i], glm::dvec3(0.0), mean_sky, mean_sky + traced[i] - skies[i]});
   }
   sky_sum_ = sky_sum;

@@ -1,8 +1,8 @@
-// Corrects a scene's light volume progressively by the reference: draws small pictures of the
-// storm, half of them from near the scene's camera and half from all around, traces one or two
-// paths along each of their rays, and fits factors for the drawn radiance. Paths from the ground
-// correct its skylight. The result is the same for any number of threads. Owns GL objects: use it
-// on the context's thread, which draws in pieces (gl/pieces.h).
+// Corrects a scene's light volume progressively with the reference. It draws small pictures of the
+// storm, half of them from near the scene's camera and half from all directions. It traces one or
+// two paths along each of their rays and fits factors for the drawn radiance. Paths from the ground
+// correct the ground's skylight. The result does not depend on the number of threads. Owns GL
+// objects: use it on the context's thread, which draws in pieces (gl/pieces.h).
 #pragma once
 
 #include <cstdint>
@@ -29,50 +29,50 @@
 
 namespace thunderhead::accuracy {
 
-// True if the scene asks for traced light, its renderer can show it, and a field is drawn.
+// Returns true if the scene requests traced light, its renderer can show it, and a field is drawn.
 bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
 class LightCorrector {
  public:
-  // TracesLight must be true. Links programs in `programs`. Traces on the device if
-  // device_paths::TracesOnDevice(), else on `threads` threads (0: all cores).
+  // Creates a corrector; TracesLight must be true. Links programs in `programs`. Traces on the
+  // device if device_paths::TracesOnDevice(), else on `threads` threads (0: all cores).
   static absl::StatusOr<std::unique_ptr<LightCorrector>> Create(
       const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
       std::shared_ptr<gl::ProgramCache> programs, int threads);
 
-  // True if the correction is valid for this scene: only its camera, display and the like may
-  // differ.
+  // Returns true if the correction is valid for this scene: only its camera, display and similar
+  // settings may differ.
   bool Serves(const scene::Scene& scene,
               const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
 
-  // Continues with the camera of `scene`, for which Serves must be true: half of the pictures are
-  // taken from near it from now on.
+  // Continues with the camera of `scene`, for which Serves must be true. From then on half of the
+  // pictures are drawn from near that camera.
   void LookAs(const scene::Scene& scene);
 
-  // Traces some thousand paths: of the ground alone in the first steps, then one picture a step.
-  // Fails if it cannot draw, or nobody wants it any more (gl::Pieces::Wanted).
+  // Traces some thousand paths. The first steps trace only the ground; each later step traces one
+  // picture. Fails if it cannot draw, or if the work is no longer needed (gl::Pieces::Wanted).
   absl::Status Step();
-  // Steps until LightProgress::HasTraced(paths); CANCELLED if `stop` asks to stop before.
-  // `observer`, which may be null, gets the share of paths traced.
+  // Steps until LightProgress::HasTraced(paths). CANCELLED if `stop` is requested earlier.
+  // `observer` may be null; otherwise it receives the share of paths traced.
   absl::Status TraceUntil(std::int64_t paths, const std::stop_token& stop,
                           const std::function<void(double)>& observer);
 
-  // Total number of paths, without the ground's.
+  // Returns the total number of paths, without those of the ground.
   const LightProgress& Progress() const { return progress_; }
 
-  // The correction from all paths so far; null while these are too few to be worth it
+  // Returns the correction from all paths so far. Null while there are too few paths
   // (LightProgress::Corrects).
   std::shared_ptr<const renderers::LightCorrection> Correction();
 
  private:
-  // Pictures drawn from one camera: four values a pixel, rows from bottom to top; empty where there
-  // is no storm to be seen.
+  // Pictures drawn from one camera, with four values per pixel and rows from bottom to top. They
+  // are empty if no storm is visible.
   struct Probe {
     std::vector<float> whole;
-    std::vector<float> behind;  // with the storm's transmittance, but black
-    // As renderers::SeenStorm has it.
+    std::vector<float> behind;  // background dimmed by the storm, without its radiance
+    // As in renderers::SeenStorm.
     std::vector<float> storm;
-    std::vector<float> opacity_distance_m;  // the first of four
+    std::vector<float> opacity_distance_m;  // the first of four values
     volume::WorldBox box;
   };
 
@@ -103,7 +103,7 @@ class LightCorrector {
   CorrectionFit storm_fit_;
   CorrectionFit ground_fit_;
   glm::dvec3 sky_sum_{0.0};  // sum of the clear sky's radiance over the ground's rays
-  // The correction of the ground so far, which leaves the storm as it is.
+  // The current correction of the ground, which does not change the storm.
   std::shared_ptr<const renderers::LightCorrection> plain_;
   std::shared_ptr<const renderers::LightCorrection> correction_;  // null: must be computed again
   std::uint64_t ground_passes_ = 0;

@@ -1,4 +1,4 @@
-// Progress of tracing a scene's light, and a claim on it. Plain values.
+// The progress of tracing a scene's light, and a claim on the light. Plain values.
 #pragma once
 
 #include <algorithm>
@@ -7,24 +7,24 @@
 
 namespace thunderhead::accuracy {
 
-// With fewer paths a correction is mostly noise: by the first picture's paths alone the error grew
-// by 21 to 48 % on two storms of three; with this many it was 14 to 47 % less on all
-// (docs/decisions/0012).
+// Minimum number of paths for a correction; with fewer it is mostly noise. With only the first
+// picture's paths the error grew by 21 to 48 % on two storms of three. With this many it was 14 to
+// 47 % less on all of them (docs/decisions/0012).
 inline constexpr std::int64_t kMinCorrectingPaths = 25'000;
 
-// While one exists, the light traced for its scene is not given up for another's.
+// While a claim exists, the light traced for its scene is not evicted for another scene.
 using LightClaim = std::shared_ptr<const void>;
 
 struct LightProgress {
   std::int64_t paths = 0;
   std::int64_t steps = 0;  // 0 if there is nothing to trace
 
-  // True if a correction by these paths is worth applying.
+  // Returns true if a correction by these paths is worth applying.
   bool Corrects() const { return paths >= kMinCorrectingPaths; }
 
-  // How much of the tracing of `wanted` paths is done, 0 to 1. As many steps as should have
-  // sufficed count as well: few rays meet a small or thin storm, and waiting for more would take
-  // too long.
+  // Returns the completed share of tracing `wanted` paths, 0 to 1. The number of steps that should
+  // have sufficed counts as well. Few rays hit a small or thin storm, and waiting for more would
+  // take too long.
   double ShareOf(std::int64_t wanted) const {
     constexpr std::int64_t kMinPathsPerStep = 300;
     const std::int64_t done = std::max(paths, kMinPathsPerStep * steps);

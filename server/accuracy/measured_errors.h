@@ -1,4 +1,4 @@
-// Corrections of the tables' errors, by what was measured on a scene's pictures. A plain value.
+// Corrections of the tables' errors by measurements of a scene's pictures. A plain value.
 #pragma once
 
 #include <vector>
@@ -7,15 +7,16 @@
 
 namespace thunderhead::accuracy {
 
-// How many times the error of the tables a scene's pictures have, for each technique and model of
-// light that was measured, with traced light and without.
+// The ratios of measured errors of a scene's pictures to the tables' errors. There is one ratio for
+// each measured technique and light model, with and without traced light.
 class MeasuredErrors {
  public:
-  // Pictures of `setting`, for which the table says `table_error`, have `measured_error`.
+  // Records that pictures of `setting`, whose error is `table_error` in the table, have
+  // `measured_error`.
   void Observe(const Setting& setting, double table_error, double measured_error);
-  // Of one that was not measured, the geometric mean of those that were, with traced light or
-  // without: where the tables are wrong about one model of light, they are likely to be wrong about
-  // others as well. 1 where nothing was measured.
+  // Returns the ratio for a setting. If it was not measured, returns the geometric mean of the
+  // measured ones with, or without, traced light. If the tables are wrong about one light model,
+  // they are probably wrong about others as well. 1 if nothing was measured.
   double FactorOf(const Setting& setting) const;
 
  private:

@@ -17,11 +17,12 @@ namespace {
 
 constexpr std::size_t kChannels = 3;
 
-// Power of the pixels by which the contrast of larger pictures grows, and how far.
+// The exponent of the number of pixels with which the contrast of larger pictures grows, and its
+// largest factor.
 constexpr double kContrastGrowth = 0.4;
 constexpr double kMostContrast = 2.25;
 
-// The colours of the rays of `frame` in the order in which they were chosen.
+// Returns the colours of the rays of `frame`, in the order in which they were chosen.
 absl::StatusOr<std::vector<std::uint16_t>> ColorsOf(const renderers::ChosenFrame& frame,
                                                     std::size_t count,
                                                     frame::ToneMapper& tone_mapper) {
@@ -114,9 +115,9 @@ absl::StatusOr<CompletedPicture> CompleteMoving(
     drawing_ms += Sum_ms(chosen.stages);
     return ColorsOf(chosen, places.size(), tone_mapper);
   };
-  // Smaller image_scales take more, in proportion to the pixels that they stand for.
+  // Smaller image_scales allow more contrast, in proportion to the pixels that they stand for.
   const double contrast = MovingContrast(scene) / (quality.image_scale * quality.image_scale);
-  // Most of it is the processors' work: others may draw meanwhile.
+  // Most of this is CPU work, so others may draw meanwhile.
   absl::StatusOr<frame::FineImage> completed;
   THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
     completed =

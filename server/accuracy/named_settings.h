@@ -1,4 +1,4 @@
-// Techniques, modes and transports by name: how tables, flags and measurements tell settings apart.
+// Techniques, modes and transports by name, as tables, flags and measurements identify them.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ struct Named {
   std::string_view name;
 };
 
-// A technique in its plainest settings: consistent transport where it has a choice, neither detail
-// nor traced light. Techniques are measured from there.
+// A technique in its plainest settings: consistent transport if it has a choice, no detail and no
+// traced light. Measurements start from these settings.
 struct PlainTechnique {
   std::string_view name;
   scene::Technique (*settings)();
@@ -41,7 +41,7 @@ constexpr PlainTechnique Plain() {
 
 namespace internal {
 
-// True for techniques with settings of their own, but not for the reference, which the others are
+// Returns true for techniques with their own settings, except the reference, which the others are
 // measured against.
 template <typename Settings>
 constexpr bool IsMeasured() {
@@ -62,15 +62,15 @@ constexpr auto MeasuredOf(std::type_identity<std::variant<Settings...>> /*techni
 
 }  // namespace internal
 
-// The techniques that tables have rows of, in the order of scene::Technique.
+// The techniques that have rows in tables, in the order of scene::Technique.
 inline constexpr auto kPlainTechniques =
     internal::MeasuredOf(std::type_identity<scene::Technique>{});
 
-// The techniques that draw the fields cell by cell, so that their pictures have exact answers.
+// The techniques that draw the fields cell by cell, so that their pictures have exact solutions.
 inline constexpr std::array<PlainTechnique, 2> kCellTechniques = {Plain<scene::HalfAngle>(),
                                                                   Plain<scene::LightVolume>()};
 
-// The technique of that name; none for others.
+// Returns the technique of that name; none for an unknown name.
 std::optional<PlainTechnique> PlainTechniqueNamed(std::string_view name);
 
 // A mode of the papers' frame-rate table.
@@ -90,31 +90,32 @@ inline constexpr Mode kPerFieldPhaseTranslucentMode = {"per_field_phase_transluc
 inline constexpr Mode kPerFieldPhaseDetailTranslucentMode = {"per_field_phase_detail_translucent",
                                                              true, true, true};
 
-// In the order of Riley et al. 2003 (AMS), Table IV.
+// The modes in the order of Riley et al. 2003 (AMS), Table IV.
 inline constexpr std::array<Mode, 4> kModes = {
     {kUniformPhaseLowAlbedoMode, kUniformPhaseTranslucentMode, kPerFieldPhaseTranslucentMode,
      kPerFieldPhaseDetailTranslucentMode}};
 
-// The transports of translucent modes, as tables name them.
+// The transports of translucent modes by their names in tables.
 inline constexpr std::array<Named<scene::Transport>, 3> kTransportNames = {{
     {scene::Transport::kPaper, "paper"},
     {scene::Transport::kConsistent, "consistent"},
     {scene::Transport::kDiffusion, "diffusion"},
 }};
 
-// `technique` in that mode; `transport` is that of its translucent variant. A technique without a
-// medium stays as it is.
+// Returns `technique` in that mode. `transport` is the transport of its translucent variant. A
+// technique without a medium does not change.
 scene::Technique InMode(scene::Technique technique, const Mode& mode, scene::Transport transport);
 
-// True if the technique shows that transport, or draws no medium.
+// Returns true if the technique supports that transport or draws no medium.
 bool ShowsTransport(const scene::Technique& technique, scene::Transport transport);
 
-// The mode that a technique's settings amount to, and its transport without regard to whether it is
-// translucent; kPerFieldPhaseTranslucentMode and "consistent" for a technique without a medium.
+// Return the mode of a technique's settings and the name of its transport, whether or not it is
+// translucent. For a technique without a medium they return kPerFieldPhaseTranslucentMode and
+// "consistent".
 const Mode& ModeOf(const scene::Technique& technique);
 std::string_view TransportNameOf(const scene::Technique& technique);
 
-// The technique that a table's names stand for; none if one of them is not known.
+// Returns the technique of a table's names; none if a name is unknown.
 std::optional<scene::Technique> TechniqueNamed(std::string_view name, std::string_view mode,
                                                std::string_view transport);
 

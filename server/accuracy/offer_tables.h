@@ -1,5 +1,5 @@
-// The tables of docs/accuracy by kind of camera: what each setting costs and misses, and which of
-// their rows a scene is judged by. Plain values.
+// The tables of docs/accuracy by kind of camera. They hold the cost and error of each setting;
+// these functions select a scene's row. Plain values.
 #pragma once
 
 #include <array>
@@ -13,24 +13,25 @@
 
 namespace thunderhead::accuracy {
 
-// A table for each kind of camera, in the order of scene::Camera; why there is none otherwise.
+// A table for each kind of camera, in the order of scene::Camera, or the reason why it is missing.
 using OfferTables = std::array<absl::StatusOr<PricedSettings>, std::variant_size_v<scene::Camera>>;
 
-// The tables that the program is built with.
+// Returns the tables that are built into the program.
 OfferTables BuiltInOfferTables();
 
-// The table of the scene's kind of camera.
+// Returns the table for the scene's kind of camera.
 const absl::StatusOr<PricedSettings>& TableFor(const OfferTables& tables,
                                                const scene::Scene& scene);
 
-// "orbit", "spotter" or "top-down".
+// Returns "orbit", "spotter" or "top-down".
 std::string_view ViewNameOf(const scene::Camera& camera);
 
-// The row of the same technique and model that is most like `setting`, if any: where its light is
-// traced, of the rows with traced light and no more paths, if there are such.
+// Returns the row with the same technique and model that is most similar to `setting`, if any. For
+// traced light, it prefers rows with traced light and at most as many paths.
 const PricedSetting* NearestRow(const PricedSettings& table, const Setting& setting);
 
-// The row's time for a picture of the scene's size: what grows with the pixels is nearly all.
+// Returns the row's time for a picture of the scene's size. Nearly all of the time grows with the
+// number of pixels.
 double TableMs(const PricedSettings& table, const PricedSetting& row, const scene::Scene& scene);
 
 }  // namespace thunderhead::accuracy

@@ -11,12 +11,12 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// How far beyond the limit a setting may go, and how much worse than the best it may be, that is
-// drawn already.
+// The current setting is kept if it exceeds the limit by at most kLimitSlack and is worse than the
+// best by at most kWorthChanging.
 constexpr double kLimitSlack = 1.1;
 constexpr double kWorthChanging = 1.25;
-// Tracing light costs a frame nothing, but takes the machine's time at rest: it is worth that where
-// nothing else is as accurate, not where it only seems a little faster.
+// Tracing light adds nothing to a frame's time but uses the machine at rest. It is worthwhile if
+// nothing else is as accurate, but not if it only seems a little faster.
 constexpr double kTracingIsDearer = 1.2;
 
 // The constrained quantity, its bound, and the objective to minimise within the bound.
@@ -134,7 +134,7 @@ absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
   scene::Scene decided = scene;
   decided.rendering.technique = WithTasteOf(scene.rendering.technique, setting.technique);
   decided.rendering.image_scale = setting.image_scale;
-  // A request for an error that only tracing reaches waits for it.
+  // A request for an error that only tracing reaches waits for the traced light.
   scene::SetTracedLight(&decided.rendering.technique, setting.million_paths > 0.0
                                                           ? scene::TracedLight::kAwaited
                                                           : scene::TracedLight::kOff);

@@ -1,6 +1,6 @@
-// Chooses the setting that reaches the accuracy or speed that a scene asks for, by tables measured
-// against the reference (accuracy/priced_settings.h) and the cost of frames on this machine. Plain
-// values, no clock, no threads.
+// Chooses the setting that reaches the accuracy or speed that a scene requests. It uses tables
+// measured against the reference (accuracy/priced_settings.h) and the cost of frames on this
+// machine. Plain values, no clock, no threads.
 #pragma once
 
 #include <optional>
@@ -25,21 +25,23 @@ struct Offer {
   bool operator==(const Offer&) const = default;
 };
 
-// The best of `offers`, which are not empty: of those within the limit the cheapest for MaxError,
-// the most accurate for MaxMilliseconds; where none is, the nearest to it. `current` stays while it
-// keeps within a tenth of the limit and is little worse than the best, so that noise in the times
-// does not flicker on the screen. No limit: the first.
+// Returns the best of `offers`, which must not be empty. Among those within the limit it is the
+// cheapest for MaxError and the most accurate for MaxMilliseconds. If none is within the limit, it
+// is the nearest. `current` is kept while it exceeds the limit by at most a tenth and is little
+// worse than the best. So noise in the times does not make the picture flicker. Without a limit it
+// is the first.
 Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,
                 const std::optional<Setting>& current);
 
-// True if the offer is within the limit.
+// Returns true if the offer is within the limit.
 bool Meets(const Offer& offer, const scene::Accuracy& limit);
 
-// Why `offer`, which the scene is drawn with, misses what the scene asks for; none if it does not.
+// Returns why `offer`, with which the scene is drawn, misses the scene's request. None if it does
+// not.
 std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer);
 
-// Settings of one view that may be refuted before the last one stays: several that miss the limit
-// by nearly the same are not drawn in turns.
+// Maximum number of refuted settings of one view; then the last one stays. Otherwise several
+// settings that miss the limit by almost the same amount would alternate.
 inline constexpr int kMaxRefuted = 8;
 
 class Offers {
@@ -47,15 +49,15 @@ class Offers {
   // Both must outlive it.
   Offers(const OfferTables& tables, const MachineCosts& costs) : tables_(tables), costs_(costs) {}
 
-  // The scene with the setting that reaches what it asks for, or as it is if it asks for nothing.
-  // `current` is the setting that its view is drawn with so far, `measured` what measuring it has
-  // told. Fails where there is no table.
+  // Returns the scene with the setting that reaches its request. A scene without a request is not
+  // changed. `current` is the present setting of its view. `measured` holds the errors measured on
+  // it. Fails if there is no table.
   absl::StatusOr<scene::Scene> Decide(const scene::Scene& scene,
                                       const std::optional<Setting>& current,
                                       const MeasuredErrors& measured = {}) const;
 
-  // True if the picture of `scene`, drawn with that setting, surely has more error than it asks
-  // for. `measured` knows it then. Callers ask kMaxRefuted times at most.
+  // Returns true if the picture of `scene`, drawn with that setting, certainly has a larger error
+  // than requested, and records it in `measured`. Callers ask kMaxRefuted times at most.
   bool Refutes(const scene::Scene& scene, const Setting& drawn, const MeasuredError& error,
                MeasuredErrors* measured) const;
 
@@ -67,8 +69,8 @@ class Offers {
   const MachineCosts& costs_;
 };
 
-// The table's settings know nothing of the scene's taste: turbulent detail, false colours and
-// theta_f stay those of `asked`.
+// Returns `technique` with the look of `asked`, because the table's settings do not include it:
+// turbulent detail, false colours and theta_f.
 scene::Technique WithTasteOf(const scene::Technique& asked, scene::Technique technique);
 
 }  // namespace thunderhead::accuracy

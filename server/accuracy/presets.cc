@@ -7,9 +7,9 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// docs/performance.md has what each costs and misses.
+// docs/performance.md lists the cost and error of each preset.
 constexpr int kFastSlices = 64;
-// At 1280 x 640 pixels 128 samples leave jags along thin edges: docs/performance.md.
+// At 1280 x 640 pixels, 128 samples leave jagged thin edges: docs/performance.md.
 constexpr int kTrueSlices = 512;
 
 const NamedPreset& RowOf(Preset preset) {

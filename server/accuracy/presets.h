@@ -24,10 +24,10 @@ enum class Preset {
 struct NamedPreset {
   Preset preset;
   std::string_view name;
-  const Mode* of_the_papers = nullptr;  // the mode that it stands for, if it is one
+  const Mode* of_the_papers = nullptr;  // the mode of the papers' table, if it is one
 };
 
-// In the order in which to offer them.
+// The presets in the order in which to offer them.
 inline constexpr std::array<NamedPreset, 7> kPresets = {{
     {Preset::kFast, "fast"},
     {Preset::kBalanced, "balanced"},
@@ -43,10 +43,10 @@ inline constexpr std::array<NamedPreset, 7> kPresets = {{
 
 inline constexpr Preset kDefaultPreset = Preset::kBalanced;
 
-// The technique and settings that it stands for.
+// Returns the technique and settings of the preset.
 scene::Technique TechniqueOf(Preset preset);
 
-// True if it is one of the modes of the papers' table.
+// Returns true if the preset is one of the modes of the papers' table.
 bool IsOfThePapers(Preset preset);
 
 std::string_view NameOf(Preset preset);

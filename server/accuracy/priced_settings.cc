@@ -23,7 +23,7 @@ using Cells = std::vector<absl::string_view>;
 constexpr std::array<absl::string_view, 8> kNeeded = {
     "renderer",    "mode",         "transport",    "slices",
     "image_scale", "jpeg_quality", "milliseconds", "relative_rmse"};
-// Results that the choice of a setting ignores.
+// Columns of results that the choice of a setting ignores.
 constexpr std::array<absl::string_view, 7> kPassedOver = {
     "milliseconds_spread", "bytes",     "relative_bias", "flip",
     "estimated_error",     "error_low", "error_high"};
@@ -35,7 +35,7 @@ struct Fixed {
 };
 constexpr std::array<Fixed, 2> kFixed = {{{"light_detail", "1"}, {"precision", "half"}}};
 
-// Optional column; tables without it have only rows without traced light.
+// An optional column. Tables without it contain only rows without traced light.
 constexpr absl::string_view kMillionPaths = "million_paths";
 
 bool IsFixed(absl::string_view name) {
@@ -43,7 +43,7 @@ bool IsFixed(absl::string_view name) {
                      [&](const Fixed& fixed) { return fixed.column == name; });
 }
 
-// True if a scene can ask for the row's setting. `names` are the columns'.
+// Returns true if a scene can request the row's setting. `names` are the columns' names.
 bool IsOnOffer(const Cells& names, const Cells& cells) {
   if (names.size() != cells.size()) return true;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -59,7 +59,7 @@ bool IsIn(const Names& names, absl::string_view name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The indices of the needed columns, in the order of kNeeded.
+// Returns the indices of the needed columns, in the order of kNeeded.
 absl::StatusOr<std::vector<std::size_t>> ColumnsOf(const Cells& names) {
   for (const absl::string_view name : names) {
     if (IsIn(kNeeded, name) || IsIn(kPassedOver, name) || IsFixed(name)) continue;
@@ -82,7 +82,7 @@ bool ReadNumber(absl::string_view text, double* value) {
   return absl::SimpleAtod(text, value) && std::isfinite(*value) && *value >= 0.0;
 }
 
-// `cells` in the order of kNeeded.
+// Reads a row; `cells` are in the order of kNeeded.
 bool ReadRow(const Cells& cells, PricedSetting* row) {
   Setting& setting = row->setting;
   const auto technique =
@@ -97,7 +97,7 @@ bool ReadRow(const Cells& cells, PricedSetting* row) {
          ReadNumber(cells[7], &row->relative_rmse);
 }
 
-// True as well if the table has no such column.
+// Reads the number of traced paths. Also returns true if the table has no such column.
 bool ReadMillionPaths(const Cells& names, const Cells& cells, double* value) {
   const auto found = std::find(names.begin(), names.end(), kMillionPaths);
   if (found == names.end()) return true;

@@ -18,10 +18,10 @@ constexpr double kMaxTilt_deg = 3.0;
 constexpr double kMaxCloser = 0.05;
 constexpr double kHighest_deg = 89.0;
 
-// Quasirandom points in the unit cube: the R3 sequence (Roberts 2018, "The unreasonable
+// Returns quasirandom points in the unit cube: the R3 sequence (Roberts 2018, "The unreasonable
 // effectiveness of quasirandom sequences").
 glm::dvec3 Spread(std::uint64_t index) {
-  constexpr double kRoot = 1.2207440846057596;  // of x^4 = x + 1
+  constexpr double kRoot = 1.2207440846057596;  // root of x^4 = x + 1
   const double n = static_cast<double>(index) + 0.5;
   const glm::dvec3 turns = n / glm::dvec3(kRoot, kRoot * kRoot, kRoot * kRoot * kRoot);
   return turns - glm::floor(turns);

@@ -1,4 +1,4 @@
-// Cameras of probes, as low-discrepancy sequences. Pure functions.
+// The cameras of probes, as low-discrepancy sequences. Pure functions.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace thunderhead::accuracy {
 
-// Camera `index` of a sequence that frames the box from all sides, evenly over the upper
+// Returns camera `index` of a sequence that frames the box from all sides, evenly over the upper
 // hemisphere.
 scene::Camera AroundStorm(const volume::WorldBox& box, double aspect_ratio, std::uint64_t index);
 
-// `camera` turned around the box's middle by at most 10 degrees, and moved closer or farther by at
-// most a twentieth.
+// Returns `camera` turned around the box's middle by at most 10 degrees, and moved closer or
+// farther by at most a twentieth.
 scene::Camera Nudged(const scene::Camera& camera, const volume::WorldBox& box, std::uint64_t index);
 
 }  // namespace thunderhead::accuracy

@@ -1,5 +1,5 @@
-// A setting that accuracy and speed are measured of: a technique with the size and precision of its
-// buffers, the quality of the JPEG and the paths that correct the light.
+// A setting whose accuracy and speed are measured. It consists of a technique, the size and
+// precision of its buffers, the JPEG quality and the number of paths that correct the light.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace thunderhead::accuracy {
 
-// Paths that are traced for a view that rests, if its light is traced; more change what is seen by
-// less than a hundredth.
+// Number of paths traced for a view at rest if its light is traced. More paths change the visible
+// result by less than a hundredth.
 inline constexpr std::int64_t kTracedPaths = 4'000'000;
-// Paths that a picture outside any session waits for if it asks for no error.
+// Number of paths that an image outside any session waits for if it requests no error.
 inline constexpr std::int64_t kImagePaths = 1'000'000;
 
 struct Setting {
@@ -26,18 +26,19 @@ struct Setting {
   bool operator==(const Setting&) const = default;
 };
 
-// The setting that a decided scene is drawn with in the end, at full quality and all paths traced.
+// Returns the final setting of a decided scene, at full quality and with all paths traced.
 Setting SettingOf(const scene::Scene& scene);
 
-// The setting without traced light: paths cost a frame nothing.
+// Returns the setting without traced light, because paths add nothing to a frame's cost.
 Setting Untraced(Setting setting);
 
-// The same technique, model of light and buffers, traced or not alike. Turbulent detail does not
-// count: it does not change the mean light that tables compare.
+// Return true for the same technique, light model and buffers, both traced or both not traced.
+// Turbulent detail is ignored because it does not change the mean light that tables compare.
 bool SameModel(const scene::Technique& a, const scene::Technique& b);
 bool SameDrawing(const Setting& a, const Setting& b);
 
-// Factors of two between the settings' slices and image scales.
+// Returns the distance as the number of factors of two between the settings' slices and image
+// scales.
 double Distance(const Setting& a, const Setting& b);
 
 }  // namespace thunderhead::accuracy

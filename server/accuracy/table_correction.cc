@@ -8,7 +8,7 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// The weight of a new measurement.
+// Weight of a new measurement.
 constexpr double kFollow = 0.3;
 
 }  // namespace
@@ -19,7 +19,7 @@ void TableCorrection::Mean::Follow(double log_measured) {
 }
 
 TableCorrection::Key TableCorrection::KeyOf(const Setting& setting) {
-  // Rows of the tables have no detail, and stand for settings with it.
+  // Rows of the tables have no detail, and stand for settings with detail.
   scene::Technique technique = setting.technique;
   if (scene::MediumSettings* medium = scene::MediumSettingsOf(&technique); medium != nullptr) {
     medium->look.detail = false;

@@ -1,4 +1,4 @@
-// How much longer frames take on this machine than a table says. Plain values.
+// The ratio of frame times on this machine to those in a table. Plain values.
 #pragma once
 
 #include <map>
@@ -9,18 +9,18 @@
 
 namespace thunderhead::accuracy {
 
-// Ratios of measured to tabulated time: of each setting that was drawn, each technique and the
-// machine. The most specific that is known counts.
+// Ratios of measured to tabulated time for each drawn setting, for each technique and for the
+// machine. The most specific known ratio applies.
 class TableCorrection {
  public:
-  // A frame of `setting` took `measured_ms` where the table says `table_ms`.
+  // Records that a frame of `setting` took `measured_ms`, with `table_ms` in the table.
   void Observe(const Setting& setting, double table_ms, double measured_ms);
   double Factor(const Setting& setting) const;
-  // True if a frame of that setting was observed.
+  // Returns true if a frame of that setting was observed.
   bool Knows(const Setting& setting) const;
 
  private:
-  // A running mean of logarithms: times scatter by factors.
+  // A running mean of logarithms, because times scatter by factors.
   struct Mean {
     double log_factor = 0.0;
     int count = 0;

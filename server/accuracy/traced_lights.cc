@@ -10,13 +10,13 @@ bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
   if (!scene::CapabilitiesOf(scene.rendering.technique).traced_light) return false;
   scene::Scene known = traced;
   scene::Scene alike = scene;
-  // When it is traced does not matter, nor what is painted on the ground.
+  // The time of tracing does not matter, nor does what is painted on the ground.
   for (scene::Scene* const each : {&known, &alike}) {
     each->ground = {.cover = each->ground.cover};
     scene::SetTracedLight(&each->rendering.technique, scene::TracedLight::kOff);
   }
   alike.camera = traced.camera;
-  alike.lights = traced.lights;  // which the correction does not include
+  alike.lights = traced.lights;  // the correction does not include them
   alike.display = traced.display;
   alike.output = traced.output;
   alike.accuracy = traced.accuracy;

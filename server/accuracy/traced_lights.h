@@ -1,5 +1,5 @@
-// The corrections of light found by tracing so far, for threads that draw. Safe from any thread:
-// one thread traces (accuracy/corrector_pool.h), others draw.
+// The current corrections of light by tracing, for drawing threads. Safe from any thread: one
+// thread traces (accuracy/corrector_pool.h) while others draw.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace thunderhead::accuracy {
 
-// True if light traced for the scene `traced` is that of `scene`: only its camera, display and the
-// like may differ.
+// Returns true if light traced for the scene `traced` is valid for `scene`: only its camera,
+// display and similar settings may differ.
 bool SharesLight(const scene::Scene& traced, const scene::Scene& scene);
 
 class TracedLights {
@@ -25,13 +25,13 @@ class TracedLights {
 
   struct Found {
     std::shared_ptr<const renderers::LightCorrection> correction;
-    std::int64_t paths = 0;  // that it was made of
+    std::int64_t paths = 0;  // number of paths that it was made of
   };
 
-  // None if there is no correction for the scene, or it shows none.
+  // Returns none if there is no correction for the scene or the scene shows none.
   std::optional<Found> Find(const scene::Scene& scene, const Fields& fields);
 
-  // A scene whose light is traced; held by the tracing thread.
+  // A scene whose light is traced. The tracing thread holds it.
   class Entry {
    public:
     Entry(std::shared_ptr<TracedLights> lights, scene::Scene scene, Fields fields);
@@ -40,7 +40,7 @@ class TracedLights {
     Entry& operator=(const Entry&) = delete;
 
     void Publish(Found found);
-    // Since the correction was published, or found by somebody.
+    // Returns the time since the correction was published or last found.
     double UnusedMs() const;
 
    private:

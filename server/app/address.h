@@ -9,14 +9,15 @@
 namespace thunderhead::app {
 
 struct Address {
-  std::string host;  // "localhost" becomes 127.0.0.1; an IPv6 address has no brackets here
+  std::string host;  // "localhost" becomes 127.0.0.1; an IPv6 address has no brackets
   std::uint16_t port = 0;
 };
 
-// INVALID_ARGUMENT names `flag` and the expected format.
+// Parses HOST:PORT. Returns INVALID_ARGUMENT, which names `flag` and the expected format, if that
+// fails.
 absl::StatusOr<Address> ParseAddress(const std::string& flag, const std::string& text);
 
-// HOST:PORT, with brackets around an IPv6 address.
+// Returns HOST:PORT, with brackets around an IPv6 address.
 std::string ToString(const Address& address);
 
 }  // namespace thunderhead::app

@@ -19,7 +19,7 @@
 namespace thunderhead::app {
 namespace {
 
-// While the disk hangs.
+// Maximum number of lines that wait while the disk hangs.
 constexpr std::size_t kMaxWaitingLines = 10'000;
 
 }  // namespace
@@ -30,7 +30,7 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
   if (path.empty()) {
     sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
   } else {
-    // Made here, as spdlog makes files that everybody may read.
+    // The file is created here, because spdlog creates files that every user may read.
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
     if (file < 0) {
       return absl::InvalidArgumentError(
@@ -43,7 +43,7 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
   if (path.empty() && log_format == "json") {
     log->set_formatter(std::make_unique<JsonFormatter>());
   } else {
-    log->set_pattern("%v");  // the line has its own time
+    log->set_pattern("%v");  // because the line contains its own time
   }
   log->flush_on(spdlog::level::info);
   const auto writer = std::make_shared<base::LineWriter>(

@@ -1,4 +1,4 @@
-// Where the audit's lines go.
+// Opens the destination of the audit log.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace thunderhead::app {
 
-// To the file at `path`, to which they are appended and which only its owner may read; to standard
-// error if it is empty, among the log's lines and so in its format, "text" or "json". A thread
-// writes them, which may fall behind where the disk hangs.
+// Opens the audit log, which appends to the file at `path`; only its owner may read the file. If
+// `path` is empty, the lines go to standard error among the log's lines and in its format, "text"
+// or "json". A separate thread writes them, and may fall behind if the disk hangs.
 absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path,
                                                          const std::string& log_format);
 

@@ -1,4 +1,4 @@
-// How `thunderhead serve` follows its folders of storms, as flags.
+// The flags of `thunderhead serve` that control how it follows its folders of storms.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ void AddCatalogueFlags(CLI::App& command, CatalogueFlags& flags);
 
 storm_store::LinkPolicy LinksOf(const CatalogueFlags& flags);
 
-// Nothing where the storms are to stay those of the start.
+// Returns nothing if the storms should stay as they were at the start.
 std::optional<storm_store::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags);
 
 }  // namespace thunderhead::app

@@ -26,7 +26,7 @@ absl::StatusOr<load::Access> ReadClientAccess(const ClientAccessFlags& flags) {
   }
   absl::StripAsciiWhitespace(&access.token);
   for (const char c : access.token) {
-    // gRPC aborts the process on metadata with other bytes.
+    // gRPC aborts the process on metadata with other bytes, so they are rejected.
     if (!absl::ascii_isgraph(static_cast<unsigned char>(c))) {
       return absl::InvalidArgumentError(
           "the token is not printable ASCII without spaces; does --token-file name the right "

@@ -16,10 +16,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kTemporary = "thunderhead-clouds-";
-// A server that starts has its folder for a moment before it locks it.
+// A starting server creates its folder shortly before it locks it, so new folders are kept.
 constexpr std::chrono::minutes kStarting{1};
 
-// Deletes what killed servers left.
+// Deletes the folders of servers that were killed.
 void DeleteAbandoned(const fs::path& parent) {
   std::error_code error;
   for (fs::directory_iterator entry(parent, error), end; !error && entry != end;

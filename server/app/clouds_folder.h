@@ -12,8 +12,8 @@ namespace thunderhead::app {
 
 class CloudsFolder {
  public:
-  // Creates the folder if it does not exist; an empty `path` creates a temporary one, after
-  // deleting those of servers that were killed before they could.
+  // Creates the folder if it does not exist. An empty `path` creates a temporary one, after
+  // deleting the temporary folders of servers that were killed.
   static absl::StatusOr<CloudsFolder> Open(const std::string& path);
   CloudsFolder(CloudsFolder&& other) noexcept;
   CloudsFolder& operator=(CloudsFolder&&) = delete;
@@ -21,14 +21,14 @@ class CloudsFolder {
   ~CloudsFolder();
 
   const std::string& Path() const { return path_; }
-  // Clouds from earlier runs.
+  // Returns the files of clouds from earlier runs.
   std::vector<std::string> Files() const;
 
  private:
   CloudsFolder(std::string path, std::optional<store::FileLock> held);
 
   std::string path_;
-  std::optional<store::FileLock> held_;  // of a temporary folder alone
+  std::optional<store::FileLock> held_;  // only for a temporary folder
 };
 
 }  // namespace thunderhead::app

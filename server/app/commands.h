@@ -1,6 +1,6 @@
-// The program's subcommands. Each adds its flags to `app` and returns the function to run once they
-// are parsed. That returns OK or the error to print, whose code decides how the program ends
-// (exit_codes.h).
+// The program's subcommands. Each function adds its flags to `app` and returns the function to run
+// after they are parsed. That function returns OK, or the error to print, whose code decides the
+// program's exit code (exit_codes.h).
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ Command AddWatch(CLI::App& app);
 Command AddInspect(CLI::App& app);
 Command AddFlux(CLI::App& app);
 Command AddMeasure(CLI::App& app);
-// Parts of `measure`.
+// Subcommands of `measure`.
 Command AddMeasureFrames(CLI::App& measure);
 Command AddMeasureExtremes(CLI::App& measure);
 Command AddMeasureSlices(CLI::App& measure);

@@ -1,5 +1,5 @@
-// The formats by which commands open storm files: every file is described and read by a confined
-// process (sandbox/confined_files.h).
+// The formats with which commands open storm files. A confined process describes and reads every
+// file (sandbox/confined_files.h).
 #pragma once
 
 #include "CLI/CLI.hpp"
@@ -20,7 +20,8 @@ void AddReaderFlags(CLI::App& command, ReaderFlags& flags);
 
 sandbox::ReaderLimits LimitsOf(const ReaderFlags& flags);
 
-// FAILED_PRECONDITION if this machine cannot confine a reader, so that no storm file can be read.
+// Returns FAILED_PRECONDITION if this machine cannot confine a reader, so that no storm file can be
+// read.
 absl::Status ProbeReaders(const sandbox::ReaderLimits& limits);
 
 }  // namespace thunderhead::app

@@ -17,7 +17,8 @@ extern char** environ;
 namespace thunderhead::app {
 namespace {
 
-// Waits for ecflow_client, which itself gives up after ECF_TIMEOUT seconds. 0 if all went well.
+// Runs ecflow_client and waits for it; ecflow_client itself stops after ECF_TIMEOUT seconds.
+// Returns 0 if it succeeded.
 int Spawn(std::vector<std::string> arguments) {
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
@@ -25,9 +26,9 @@ int Spawn(std::vector<std::string> arguments) {
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  // Standard output is for products' lines.
+  // Standard output is reserved for the lines of products.
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  // The program blocks the signals that ask it to stop.
+  // The signals are unblocked, because this program blocks those that ask it to stop.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -86,7 +87,7 @@ void EcflowReporter::TellServer(const State& state) {
   const bool first = told_.product.empty() && !state.product.empty();
   if (state.product != told_.product) Call("--label=product", state.product);
   if (first) Call("--event=first");
-  // Last, so that who sees it at 100 has seen the others.
+  // The meter is set last, so that an observer who sees 100 has seen the rest.
   if (state.percent != told_.percent) Call("--meter=products", absl::StrCat(state.percent));
   told_ = state;
 }

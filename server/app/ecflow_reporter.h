@@ -1,5 +1,6 @@
-// Tells ecFlow how far a task is, by its program ecflow_client: the meter "products" from 0 to 100,
-// the label "product" with the newest one, and the event "first" once there is one.
+// Reports the progress of a task to ecFlow by its program ecflow_client. It sets the meter
+// "products" from 0 to 100, the label "product" to the newest one, and the event "first" after the
+// first product.
 #pragma once
 
 #include <condition_variable>
@@ -12,15 +13,16 @@ namespace thunderhead::app {
 class EcflowReporter {
  public:
   EcflowReporter();
-  // Tells the last that it was given.
+  // Reports the last state, then ends.
   ~EcflowReporter();
   EcflowReporter(const EcflowReporter&) = delete;
   EcflowReporter& operator=(const EcflowReporter&) = delete;
 
-  // True in a task of ecFlow: ECF_NAME is set.
+  // Returns true in a task of ecFlow, which has ECF_NAME set.
   static bool InTask();
 
-  // Never waits for ecFlow's server: what is newer goes in place of what was not told yet.
+  // Reports progress without waiting for ecFlow's server. Newer progress replaces progress that was
+  // not reported yet.
   void Tell(int done, int planned, const std::string& product);
 
  private:
@@ -38,7 +40,7 @@ class EcflowReporter {
   std::condition_variable changed_;
   bool ended_ = false;
   State newest_;
-  // Of the thread alone.
+  // Only the thread uses these.
   State told_;
   bool complained_ = false;
   std::thread thread_;

@@ -1,5 +1,5 @@
-// How the program ends, for the suites that run it: by sysexits.h, so that a suite can tell what to
-// try again from what never to try again.
+// The exit codes of the program, for the suites that run it. They follow sysexits.h, so that a
+// suite can distinguish failures to retry from permanent ones.
 #pragma once
 
 #include <string>
@@ -10,19 +10,20 @@ namespace thunderhead::app {
 
 enum class ExitCode {
   kDone = 0,
-  kBadRequest = 64,     // EX_USAGE: the command line or the scene
-  kBadInput = 65,       // EX_DATAERR: a storm file that is damaged or of another kind
-  kProgramError = 70,   // EX_SOFTWARE: the program's own
-  kTryAgain = 75,       // EX_TEMPFAIL: not ready, busy, interrupted, no room
-  kConfiguration = 78,  // EX_CONFIG: no such device, a folder that may not be written to
+  kBadRequest = 64,    // EX_USAGE: an error in the command line or the scene
+  kBadInput = 65,      // EX_DATAERR: a storm file that is damaged or of another kind
+  kProgramError = 70,  // EX_SOFTWARE: an error of the program itself
+  kTryAgain = 75,      // EX_TEMPFAIL: not ready, busy, interrupted, or out of space
+  // EX_CONFIG: for example a missing device, or a folder without write permission
+  kConfiguration = 78,
 };
 
-// By the status's code alone: INVALID_ARGUMENT is a bad request, DATA_LOSS bad input,
-// FAILED_PRECONDITION and PERMISSION_DENIED configuration, what may pass by itself (NOT_FOUND of a
-// file included, as it may not be there yet) worth another try.
+// Returns the exit code for the status's code. INVALID_ARGUMENT is a bad request, DATA_LOSS bad
+// input, FAILED_PRECONDITION and PERMISSION_DENIED configuration. Errors that may pass without a
+// change can be retried. They include NOT_FOUND, because a file may not exist yet.
 ExitCode ExitCodeOf(const absl::Status& status);
 
-// The table, for --help.
+// Returns the table of exit codes for --help.
 std::string ExitCodesHelp();
 
 }  // namespace thunderhead::app

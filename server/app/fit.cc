@@ -35,7 +35,7 @@ struct FitFlags {
 };
 
 // The quantity to approximate: extinction (1/m) of all fields with their default optics, or the
-// mass of one (kg/m3).
+// mass of one field (kg/m3).
 struct FitTarget {
   std::string quantity;
   std::string units;
@@ -137,7 +137,7 @@ absl::StatusOr<clouds::FitResult> FitWithProgress(const volume::RegularGrid& gri
       interruption.Token());
 }
 
-// Writes the balls' sum as a storm file, for comparison with the original.
+// Writes the sum of the balls as a storm file, for comparison with the original.
 absl::Status WriteVolume(const FitFlags& flags, const clouds::MetaballCloud& cloud,
                          const volume::RegularGrid& grid) {
   storm_files::CfCloud file;

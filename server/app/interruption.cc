@@ -19,17 +19,17 @@ sigset_t Signals() {
   return signals;
 }
 
-// Waits for one of `signals`; false if none came within `wait`.
+// Waits for one of `signals`. Returns false if none came within `wait`.
 bool Taken(const sigset_t& signals, milliseconds wait) {
   const timespec limit{0, std::chrono::nanoseconds(wait).count()};
   return sigtimedwait(&signals, nullptr, &limit) > 0;
 }
 
-// One request may arrive as several signals: a terminal, a shell and coreutils' timeout each signal
+// One request may arrive as several signals. A terminal, a shell and coreutils' timeout each signal
 // the program and its process group.
 constexpr milliseconds kOneInterruption(250);
 
-// The name of the thread once a further signal ends the program.
+// The name of the thread from when a further signal ends the program.
 constexpr char kInterrupted[] = "interrupted";
 
 }  // namespace
@@ -44,10 +44,11 @@ Interruption::Interruption() {
     stop_.request_stop();
     const auto whole = steady_clock::now() + kOneInterruption;
     while (steady_clock::now() < whole) Taken(signals, milliseconds(20));
-    // This thread may not have run for the whole time: what has arrived meanwhile belongs to it.
+    // This thread may not have run during the whole time. Signals that arrived meanwhile belong to
+    // the same request.
     while (Taken(signals, milliseconds(0))) {
     }
-    // Only this thread does not block the next signal, which ends the program.
+    // Only this thread unblocks the next signal, which then ends the program.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     pthread_setname_np(pthread_self(), kInterrupted);
     while (!ended.stop_requested()) std::this_thread::sleep_for(milliseconds(20));

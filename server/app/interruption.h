@@ -1,5 +1,6 @@
-// Ctrl-C (SIGINT) and SIGTERM as a request to stop, for work that then reports its partial result.
-// Signals within a quarter of a second count as one request; a later one ends the program as usual.
+// Converts Ctrl-C (SIGINT) and SIGTERM to a request to stop, for work that then reports its partial
+// result. Signals within a quarter of a second count as one request. A later signal ends the
+// program as usual.
 #pragma once
 
 #include <csignal>
@@ -10,10 +11,11 @@ namespace thunderhead::app {
 
 class Interruption {
  public:
-  // Blocks the signals in this thread and in those it starts later, and waits for them in another.
+  // Blocks the signals in this thread and in all threads that it starts later, and waits for them
+  // in a separate thread.
   Interruption();
-  // Restores the signal mask. Waits until all signals of a request have arrived, so that a late one
-  // does not end the program before it has written its result.
+  // Restores the signal mask. It first waits until all signals of a request have arrived, so that a
+  // late one does not end the program before it has written its result.
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

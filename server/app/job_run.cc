@@ -26,11 +26,11 @@ using PictureState = v1::RenderJobPictureState;
 using std::chrono::seconds;
 using std::chrono::steady_clock;
 
-// Few enough that a request is small and a killed run leaves little; several, so that one is drawn
-// while another's last pictures are fetched.
+// Each job is small, so that a request is small and a killed run leaves little. There are several
+// jobs, so that one is drawn while the last pictures of another are fetched.
 constexpr std::size_t kPicturesPerJob = 100;
 constexpr int kJobsAtATime = 2;
-// How long a lost server is waited for, and between two tries.
+// The total time of retries after the server was lost, and the pause between two retries.
 constexpr seconds kServerPatience{60};
 constexpr seconds kServerPause{1};
 
@@ -67,7 +67,8 @@ v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPi
   request.mutable_scene()->set_storm_id(picture.server_storm);
   request.mutable_scene()->set_time_index(static_cast<std::uint32_t>(picture.time_index));
   request.set_format(options.format.Drawn());
-  // By what it shows, not by the index of its time, which may change meanwhile.
+  // The name depends on what the picture shows. It does not depend on the index of its time, which
+  // may change meanwhile.
   const pipeline::InputFile& input = *picture.server_input;
   request.set_name(pipeline::Sha256(absl::StrCat(
       picture.path, "\n", options.views[picture.view].sha256, "\n", input.path, "\n", input.bytes,
@@ -75,7 +76,8 @@ v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPi
   return request;
 }
 
-// The same for every run of these products, on whichever machine that has the folder.
+// Returns a label that is the same for every run of these products, on any machine with the same
+// folder.
 std::string LabelOf(const std::string& manifest) {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::absolute(manifest, error);
@@ -93,7 +95,7 @@ pipeline::InputFile InputOf(const std::string& server, const std::string& storm,
   return input;
 }
 
-// Pictures of one job by their place in it; without an id it is to be created.
+// The pictures of one job, by their index in it. Without an id, the job has yet to be created.
 struct JobShare {
   std::string job_id;
   std::map<std::uint32_t, PlannedPicture*> pictures;
@@ -104,7 +106,8 @@ class JobRun {
   JobRun(ServerLink& server, PictureRun& run, RunProgress& progress)
       : server_(server), run_(run), progress_(progress), label_(LabelOf(run.Options().manifest)) {}
 
-  // Jobs of these products of which nothing is missing are forgotten.
+  // Returns the jobs for the missing pictures. Existing jobs of these products without missing
+  // pictures are deleted from the server.
   absl::StatusOr<std::vector<JobShare>> SharesOf(const std::vector<PlannedPicture*>& missing);
   // Returns when each picture of the share has its outcome.
   absl::Status Make(JobShare& share, const std::stop_token& stop);
@@ -159,7 +162,7 @@ absl::StatusOr<std::vector<JobShare>> JobRun::SharesOf(
       shares.push_back(std::move(share));
     }
   }
-  // In the order of the plan.
+  // The remaining pictures are added in the order of the plan.
   std::size_t open = shares.size();
   for (PlannedPicture* picture : missing) {
     if (!by_name.contains(RequestOf(run_.Options(), *picture).name())) continue;
@@ -191,7 +194,7 @@ void JobRun::Forget(const std::string& job_id) {
   request.set_job_id(job_id);
   request.set_forget(true);
   v1::CancelRenderJobResponse response;
-  // Otherwise the server does by itself, after a time.
+  // If this fails, the server deletes the job automatically after a time.
   (void)server_.Call(server_.Jobs(), &JobStub::CancelRenderJob, request, &response);
 }
 
@@ -310,7 +313,7 @@ absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
     if (!MayComeBack(status) || steady_clock::now() - lost_since > kServerPatience) return status;
     PauseForServer(stop);
   }
-  // The job has ended, so these will not come.
+  // The job has ended, so the remaining pictures will not arrive.
   for (const auto& [place, picture] : share.pictures) {
     progress_.Failed(picture->path, picture->outcome);
   }
@@ -367,7 +370,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
   std::vector<PlannedPicture*> missing;
   for (PlannedPicture& picture : pictures) {
     if (stop.stop_requested()) return RunInterrupted();
-    // The server's files have no hash here, so their size and time decide alone.
+    // The server's files have no hash here, so only their size and time decide.
     const auto no_hash = [] { return std::string("unknown"); };
     THUNDERHEAD_ASSIGN_OR_RETURN(const bool made,
                                  run.IsMade(picture, *picture.server_input, no_hash));
@@ -379,7 +382,8 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
     progress.Kept(picture.path);
   }
   JobRun jobs(server, run, progress);
-  // Also where nothing is missing: a run that was killed at its end has left its job there.
+  // This is needed even if nothing is missing, because a run that was killed at its end has left
+  // its job on the server.
   absl::StatusOr<std::vector<JobShare>> found = jobs.SharesOf(missing);
   if (missing.empty()) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<JobShare> shares, std::move(found));
@@ -393,7 +397,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
       const absl::Status made = jobs.Make(shares[i], ending.get_token());
       if (made.ok()) continue;
       const std::lock_guard lock(failure_mutex);
-      // Others are cancelled because of the first.
+      // Only the first failure counts, because the others are cancelled as a result.
       if (failure.ok()) failure = made;
       ending.request_stop();
     }

@@ -1,6 +1,6 @@
-// Makes the pictures of a plan by a server's render jobs, on the rules of PictureRun: each once,
-// whole, with its line in the manifest. What the server has drawn for a run that was stopped is
-// fetched, not drawn again.
+// Makes the pictures of a plan by a server's render jobs, with the guarantees of PictureRun: each
+// is made once, is complete, and has its line in the manifest. Pictures that the server drew for a
+// stopped run are fetched instead of drawn again.
 #pragma once
 
 #include <cstddef>
@@ -17,15 +17,17 @@
 
 namespace thunderhead::app {
 
-// The storm of that id, or an error that says which there are.
+// Returns the storm with that id, or an error that lists the storms.
 absl::StatusOr<v1::StormDescription> DescribeStorm(ServerLink& server, const std::string& id);
 
-// As PlanOf for storms of this machine; `number` is the storm's in the plan.
+// Returns the plan, as PlanOf does for storms of this machine. `number` is the storm's index in the
+// plan.
 absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(
     const PictureRunOptions& options, const ServerLink& server, const v1::StormDescription& storm,
     std::size_t number, const std::vector<int>& times, bool assume_run);
 
-// As PictureRun::Make. A server that is lost is waited for, for a minute; UNAVAILABLE after that.
+// Makes the pictures, as PictureRun::Make does. If the server is lost, it retries for a minute and
+// then returns UNAVAILABLE.
 absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<PlannedPicture>& pictures,
                         RunProgress& progress, const std::stop_token& stop);
 

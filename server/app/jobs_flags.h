@@ -12,16 +12,17 @@
 namespace thunderhead::app {
 
 struct JobsFlags {
-  std::string folder;  // empty: in the state folder
+  std::string folder;  // if empty, in the state folder
   double quota_gib = 10.0;
-  double quota_each_gib = 0.0;  // 0: half of it
+  double quota_each_gib = 0.0;  // 0 means half of it
   double keep_hours = 24.0;
   jobs::JobLimits limits;
 };
 
 void AddJobsFlags(CLI::App& serve, JobsFlags& flags);
 
-// Jobs as the flags say, in that state; none without a folder for their results.
+// Returns the options of jobs from the flags and that state. Without a folder for results, there
+// are no jobs.
 jobs::JobsOptions JobsOptionsOf(const JobsFlags& flags, const State& state);
 
 }  // namespace thunderhead::app

@@ -1,4 +1,4 @@
-// The reference's pictures that others are compared with, kept between runs.
+// The pictures of the reference for comparison with others, stored between runs.
 #pragma once
 
 #include <string>
@@ -14,13 +14,14 @@ namespace thunderhead::app {
 struct Truth {
   std::string name;  // for the progress bar
   scene::Scene scene;
-  std::string scene_text;  // of every setting that the picture depends on
+  std::string scene_text;  // with every setting that the picture depends on
   reference::TraceOptions options;
   int samples_per_pixel = 0;
 };
 
-// The picture kept at `path` if it has the same scene text, peak cut and samples; otherwise traces
-// and keeps a new one there. CANCELLED if interrupted, and then nothing is written.
+// Returns the picture stored at `path` if it has the same scene text, peak cut and samples.
+// Otherwise traces a new one and stores it there. Returns CANCELLED if interrupted, and then writes
+// nothing.
 absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
                                                  const volume::HydrometeorFields& fields,
                                                  const std::string& path,

@@ -1,10 +1,10 @@
-// Sends the lines that gRPC and protobuf write by themselves to the log, at most a few a second: a
-// client's bytes cause them.
+// Redirects the log lines of gRPC and protobuf to the log. They are limited to a few per second,
+// because clients can cause them.
 #pragma once
 
 namespace thunderhead::app {
 
-// Before the first use of gRPC.
+// Installs the redirection. It must be called before the first use of gRPC.
 void TakeLibraryLogs();
 
 }  // namespace thunderhead::app

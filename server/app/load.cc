@@ -97,7 +97,7 @@ absl::Status Load(const LoadFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const LoadTarget target, ParseTarget(flags.server));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, LoadOptionsOf(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
-  // Before the transport starts threads, which must not take the signals.
+  // This precedes the threads of the transport, which must not receive the signals.
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<load::Transport> transport,
                                TransportTo(target, access));

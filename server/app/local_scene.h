@@ -21,8 +21,8 @@ struct LocalScene {
   std::shared_ptr<const volume::HydrometeorFields> fields;
 };
 
-// Opens the storm at `path`, completes the scene that `flags` give as the service does, and reads
-// the fields of its time, with a progress bar. INVALID_ARGUMENT names the value that is wrong.
+// Opens the storm at `path`, completes the scene from `flags` as the service does, and reads the
+// fields of its time with a progress bar. Returns INVALID_ARGUMENT, which names the wrong value.
 absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags);
 
 }  // namespace thunderhead::app

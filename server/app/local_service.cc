@@ -16,7 +16,7 @@
 namespace thunderhead::app {
 namespace {
 
-// A running model writes each part of a file within this time.
+// A running model is assumed to write each part of a file within this time.
 constexpr absl::Duration kStillWritten = absl::Minutes(2);
 
 }  // namespace
@@ -30,8 +30,8 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
   if (!absl::IsDataLoss(status)) return AsFileProblem(status);
   const auto stamp = base::StampOf(path);
   if (!stamp.has_value()) return status;
-  // Not by when its entry changed, as a change of owner is none of a writer's. A date further in
-  // the future than clocks differ says nothing.
+  // The age does not use the time of the inode change, because a change of owner is not made by a
+  // writer. A time that lies further in the future than clocks differ gives no information.
   const absl::Duration age = absl::Now() - absl::FromUnixNanos(stamp->modified_ns);
   if (absl::AbsDuration(age) > kStillWritten) return status;
   return absl::UnavailableError(
@@ -88,7 +88,7 @@ absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
   service::ServerOptions options;
   options.render_loop.lanes_yield = false;
   auto server = service::Server::Start(options, std::move(store), drawing::GlFrameSources(device));
-  // A device that is not there does not come by waiting.
+  // A missing device will not appear by waiting, so the code must not suggest a retry.
   if (!server.ok() && !absl::IsInvalidArgument(server.status())) {
     return absl::FailedPreconditionError(server.status().message());
   }

@@ -17,30 +17,31 @@ namespace thunderhead::app {
 // Opens the file or folder at `path`, which must contain exactly one storm.
 absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path);
 
-// The index of the time wanted of the storm, which the user named by `path`; if none is, of the
-// last. INVALID_ARGUMENT if it does not have that time.
+// Returns the index of the time `wanted`, or of the last time if none is given. `path` is the
+// user's name for the storm. Returns INVALID_ARGUMENT if the storm does not have that time.
 absl::StatusOr<int> TimeOf(const storm_store::StormStore& store, const std::string& path,
                            std::optional<int> wanted);
 
-// The error of a storm's file: whatever code the store gives a bad one, it is DATA_LOSS and no
-// wrong request.
+// Converts the error of a storm's file. Whatever code the store gives for a bad file, the result is
+// DATA_LOSS, which is not a wrong request.
 absl::Status AsFileProblem(const absl::Status& status);
-// The same of the file at `path`. What is damaged may still be being written if it changed within
-// the last two minutes: it is UNAVAILABLE then.
+// Converts the error of the file at `path`. If it changed within the last two minutes, a model may
+// still be writing it, and a damaged file gives UNAVAILABLE.
 absl::Status AsFileProblem(const std::string& path, const absl::Status& status);
 
 // Reads one time of the store's storm into its cache, with a progress bar.
 absl::Status ReadWithProgress(storm_store::StormStore& store, int time_index);
 
-// The fields of one time of the storm at `path`, read with a progress bar; errors as above.
+// Returns the fields of one time of the storm at `path`, read with a progress bar. Errors are as
+// above.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
     const std::string& path, std::optional<int> wanted);
 
-// The service on `store`, drawing on `device`, without a listening port.
+// Starts the service for `store`, drawing on `device`, without a listening port.
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<storm_store::StormStore> store, const std::string& device);
 
-// The same code and message.
+// Returns a status with the same code and message.
 absl::Status FromGrpc(const grpc::Status& status);
 
 }  // namespace thunderhead::app

@@ -12,7 +12,7 @@
 namespace thunderhead::app {
 namespace {
 
-// The message of a line, made printable.
+// Writes the message of a line, made printable.
 class PrintableMessage final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,

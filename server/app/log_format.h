@@ -1,4 +1,4 @@
-// The two formats of log lines: text, and JSON with an object a line. Both make a message
+// The two formats of log lines: text, and JSON with one object per line. Both make a message
 // printable, so that a name from a file or a client cannot forge a line.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace thunderhead::app {
 
-// Writes time, logger, level and message, as spdlog does by default.
+// Returns a formatter for time, logger, level and message, as spdlog writes them by default.
 std::unique_ptr<spdlog::formatter> TextFormatter();
 
 // Writes an object with time, level and message.

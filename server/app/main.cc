@@ -1,4 +1,5 @@
-// thunderhead: storms from weather models as they would look in the sky. Exit codes: exit_codes.h.
+// thunderhead: storms from weather models as they would look in the sky. The exit codes are in
+// exit_codes.h.
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -28,7 +29,8 @@ int Report(const absl::Status& status) {
   return static_cast<int>(ExitCodeOf(status));
 }
 
-// The parser would only report that a subcommand is required.
+// Returns an error for an unknown subcommand, because the parser would only report that a
+// subcommand is required.
 absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return absl::OkStatus();
   std::vector<std::string> names;
@@ -39,7 +41,7 @@ absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Main(int argc, char** argv) {
-  // A limit on the size of files is an error of writing, not a signal.
+  // Reaching a limit on the size of files should be a write error, not a signal.
   std::signal(SIGXFSZ, SIG_IGN);
   // Standard output is for results, so the log goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));

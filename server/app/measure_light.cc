@@ -66,8 +66,8 @@ absl::StatusOr<picture::LinearPicture> TruthOf(const LightFlags& flags, const Lo
   return KeptTruth(truth, *local.fields, path, interruption);
 }
 
-// Writes side by side: the truth, the drawn picture, and their difference, as 1/2 plus a quarter of
-// the difference over the truth's mean.
+// Writes three pictures side by side: the reference, the drawn picture, and their difference. The
+// difference is shown as 1/2 plus a quarter of the difference over the reference's mean.
 absl::Status WriteComparison(const picture::LinearPicture& truth,
                              const picture::LinearPicture& drawn, scene::Scene scene,
                              const std::string& path) {
@@ -100,7 +100,7 @@ absl::Status WriteComparison(const picture::LinearPicture& truth,
   return base::WriteWholeFile(path, png);
 }
 
-// Prints the table row of one drawn picture against the truth and writes the comparison.
+// Prints the table row of one drawn picture compared with the reference, and writes the comparison.
 struct Compared {
   const LightFlags& flags;
   const LocalScene& local;
@@ -128,7 +128,7 @@ struct Compared {
   }
 };
 
-// Repeats the part "all" with light corrected by traced paths.
+// Repeats the part "all" with path-traced correction of the light.
 absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& scene,
                                 const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -158,7 +158,7 @@ absl::Status MeasureTransport(const Compared& compared,
   scene::Scene scene = compared.local.scene;
   auto& technique = std::get<scene::LightVolume>(scene.rendering.technique);
   technique.medium.transport = transport.value;
-  technique.medium.look.detail = false;  // as in the truth
+  technique.medium.look.detail = false;  // as in the reference
   THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
   technique.traced_light = scene::TracedLight::kAtRest;
   const bool traces = compared.part == LightPart::kAll && !compared.flags.million_paths.empty() &&

@@ -60,7 +60,7 @@ absl::Status WritePng(const std::string& path, const glm::ivec2& size_px,
   return base::WriteWholeFile(path, png);
 }
 
-// Prints the figures of a picture and writes it, if asked to.
+// Prints the figures of a picture, and writes the picture if requested.
 absl::Status Print(const LookFlags& flags, const std::string& name, const scene::Scene& scene,
                    const volume::HydrometeorFields& fields, const picture::LinearPicture& picture) {
   frame::ToneMapper tone_mapper;
@@ -88,7 +88,7 @@ absl::Status Print(const LookFlags& flags, const std::string& name, const scene:
   return absl::OkStatus();
 }
 
-// The cameras to measure, empty for the scene's own.
+// Returns the cameras to measure; an empty name means the scene's own camera.
 std::vector<std::string> CamerasOf(const SceneFlags& flags) {
   if (!flags.camera.empty()) return {flags.camera};
   if (!flags.file.empty()) return {""};

@@ -54,7 +54,7 @@ absl::Status CheckFlags(const SlicesFlags& flags) {
   return absl::OkStatus();
 }
 
-// Half-angle slices without a name.
+// Returns the technique with that name, or half-angle slices for an empty name.
 absl::StatusOr<accuracy::PlainTechnique> TechniqueNamed(const std::string& name) {
   if (name.empty()) return accuracy::Plain<scene::HalfAngle>();
   const auto* const found =
@@ -64,7 +64,7 @@ absl::StatusOr<accuracy::PlainTechnique> TechniqueNamed(const std::string& name)
       absl::StrCat("--renderer is '", name, "'; it must be half_angle or light_volume"));
 }
 
-// The cloud fills the picture.
+// Returns a cloud that fills the picture.
 Subject SlabOf(double optical_depth) {
   Subject subject{absl::StrFormat("smooth cloud of optical depth %g", optical_depth),
                   {},
@@ -87,10 +87,10 @@ absl::Status MeasureSlices(const SlicesFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Subject subject, SubjectOf(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const accuracy::PlainTechnique technique,
                                TechniqueNamed(flags.scene.technique));
-  // Procedural detail does not converge with the number of slices.
+  // Detail is off because procedural detail does not converge with the number of slices.
   subject.scene.rendering.technique = technique.settings();
   subject.scene.output = {.width_px = 160, .height_px = 160};
-  // Black sky and ground, so that only the light of the cloud is measured.
+  // Sky and ground are black, so that only the light of the cloud is measured.
   subject.scene.sky = {0.0, 0.0};
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));

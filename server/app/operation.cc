@@ -32,13 +32,13 @@ using std::chrono::steady_clock;
 // One request may arrive as several signals (interruption.cc).
 constexpr milliseconds kOneRequest{250};
 
-// How many times as long as a turn of drawing a lane may work without one.
+// A lane counts as stalled when it has drawn nothing for this multiple of --stuck-seconds.
 constexpr double kLaneFactor = 5.0;
 
-// Between looks at the health that gRPC's clients are told.
+// Interval between checks of the health that is reported to gRPC's clients.
 constexpr std::chrono::seconds kHealthPause{1};
 
-// A signal of those, or 0 after a while.
+// Returns one of these signals, or 0 after a short wait.
 int Taken(const sigset_t& signals) {
   const timespec wait{0, std::chrono::nanoseconds(milliseconds(20)).count()};
   return std::max(0, sigtimedwait(&signals, nullptr, &wait));
@@ -116,7 +116,7 @@ Operation::~Operation() {
 }
 
 void Operation::SetServer(service::Server* server, Resources resources) {
-  // Before the lock, which it takes.
+  // The thread ends before the lock is taken, because the thread takes it too.
   telling_ = {};
   if (server != nullptr) {
     telling_ = std::jthread([this, server](const std::stop_token& stop) {
@@ -191,7 +191,7 @@ telemetry::Health Operation::HealthNow() {
             .ready = false,
             .state = absl::StrFormat("not making progress: drawing for %.0f s", load.turn_s)};
   }
-  // Between two pieces a lane may read, fit or encode for minutes.
+  // Between two pieces, a lane may read, fit or encode for minutes.
   if (load.stalled_s > kLaneFactor * flags_.stuck_s) {
     return {.alive = false,
             .ready = false,
@@ -202,7 +202,8 @@ telemetry::Health Operation::HealthNow() {
     return {.alive = true, .ready = false, .state = "the device was lost; opening it again"};
   }
   if (load.draining) return {.alive = true, .ready = false, .state = "draining"};
-  // Neither a state folder nor a disk of results that hangs is mended by another process.
+  // Restarting the process does not help if a state folder or a disk of results hangs, so it stays
+  // alive.
   if (const double hangs_s = StateHangsFor(); hangs_s > 0.0) {
     return {.alive = true,
             .ready = true,

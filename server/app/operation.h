@@ -1,4 +1,4 @@
-// An operator's side of `thunderhead serve`: its log, its operator's port, and its end.
+// The operator's side of `thunderhead serve`: its log, its operator port, and its end.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@
 namespace thunderhead::app {
 
 struct OperationFlags {
-  std::string metrics;  // HOST:PORT; empty: no port
+  std::string metrics;  // HOST:PORT; empty for no port
   std::string log_format = "text";
   double drain_s = 30.0;
   double stuck_s = 120.0;
@@ -31,52 +31,53 @@ struct OperationFlags {
 
 void AddOperationFlags(CLI::App& command, OperationFlags& flags);
 
-// Text, or JSON with one object a line, on standard error.
+// Sets the format of the log on standard error: text, or JSON with one object per line.
 void SetLogFormat(const std::string& format);
 
-// While the thread runs, one of `signals`, which all threads must block, ends the process at once
-// with 0.
+// Starts a thread that ends the process at once with 0 when one of `signals` arrives. All threads
+// must block these signals.
 std::jthread EndIfToldWhileStarting(const sigset_t& signals);
 
-// Ends the process with what `code` gives, after `last`, unless the thread is told to stop within
-// `patience`: a call that hangs with its storage would keep its server from ending for ever.
+// Starts a thread that ends the process with the result of `code`, after calling `last`, unless it
+// is told to stop within `patience`. Without it, a call that hangs with its storage could keep the
+// server from ending.
 std::jthread EndAnywayAfter(std::chrono::seconds patience, const std::function<int()>& code,
                             const std::function<void()>& last);
 
-// The operator's port of the flags, null without one, and what systemd is told. The port serves at
-// once, and says that the server starts until it is given one.
+// The operator port of the flags, if any, and the messages to systemd. The port serves at once, and
+// reports that the server is starting until it is given one.
 class Operation {
  public:
-  // With `allowed_hosts` the port answers to them, and to what the page does besides; without, to
-  // any name.
+  // Starts it. With `allowed_hosts` the port answers only to these names and to those that the page
+  // accepts; otherwise it answers to any name.
   static absl::StatusOr<std::unique_ptr<Operation>> Start(
       const OperationFlags& flags, const std::vector<std::string>& allowed_hosts = {});
   ~Operation();
   Operation(const Operation&) = delete;
   Operation& operator=(const Operation&) = delete;
 
-  // Memory and storage that a server uses; each may be null.
+  // Memory and storage that a server uses. Each may be null.
   struct Resources {
     std::shared_ptr<const base::MemoryBudget> memory;
     std::shared_ptr<const base::MemoryBudget> gpu_memory;
-    std::shared_ptr<base::PatientCalls> state;  // calls to the state folder
+    std::shared_ptr<base::PatientCalls> state;  // requests to the state folder
   };
 
-  // The server, which must outlive what follows until SetServer(nullptr), and its resources.
-  // gRPC's health service is told of its health while there is one.
+  // Sets the server and its resources. The server must outlive their use until SetServer(nullptr).
+  // While there is a server, gRPC's health service gets its health.
   void SetServer(service::Server* server, Resources resources);
   void SetServer(std::nullptr_t) { SetServer(nullptr, {}); }
 
-  // Waits for SIGINT or SIGTERM, which this thread blocks; tells the clients, and returns when the
-  // pictures that were begun are delivered, at the latest after the grace. From then on a second
-  // signal ends the process at once, but for `last`, which must not take long.
+  // Waits for SIGINT or SIGTERM, which this thread must block, and then tells the clients. Returns
+  // when the pictures that were begun are delivered, or after the grace period. A second signal
+  // then calls `last`, which must be fast, and ends the process.
   void WaitAndDrain(
       const sigset_t& signals, service::Server& server, const std::function<void()>& last = [] {});
 
  private:
   explicit Operation(const OperationFlags& flags) : flags_(flags) {}
 
-  // Needs mutex_.
+  // Returns how long the state folder has not responded. The caller must hold mutex_.
   double StateHangsFor();
   std::string MetricsText();
   telemetry::Health HealthNow();
@@ -87,7 +88,7 @@ class Operation {
   Resources resources_;
   bool ended_ = false;
   std::unique_ptr<telemetry::OperatorPort> port_;
-  std::unique_ptr<telemetry::Watchdog> watchdog_;  // null: no supervisor waits for messages
+  std::unique_ptr<telemetry::Watchdog> watchdog_;  // null if no supervisor waits for messages
   std::jthread telling_;
   std::jthread second_signal_;
 };

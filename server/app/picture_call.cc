@@ -27,12 +27,12 @@ absl::StatusOr<v1::RenderImageResponse> CallForPicture(
     if (event.has_chunk()) bytes += event.chunk();
     if (event.has_image()) picture = std::move(*event.mutable_image());
   }
-  // An older server sends it whole.
+  // An older server sends the picture without chunks.
   if (picture.image().empty()) picture.set_image(std::move(bytes));
   const grpc::Status status = reader->Finish();
   if (stop.stop_requested()) return absl::CancelledError("interrupted: no picture was written");
-  // An explanation besides the code comes from a server that has the call and cannot do what is
-  // asked.
+  // A message in addition to the code comes from a server that has the call but cannot fulfil the
+  // request.
   if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED && status.error_message().empty()) {
     return absl::UnimplementedError(
         "the server is older than this program and lacks the call that it needs "

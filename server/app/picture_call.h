@@ -1,4 +1,4 @@
-// One picture by the service, in this process or another.
+// Requests one picture from the service, in this process or another.
 #pragma once
 
 #include <functional>
@@ -12,11 +12,11 @@
 
 namespace thunderhead::app {
 
-// Progress of tracing the light that the picture waits for, on the calling thread.
+// Reports the progress of the path tracing that the picture waits for, on the calling thread.
 using OnPictureProgress = std::function<void(const v1::RenderImageProgress&)>;
 
-// Waits for the picture, from a server that asks for `token` if it is not empty. CANCELLED if
-// `stop` came first. `progress` may be empty.
+// Requests a picture and waits for it. If `token` is not empty, it is sent to the server. Returns
+// CANCELLED if `stop` came first. `progress` may be empty.
 absl::StatusOr<v1::RenderImageResponse> CallForPicture(
     const std::shared_ptr<grpc::Channel>& channel, const v1::RenderImageRequest& request,
     const std::string& token, const std::stop_token& stop, const OnPictureProgress& progress);

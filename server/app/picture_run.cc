@@ -47,7 +47,7 @@ pipeline::ProductKey KeyOf(const storm_store::CataloguedStorm& storm, int time_i
   return key;
 }
 
-// The description by the service.
+// Adds the stages that the service reports.
 void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
   for (const v1::StageCost& stage : response.stages()) {
     double& time_ms = stage.stage() == v1::STAGE_READ     ? times.read_ms
@@ -61,7 +61,7 @@ absl::Status ChangedMeanwhile(const std::string& path) {
   return absl::AbortedError(absl::StrCat(path, " was written to while it was drawn; try again"));
 }
 
-// An error of one input alone, which leaves other pictures alone.
+// Returns true for an error that affects only one input and no other pictures.
 bool IsOfInput(const absl::Status& status) {
   return absl::IsDataLoss(status) || absl::IsNotFound(status) || absl::IsAborted(status);
 }
@@ -143,7 +143,7 @@ std::string PictureRun::HashOf(const pipeline::InputFile& input) {
     if (known != hashed_.end() && SameStamp(known->second, input)) return known->second.sha256;
   }
   pipeline::InputFile hashed = input;
-  // A file that cannot be read equals no other; drawing it will say why.
+  // A file that cannot be read has a hash equal to no other. Drawing it will report the error.
   hashed.sha256 = pipeline::Sha256OfFile(input.path).value_or("");
   const std::lock_guard lock(mutex_);
   return hashed_.insert_or_assign(input.path, std::move(hashed)).first->second.sha256;
@@ -176,13 +176,14 @@ absl::StatusOr<bool> PictureRun::IsMade(const std::string& path, const std::stri
       pipeline::Sha256OfFile(path).value_or("") != entry.sha256) {
     return false;
   }
-  // Of a run that was killed while it made the product anew.
+  // A run that was killed while it remade the product may have left this file.
   fs::remove(base::PartialPath(path), error);
   if (options_.done_markers && !fs::exists(path + ".done", error)) {
     THUNDERHEAD_RETURN_IF_ERROR(MarkDone(path, entry.sha256));
   }
   if (SameStamp(entry.input, input)) return true;
-  // The same bytes were copied again: the next run need not hash them.
+  // The same bytes were copied again. The new stamp is recorded so that the next run need not hash
+  // them.
   const std::string sha256 = entry.input.sha256;
   entry.input = input;
   entry.input.sha256 = sha256;
@@ -214,7 +215,7 @@ absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageR
                                MakeProduct(options_.format, planned.key.storm, std::move(picture)));
   if (file.world_file.has_value()) {
     const std::string path = WorldFilePath(planned.path);
-    // A run that was killed before the picture has left it.
+    // The world file may exist already if a run was killed before it wrote the picture.
     THUNDERHEAD_ASSIGN_OR_RETURN(const bool made, IsMade(path, entry.scene_sha256, entry.input,
                                                          [] { return std::string("unknown"); }));
     if (!made) THUNDERHEAD_RETURN_IF_ERROR(PublishFile(path, *file.world_file, entry));
@@ -253,7 +254,8 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, storm_store::Sto
   const View& view = options_.views[picture.view];
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::InputFile input, StampOf(picture.input));
   if (!IsAsBegun(input)) return ChangedMeanwhile(picture.input);
-  // Read here, as the service does not tell a bad file from a bad request.
+  // The fields are read here, because the service does not distinguish a bad file from a bad
+  // request.
   if (const absl::Status read = store.Get(storm_id, picture.time_index, {}).status(); !read.ok()) {
     const absl::Status problem = AsFileProblem(read);
     return IsOfInput(problem) ? problem : absl::AbortedError(problem.message());
@@ -336,7 +338,7 @@ absl::Status PictureRun::Make(const std::vector<storm_store::CataloguedStorm>& s
         progress.Failed(picture.path, picture.outcome);
       } else {
         const std::lock_guard lock(failure_mutex);
-        // Others are cancelled because of the first.
+        // Only the first failure counts, because the others are cancelled as a result.
         if (failure.ok()) failure = picture.outcome;
         ending.request_stop();
       }

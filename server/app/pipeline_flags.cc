@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxJobs = 8;
 
-// Part of a product's name.
+// Returns the file's name in a form that can be part of a product's name.
 std::string ViewNameOf(const std::string& file) {
   std::string name = fs::path(file).stem().string();
   for (char& c : name) {
@@ -67,8 +67,8 @@ absl::StatusOr<std::vector<View>> ReadViews(const PipelineFlags& flags) {
   return views;
 }
 
-// Other manifests of the same folder, whose products need not be drawn again. A run of all takes
-// over those of shares.
+// Returns the other manifests of the same folder, whose products need not be drawn again. A run of
+// all pictures inherits the manifests of shares.
 pipeline::OtherManifests OthersOf(const std::string& manifest, bool takes_over) {
   pipeline::OtherManifests others;
   std::error_code error;

@@ -1,4 +1,4 @@
-// The flags that sequence and watch share, and what they mean.
+// The flags that sequence and watch share, and their meaning.
 #pragma once
 
 #include <string>
@@ -21,12 +21,12 @@ struct PipelineFlags {
   SceneFlags scene;
   std::vector<std::string> views;  // scene files
   std::string product;
-  std::string manifest;  // empty: in the products' folder
-  std::string movie;     // empty: none
-  ServerFlags server;    // without an address: in this process
+  std::string manifest;  // if empty, in the products' folder
+  std::string movie;     // empty for none
+  ServerFlags server;    // without an address, the service runs in this process
   std::string device = "auto";
   int jobs = 2;
-  double error_seconds = 0.0;  // of tracing, for each picture's error to be measured
+  double error_seconds = 0.0;  // of path tracing, to measure each picture's error
   bool done_markers = false;
   ProductFlags files;
   ProgressStyle progress = ProgressStyle::kAuto;
@@ -34,15 +34,15 @@ struct PipelineFlags {
 
 void AddPipelineOptions(CLI::App& command, PipelineFlags& flags);
 
-// A scene under the name that products have for it.
+// A scene with the name that products use for it.
 struct View {
   std::string name;
   v1::Scene scene;
-  // Of the scene, as canonical JSON, and with it of what else goes into the pictures.
+  // The hash of the scene as canonical JSON, and of everything else that affects the pictures.
   std::string sha256;
 };
 
-// The flags, checked as far as they can be without a storm.
+// The flags, checked as far as is possible without a storm.
 struct PictureRunOptions {
   pipeline::ProductName product;
   ProductFormat format;
@@ -55,7 +55,7 @@ struct PictureRunOptions {
   bool done_markers = false;
 };
 
-// INVALID_ARGUMENT names the flag and what is wrong.
+// Returns the checked options. The error INVALID_ARGUMENT names the flag and what is wrong.
 absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
                                                const pipeline::Shard& shard);
 

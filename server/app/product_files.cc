@@ -54,7 +54,7 @@ std::string RunText(const Texts& texts, absl::Time valid) {
                          std::abs(minutes % 60));
 }
 
-// Returns whether the settings of the chosen technique, whichever it is, have false_colors on.
+// Returns whether the settings of the chosen technique have false_colors on.
 bool ShowsFalseColors(const v1::Rendering& rendering) {
   const google::protobuf::FieldDescriptor* const technique =
       rendering.GetReflection()->GetOneofFieldDescriptor(
@@ -67,7 +67,7 @@ bool ShowsFalseColors(const v1::Rendering& rendering) {
   return field != nullptr && settings.GetReflection()->GetBool(settings, field);
 }
 
-// Of the fields that the picture shows, where their colours tell them apart.
+// Returns the legend of the fields that the picture shows, if their colours distinguish them.
 std::vector<product::LegendEntry> LegendOf(const v1::RenderImageResponse& picture) {
   std::vector<product::LegendEntry> legend;
   if (!ShowsFalseColors(picture.scene().rendering())) return legend;
@@ -100,7 +100,8 @@ absl::Status Annotate(const ProductFormat& format, const std::string& storm,
   return product::Annotate(annotation, image);
 }
 
-// INVALID_ARGUMENT where the projection is needed and the storm has none.
+// Returns the place of the map, or INVALID_ARGUMENT if the projection is needed and the storm has
+// none.
 absl::StatusOr<product::MapPlace> PlaceOf(const v1::RenderImageResponse& picture,
                                           const Texts& texts) {
   const v1::View& view = picture.view();
@@ -209,7 +210,8 @@ void AddProductOptions(CLI::App& command, ProductFlags& flags) {
 
 v1::ImageFormat ProductFormat::Drawn() const {
   if (kind == ProductKind::kExr || kind == ProductKind::kNetcdf) return v1::IMAGE_FORMAT_EXR;
-  // Files made of it here lose nothing before that.
+  // Products that are made from the picture here use PNG, so that they start from a lossless
+  // picture.
   return kind == ProductKind::kJpeg && !annotate && !world_file ? v1::IMAGE_FORMAT_JPEG
                                                                 : v1::IMAGE_FORMAT_PNG;
 }
@@ -259,7 +261,7 @@ absl::Status CheckScene(const ProductFormat& format, const v1::Scene& scene) {
 }
 
 std::string WorldFilePath(const std::string& path) {
-  // The first and last letter of the picture's ending, and a w.
+  // The ending consists of the first and last letter of the picture's ending, and a w.
   const std::filesystem::path picture(path);
   const std::string ending = picture.extension().string();
   return std::filesystem::path(picture)

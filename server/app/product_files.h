@@ -1,6 +1,6 @@
-// From a drawn picture to the file that a command was asked for: what the service encodes is taken
-// as it is; annotations, maps and netCDF are made of it here, alike for pictures that were drawn in
-// this process, by a server, and by a job.
+// Converts a drawn picture to the file that a command was asked for. What the service encodes is
+// used unchanged. Annotations, maps and netCDF are added here, in the same way for pictures drawn
+// in this process, by a server, or by a job.
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ namespace thunderhead::app {
 
 struct ProductFlags {
   bool annotate = false;
-  std::string title;  // empty: the storm's
-  std::string logo;   // a file; empty: none
+  std::string title;  // if empty, the storm's title
+  std::string logo;   // a file; empty for none
   bool world_file = false;
 };
 
@@ -29,40 +29,41 @@ enum class ProductKind { kPng, kJpeg, kExr, kGeoTiff, kNetcdf };
 struct ProductFormat {
   ProductKind kind = ProductKind::kPng;
   bool annotate = false;
-  std::string title;  // empty: the storm's
+  std::string title;  // if empty, the storm's title
   std::shared_ptr<const product::Logo> logo;
   bool world_file = false;
-  // Of all that changes the file beside the scene; empty if nothing does.
+  // A hash of everything that changes the file in addition to the scene; empty if there is nothing.
   std::string fingerprint;
 
-  // The requested picture.
+  // Returns the image format to request from the service.
   v1::ImageFormat Drawn() const;
-  // True for files that movies are made of.
+  // Returns true for files from which movies can be made.
   bool IsPicture() const { return kind == ProductKind::kPng || kind == ProductKind::kJpeg; }
   bool IsMap() const {
     return world_file || kind == ProductKind::kGeoTiff || kind == ProductKind::kNetcdf;
   }
 };
 
-// By the ending of a product's name and the flags; INVALID_ARGUMENT names the flag that is wrong,
-// DATA_LOSS a logo that is none.
+// Returns the format from the ending of a product's name and the flags. INVALID_ARGUMENT names a
+// wrong flag, and DATA_LOSS reports a bad logo.
 absl::StatusOr<ProductFormat> ProductFormatOf(const std::string& flag, const std::string& path,
                                               const ProductFlags& flags);
 
-// INVALID_ARGUMENT if the scene cannot be such a product, as a map is seen from above.
+// Returns INVALID_ARGUMENT if the scene cannot be such a product, for example because a map needs a
+// view from above.
 absl::Status CheckScene(const ProductFormat& format, const v1::Scene& scene);
 
-// Where the world file of a picture goes, by the custom of GIS programs: .pgw, .jgw, .tfw.
+// Returns the path of a picture's world file, by the convention of GIS programs: .pgw, .jgw, .tfw.
 std::string WorldFilePath(const std::string& path);
 
 struct ProductFile {
   std::string bytes;
-  std::optional<std::string> world_file;  // its text
+  std::optional<std::string> world_file;  // the text of the world file
 };
 
-// The file of a picture that was drawn as `format.Drawn()`. `storm` is its title where neither the
-// flags nor, if it is empty, the picture has one. INVALID_ARGUMENT for a map of a storm without a
-// place on Earth.
+// Makes the file of a picture that was drawn as `format.Drawn()`. `storm` is the title if neither
+// the flags nor the picture have one. Returns INVALID_ARGUMENT for a map of a storm without a place
+// on Earth.
 absl::StatusOr<ProductFile> MakeProduct(const ProductFormat& format, const std::string& storm,
                                         v1::RenderImageResponse picture);
 

@@ -1,5 +1,5 @@
-// A progress bar on standard error if that is a terminal, for work of more than a second. Draws in
-// a thread of its own, so that it also moves while the work reports nothing.
+// A progress bar for work of more than a second, shown on standard error if that is a terminal. A
+// separate thread draws it, so that it also moves while the work reports nothing.
 #pragma once
 
 #include <atomic>
@@ -15,17 +15,18 @@ namespace thunderhead::app {
 
 class ProgressBar {
  public:
-  // `label` names the work, e.g. "reading supercell".
+  // `label` names the work, for example "reading supercell".
   explicit ProgressBar(std::string label);
   // Erases the bar.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // Sets the share done, 0 to 1; until the first call the bar only shows activity. From any thread.
+  // Sets the share done, 0 to 1. Until the first call the bar only shows activity. Safe to call
+  // from any thread.
   void Set(double share) { share_ = share; }
 
-  // Sets the text after the share, e.g. the current error. From any thread.
+  // Sets the text after the share, for example the current error. Safe to call from any thread.
   void Note(const std::string& note) {
     const std::lock_guard lock(mutex_);
     note_ = base::Printable(note);

@@ -84,8 +84,8 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const RenderFlags& flags,
   return Call(server->LocalChannel(), request, interruption);
 }
 
-// Prints the setting and the error if the scene asks for an accuracy or a speed, or for traced
-// light, or the error was measured.
+// Prints the setting and the error. It does so only if the scene asks for an accuracy, a speed or
+// traced light, or if the error was measured.
 void PrintAccuracy(const v1::RenderImageResponse& response) {
   const v1::Scene& scene = response.scene();
   const bool awaited = scene.rendering().light_volume().traced_light() == v1::TRACED_LIGHT_AWAITED;
@@ -113,7 +113,7 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
   std::cout << "\n";
 }
 
-// Below it civil twilight has ended, and pictures are nearly black.
+// Below this elevation civil twilight has ended, and pictures are nearly black.
 constexpr float kNightBelow_deg = -6.0F;
 
 void TellOfNight(const v1::Scene& scene) {

@@ -1,4 +1,5 @@
-// The reference's picture, for the render command: traced in this process, on all cores.
+// Renders a picture by the reference for the render command. It is traced in this process on all
+// cores.
 #pragma once
 
 #include <string>
@@ -9,7 +10,8 @@
 
 namespace thunderhead::app {
 
-// Limits of the reference, kDefaultSamplesPerPixel if none is given, and the light that it traces.
+// The light that the reference traces and its limits. Without a limit it traces
+// kDefaultSamplesPerPixel.
 struct ReferenceFlags {
   int samples_per_pixel = 0;
   double seconds = 0.0;
@@ -21,8 +23,8 @@ struct ReferenceFlags {
 
 inline constexpr int kDefaultSamplesPerPixel = 64;
 
-// Writes `output`: .exr with linear radiance and its standard error, or .png or .jpg tone mapped on
-// `device`. Ctrl-C stops early and writes the picture so far.
+// Writes `output`. An .exr file has linear radiance and its standard error; .png and .jpg files are
+// tone mapped on `device`. Ctrl-C stops early and writes the picture so far.
 absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
                              const ReferenceFlags& limits, const std::string& output,
                              const std::string& device);

@@ -1,6 +1,6 @@
 // The hidden flag --roster-timeouts of `thunderhead serve`: a file with the timeouts of people in
-// sessions. Browser tests change it while the server runs, so that a wait ends when they want it
-// to, on a machine of any speed.
+// sessions. Browser tests change it while the server runs. They can so end a wait when they need
+// it, on a machine of any speed.
 #pragma once
 
 #include <functional>
@@ -12,12 +12,12 @@
 
 namespace thunderhead::app {
 
-// Reads pairs such as "come_back 10": a member of RosterTimeouts and its value in seconds. Members
-// that the file leaves out keep their defaults. INVALID_ARGUMENT names what it cannot parse.
+// Reads pairs such as "come_back 10": a member of RosterTimeouts and its value in seconds. Omitted
+// members keep their defaults. The error INVALID_ARGUMENT names what cannot be parsed.
 absl::StatusOr<session::RosterTimeouts> ReadRosterTimeouts(const std::string& path);
 
-// Calls `take` with the timeouts in the file at once and each time that another file is moved to
-// the path, and logs how often it has done so. The thread runs until it is told to stop.
+// Calls `take` with the timeouts in the file, at once and each time that a new file is moved to the
+// path. It logs the number of calls. The thread runs until it is told to stop.
 std::jthread FollowRosterTimeouts(std::string path,
                                   std::function<void(const session::RosterTimeouts&)> take);
 

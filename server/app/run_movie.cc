@@ -22,15 +22,16 @@
 namespace thunderhead::app {
 namespace {
 
-// So slow that a storm can be followed, so fast that it moves.
+// This rate is slow enough to follow a storm and fast enough to show its motion.
 constexpr int kFramesPerSecond = 8;
 
 nlohmann::ordered_json JsonOf(const std::string& text) {
   return nlohmann::ordered_json::parse(text, nullptr, false);
 }
 
-// The description in a movie's metadata, as JSON: the storm with its times, the largest estimated
-// error of its pictures, the scene, and where the first picture tells it, where the camera stands.
+// Returns the description for a movie's metadata, as JSON: the storm with its times, the largest
+// estimated error of its pictures, and the scene. It also has the camera's position if the first
+// picture gives it.
 std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view,
                           const std::vector<const PlannedPicture*>& pictures) {
   nlohmann::ordered_json json;
@@ -53,7 +54,7 @@ std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view
       json["pose"] = JsonOf(texts->at(service::kViewText));
     }
   }
-  // Storms' names come from files' names, in any encoding.
+  // Invalid characters are replaced, because storms are named after files, in any encoding.
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -64,7 +65,7 @@ absl::Status MakeMovie(const std::string& path, const View& view,
   const std::string folder = std::filesystem::path(path).parent_path().string();
   if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(base::MakeFolders(folder));
   std::ranges::sort(pictures, {}, [](const PlannedPicture* picture) { return picture->key.valid; });
-  pipeline::InputFile input;  // the pictures, by their hashes
+  pipeline::InputFile input;  // stands for the pictures, by their hashes
   std::vector<absl::Time> valid;
   std::string hashes;
   pipeline::ManifestEntry entry;
@@ -83,7 +84,7 @@ absl::Status MakeMovie(const std::string& path, const View& view,
     }
   }
   entry.estimated_error = largest_error;
-  // Of one picture, and the largest may be another's.
+  // These are of one picture only, while the largest error may be another picture's.
   entry.error_low.reset();
   entry.error_high.reset();
   input.path = run.Options().product.Text();

@@ -1,4 +1,4 @@
-// The movie of a run's pictures.
+// Makes the movies of a run's pictures.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace thunderhead::app {
 
-// Where a run's movies go.
+// The names of a run's movies.
 struct MovieOptions {
-  std::optional<pipeline::ProductName> name;  // nothing: no movie
+  std::optional<pipeline::ProductName> name;  // absent for no movie
 };
 
-// INVALID_ARGUMENT if --movie is not a name of a movie, or products of that format are no pictures
-// for one.
+// Returns the options. Returns INVALID_ARGUMENT if --movie is not a valid name of a movie, or if
+// movies cannot be made from products of that format.
 absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags,
                                             const ProductFormat& format);
 
-// Makes each storm's movies of those of its pictures that are made, where they changed since.
+// Makes each storm's movies from its finished pictures, if the pictures have changed since.
 absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPicture>& pictures,
                         PictureRun& run, RunProgress& progress, const std::stop_token& stop);
 

@@ -63,7 +63,7 @@ int RunProgress::KeptCount() const {
   return kept_;
 }
 
-// Lines are flushed, as whoever reads them waits for them.
+// Writes a line and flushes it, because its reader may be waiting for it.
 void RunProgress::Tell(const std::string& event, const std::string& path, const std::string& text,
                        double milliseconds, const std::optional<PictureTimes>& times) {
   const int done = drawn_ + kept_;

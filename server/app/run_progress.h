@@ -1,5 +1,6 @@
-// How a run of many pictures tells of itself: a bar on a terminal, otherwise a line a product, or
-// lines of JSON for machines, or a line a product and ecFlow's meter in a task of ecFlow.
+// Reports the progress of a run of many pictures. On a terminal it shows a bar, otherwise a line
+// per product. It can also write lines of JSON for machines, or set ecFlow's meter in a task of
+// ecFlow.
 #pragma once
 
 #include <memory>
@@ -15,27 +16,28 @@ namespace thunderhead::app {
 
 enum class ProgressStyle { kAuto, kLines, kJson, kEcflow, kNone };
 
-// The time that a picture took, without waiting for others.
+// The time that a picture took, without waiting for other pictures.
 struct PictureTimes {
   double read_ms = 0.0;   // the storm's file
   double draw_ms = 0.0;   // until its pixels are read back
-  double write_ms = 0.0;  // encoding, hashing and bringing it to the disk
+  double write_ms = 0.0;  // encoding, hashing and writing to the disk
 };
 
-// Safe from any thread.
+// Reports progress. Safe to call from any thread.
 class RunProgress {
  public:
   RunProgress(ProgressStyle style, const std::string& label);
 
-  // Some more products are to be made, or were found made.
+  // Adds products that are to be made, or were found complete.
   void Plan(int products);
-  // A product is there: `milliseconds` after its drawing began, or unchanged since an earlier run.
+  // Reports that a product exists: it was drawn in `milliseconds`, or is unchanged since an earlier
+  // run.
   void Drawn(const std::string& path, double milliseconds,
              const std::optional<PictureTimes>& times = std::nullopt);
   void Kept(const std::string& path);
-  // A product or input that does not come, now or ever; also on standard error.
+  // Reports a product or input that failed, temporarily or permanently; also on standard error.
   void Failed(const std::string& path, const absl::Status& why);
-  // Something that goes on, such as a file that is waited for; `what` names it.
+  // Reports an ongoing activity, such as waiting for a file; `what` names it.
   void Note(const std::string& path, const std::string& what);
 
   int DrawnCount() const;
@@ -47,8 +49,8 @@ class RunProgress {
 
   mutable std::mutex mutex_;
   ProgressStyle style_;
-  std::unique_ptr<ProgressBar> bar_;        // null: no terminal
-  std::unique_ptr<EcflowReporter> ecflow_;  // null: no task of ecFlow
+  std::unique_ptr<ProgressBar> bar_;        // null without a terminal
+  std::unique_ptr<EcflowReporter> ecflow_;  // null outside of a task of ecFlow
   int planned_ = 0;
   int drawn_ = 0;
   int kept_ = 0;

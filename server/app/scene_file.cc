@@ -22,7 +22,8 @@
 namespace thunderhead::app {
 namespace {
 
-// The scene in a picture that the service made. It is of no storm, so that it can show another.
+// Returns the scene stored in a picture that the service made. The storm is left out, so that the
+// scene can show another one.
 absl::StatusOr<std::string> SceneJsonIn(const std::string& what, const std::string& png) {
   auto texts = frame::TextsOf(png);
   if (!texts.ok()) return base::Annotate(texts.status(), what);
@@ -47,14 +48,14 @@ absl::StatusOr<v1::Scene> ReadFile(const std::string& flag, const std::string& p
   const auto status = google::protobuf::util::JsonStringToMessage(json, &scene);
   if (picture) scene.clear_storm_id();
   if (status.ok()) return scene;
-  // The parser quotes the file with its line breaks.
+  // The parser quotes the file with its line breaks, which are removed here.
   std::string why(status.message());
   absl::RemoveExtraAsciiWhitespace(&why);
   return absl::InvalidArgumentError(absl::StrCat(
       what, " is not a scene: ", why, "; see proto/thunderhead/v1/scene.proto for its fields"));
 }
 
-// Puts the values of `over` in place of those of `scene`, lists as a whole.
+// Replaces the values of `scene` by those of `over`. Lists are replaced as a whole.
 void Lay(const v1::Scene& over, v1::Scene& scene) {
   if (over.fields_size() > 0) scene.clear_fields();
   if (over.lights_size() > 0) scene.clear_lights();
@@ -68,7 +69,8 @@ absl::Status SetSize(const std::string& size, v1::Output& output) {
   return absl::OkStatus();
 }
 
-// Keeps the file's settings if its camera is of that kind; otherwise starts with the defaults.
+// Selects the kind of camera. Keeps the file's settings if its camera is of that kind, and
+// otherwise starts with the defaults.
 absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   if (kind == "orbit") {
     camera.mutable_orbit();
@@ -85,7 +87,7 @@ absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
 
 using Descriptors = std::vector<const google::protobuf::FieldDescriptor*>;
 
-// The fields of the techniques that have their own in Rendering.
+// Returns the fields of the techniques that have their own message in Rendering.
 Descriptors TechniqueFields() {
   const google::protobuf::OneofDescriptor& techniques =
       *v1::Rendering::descriptor()->FindOneofByName("technique");
@@ -100,7 +102,7 @@ Descriptors TechniqueFields() {
   return fields;
 }
 
-// "a, b or c".
+// Returns a list such as "a, b or c".
 std::string NamesOf(const Descriptors& fields, const std::string& before_last) {
   std::string names;
   for (const auto* field : fields) {
@@ -110,7 +112,8 @@ std::string NamesOf(const Descriptors& fields, const std::string& before_last) {
   return names;
 }
 
-// Keeps the file's settings if it has that technique; otherwise starts with the defaults.
+// Selects the technique. Keeps the file's settings if it has that technique, and otherwise starts
+// with the defaults.
 absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
   const Descriptors fields = TechniqueFields();
   const auto field = std::ranges::find(fields, name, [](const auto* each) { return each->name(); });

@@ -1,4 +1,4 @@
-// A command's scene: a file of Protobuf JSON, and flags that override it.
+// The scene of a command: a file of Protobuf JSON, and flags that override it.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace thunderhead::app {
 
 struct SceneFlags {
   std::string file;  // may be empty, like the other strings
-  std::string view;  // another file, whose values go before those of `file`
+  std::string view;  // another file, which `file` overrides
   std::optional<std::uint32_t> time_index;
   std::optional<std::uint32_t> slices;
   std::string size;       // WIDTHxHEIGHT
@@ -23,14 +23,14 @@ struct SceneFlags {
   std::optional<float> max_milliseconds;  // at most one of the two
 };
 
-// Adds the options of every command that takes a scene: --scene, --size, --camera.
+// Adds the options of all commands that take a scene: --scene, --size, --camera.
 void AddViewOptions(CLI::App& command, SceneFlags& flags);
-// The same and --time, for commands that show one time.
+// Adds the same options and --time, for commands that show one time.
 void AddSceneOptions(CLI::App& command, SceneFlags& flags);
 // Adds the options of commands that draw it: --quality, --preset, --renderer, --slices.
 void AddTechniqueOptions(CLI::App& command, SceneFlags& flags);
 
-// INVALID_ARGUMENT names the file or flag and the error in it.
+// Returns the scene. The error INVALID_ARGUMENT names the file or flag and its error.
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags);
 
 }  // namespace thunderhead::app

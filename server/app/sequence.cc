@@ -36,14 +36,15 @@ struct SequenceFlags {
 // The storms and their files, as found.
 struct Found {
   std::vector<storm_store::CataloguedStorm> storms;
-  // The places of storms' files among all, in the order of their names, the unreadable ones
-  // included.
+  // The indices of the storms' files among all files, in the order of their names. Unreadable files
+  // are included.
   std::map<std::string, std::size_t> places;
-  // Files that are not there or not readable (yet), by path.
+  // Files that do not exist or are not readable yet, by path.
   std::map<std::string, absl::Status> problems;
 };
 
-// Orders outcomes for the exit code: another try may help before what never will.
+// Ranks outcomes for the exit code: errors that a retry may fix take precedence over permanent
+// ones.
 int RankOf(const absl::Status& status) {
   switch (ExitCodeOf(status)) {
     case ExitCode::kDone:
@@ -67,7 +68,7 @@ absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
   return worst;
 }
 
-// Looks at each path. A file that cannot be read leaves the others alone.
+// Searches each path. A file that cannot be read does not affect the others.
 absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   Found found;
   const storm_files::StormFormats formats = ConfinedFormats();
@@ -104,7 +105,8 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   return found;
 }
 
-// An error if what is asked for counts times, or begins with the first, while some are not known.
+// Returns an error if some times are unknown, and the request counts times or begins with the first
+// one.
 absl::Status CheckCounts(const Found& found, const std::string& times,
                          const PictureRunOptions& options, const MovieOptions& movie) {
   if (found.problems.empty()) return absl::OkStatus();
@@ -142,9 +144,9 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(
   return all;
 }
 
-// The number of a time that decides whose share it is. Of all times it is by the place in its file
-// and the file's among all, readable or not: shares that look before and after a file is complete
-// leave no time out between them.
+// Returns the number of a time, which decides the share that it belongs to. For all times it comes
+// from the time's index in its file and the file's index among all files, readable or not. So
+// shares that search before and after a file is complete omit no time between them.
 std::size_t NumberOf(const PlannedPicture& picture, std::size_t index, const Found& found,
                      const std::string& times) {
   const auto place = found.places.find(picture.input);
@@ -153,7 +155,8 @@ std::size_t NumberOf(const PlannedPicture& picture, std::size_t index, const Fou
   return place->second + sources[static_cast<std::size_t>(picture.time_index)].record;
 }
 
-// Views of one time stay together, so that each process reads a time once.
+// Returns the pictures of a share. The views of one time stay together, so that each process reads
+// a time once.
 std::vector<PlannedPicture> ShareOf(const std::vector<PlannedPicture>& all, std::size_t views,
                                     const pipeline::Shard& shard, const Found& found,
                                     const std::string& times) {
@@ -186,7 +189,7 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(const PictureRunOptions
   return all;
 }
 
-// The worst reason of all pictures and files that are left undone.
+// Returns the worst error of all pictures and files that are not done.
 absl::Status Summary(const std::vector<PlannedPicture>& pictures, const Found& found) {
   absl::Status worst = WorstOf(found.problems);
   int missing = 0;
@@ -249,7 +252,7 @@ absl::Status Sequence(const SequenceFlags& flags) {
         " pictures are made and in ", run->Records().Path(), "; the same command goes on"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(made);
-  // Of what there is, as the rest may never come.
+  // The movies are made from the existing pictures, because the rest may never arrive.
   const absl::Status missing = Summary(pictures, found);
   const absl::Status movies = MakeMovies(movie, pictures, *run, progress, stop);
   if (missing.ok() || movies.ok()) return missing.ok() ? movies : missing;

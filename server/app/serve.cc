@@ -39,13 +39,15 @@
 namespace thunderhead::app {
 namespace {
 
-// For the audit, before a second signal ends the process.
+// Time for the audit log to be written before a second signal ends the process.
 constexpr std::chrono::seconds kLastLines{1};
 
-// For calls to end after the grace, and for what is saved last; systemd's kill is later.
+// Time for calls to end after the grace period, and for the last saves. systemd kills the process
+// later.
 constexpr std::chrono::seconds kEndPatience{12};
 
-// The installed page, or the one in the build tree; empty if there is neither.
+// Returns the folder of the installed page, or of the one in the build tree; empty if there is
+// neither.
 std::string DefaultPageFolder() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -59,7 +61,7 @@ void ShowOwnToken(const access::Door& door, grpc::ClientContext& context) {
   context.AddMetadata("authorization", absl::StrCat("Bearer ", door.OwnToken()));
 }
 
-// Has a session's first frame drawn, and closes it.
+// Opens a session, waits for its first frame, and closes it.
 grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene,
                       const access::Door& door) {
   v1::CreateSessionRequest request;
@@ -90,8 +92,8 @@ grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene
   return stub.CloseSession(&closing, close, &closed);
 }
 
-// Shows two small pictures, with the sun before and behind the eye, so that storm and shaders are
-// ready for the first viewer.
+// Draws two small pictures, with the sun in front of and behind the eye, so that storm and shaders
+// are ready for the first viewer.
 void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& door) {
   const auto stub = v1::ThunderheadService::NewStub(channel);
   for (const float azimuth_deg : {255.0F, 75.0F}) {
@@ -104,8 +106,8 @@ void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& d
   }
 }
 
-// Waits for the first search of the folders, so that clients find the storms, but not longer than
-// 30 s. Returns false if it is told to stop.
+// Waits for the first search of the folders, so that clients find the storms, but at most 30 s.
+// Returns false if it is told to stop.
 bool AwaitStorms(const storm_store::StormStore& store, const std::stop_token& stop) {
   constexpr std::chrono::seconds kWhile{30};
   constexpr std::chrono::milliseconds kPause{20};
@@ -121,8 +123,8 @@ bool AwaitStorms(const storm_store::StormStore& store, const std::stop_token& st
   return !stop.stop_requested();
 }
 
-// As many files as the system allows: each connection takes one, and the usual limit of 1024 was
-// made for programs that use select().
+// Raises the limit on open files to the maximum that the system allows. Each connection needs a
+// file descriptor, and the usual limit of 1024 was made for programs that use select().
 void RaiseFileLimit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -140,7 +142,7 @@ std::optional<gateway::KeptFile> FindResult(service::Server& server, std::string
 }
 
 absl::Status Serve(ServeFlags flags) {
-  // Blocked before any thread starts, so that only sigwait below takes them.
+  // The signals are blocked before any thread starts, so that only sigwait below receives them.
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -152,12 +154,12 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
                                Operation::Start(flags.operation, flags.allowed_hosts));
-  // Reading the storms' headers and the state takes long on some storages, and for ever on one that
-  // hangs.
+  // Reading the storms' headers and the state may take long on slow storage, and may not end on
+  // storage that hangs.
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
-  // Before any port opens, for its errors name the files.
+  // This precedes the opening of any port, because its errors name the files.
   if (!flags.tls.certificate.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(
         gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());
@@ -171,7 +173,8 @@ absl::Status Serve(ServeFlags flags) {
   const std::chrono::milliseconds read_deadline(std::lround(1e3 * flags.read_deadline_s));
   sandbox::ReaderLimits reader_limits = LimitsOf(flags.reader);
   reader_limits.silence = read_deadline;
-  // A silent reader is ended first, as only then it is known that its storage does not answer.
+  // A silent reader must be ended first, because only then is it known that its storage does not
+  // respond.
   store_options.read_deadline = read_deadline + std::chrono::seconds(5);
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(reader_limits));
@@ -202,7 +205,7 @@ absl::Status Serve(ServeFlags flags) {
   server_options.render_loop = flags.render_loop;
   server_options.render_loop.memory = budgets.memory;
   server_options.render_loop.device_memory = {budgets.memory, budgets.gpu};
-  // Ends the wait for a signal; a supervisor starts the server anew.
+  // This signal ends the wait for a signal, and a supervisor then restarts the server.
   const auto given_up = std::make_shared<absl::Status>();
   server_options.render_loop.on_device_given_up = [given_up](const absl::Status& why) {
     *given_up = why;
@@ -264,7 +267,7 @@ absl::Status Serve(ServeFlags flags) {
   becoming_ready = {};
   operation->SetServer(nullptr);
   roster_timeouts = {};
-  // First, because its calls to the service must end before the service does.
+  // The gateway ends first, because its calls to the service must end before the service does.
   gateway.reset();
   server->Shutdown();
   if (warm_up.joinable()) warm_up.join();

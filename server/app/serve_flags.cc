@@ -18,7 +18,7 @@ namespace {
 
 constexpr char kWho[] = "Who may come";
 
-// Flags that --help leaves out. --print-config lists them.
+// Flags that --help omits. --print-config lists them.
 constexpr std::array kRarelyChanged = {
     "--drain-seconds",
     "--grpc-memory",
@@ -59,10 +59,11 @@ constexpr std::array kRarelyChanged = {
 constexpr char kHowMuch[] = "Limits; what is beyond them is refused with the time to try again";
 
 constexpr std::size_t kMinBudget = std::size_t{64} << 20U;
-// Where the system does not tell how much there is.
+// Defaults if the system does not report the amount of memory.
 constexpr std::size_t kSomeMemory = std::size_t{4} << 30U;
 constexpr std::size_t kGpuMemory = std::size_t{4} << 30U;
-// Of a budget that fields share with GL objects, as no GPU draws: they would leave no room.
+// The share of the budget that is kept for GL objects if no GPU draws. Fields share the budget with
+// them and would otherwise leave no memory.
 constexpr double kKeptForDrawing = 0.4;
 
 bool IsLoopback(const std::string& host) {
@@ -171,7 +172,7 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
            "MiB of gRPC's buffers, all connections together");
 }
 
-// Bytes, or with a unit: 8GiB.
+// Adds a flag for a size in bytes, or with a unit such as 8GiB.
 void AddMemoryFlag(CLI::App& serve, const std::string& name, std::uint64_t& bytes,
                    const std::string& help) {
   serve.add_option(name, bytes, help)
@@ -296,7 +297,7 @@ absl::Status CompleteFlags(ServeFlags& flags) {
     THUNDERHEAD_RETURN_IF_ERROR(access::ReadSecretFile(flags.tls.key).status());
   }
   flags.limits.max_render_time = std::chrono::milliseconds(std::lround(1e3 * flags.max_render_s));
-  // The largest value of the flag is the schema's limit, which is no round number.
+  // The largest value of the flag is the schema's limit, which is not a round number.
   flags.limits.max_pixels =
       std::min(flags.limits.max_pixels, static_cast<std::uint64_t>(1e6 * flags.max_megapixels));
   flags.limits.max_samples = static_cast<std::uint64_t>(1e6 * flags.max_megasamples);

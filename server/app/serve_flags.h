@@ -1,5 +1,4 @@
-// The flags of `thunderhead serve`, and what they say about who may come and how much one may ask
-// for.
+// The flags of `thunderhead serve`, and their meaning for access and limits.
 #pragma once
 
 #include <cstdint>
@@ -35,15 +34,15 @@ struct ServeFlags {
   std::string clouds;
   std::string state;
   std::string roster_timeouts;         // for tests
-  std::uint64_t memory_bytes = 0;      // 0: a share of the machine's
-  std::uint64_t gpu_memory_bytes = 0;  // 0: by what the driver tells
+  std::uint64_t memory_bytes = 0;      // 0 means a share of the machine's memory
+  std::uint64_t gpu_memory_bytes = 0;  // 0 means the value that the driver reports
   double read_deadline_s = 60.0;
   CatalogueFlags catalogue;
   ReaderFlags reader;
   OperationFlags operation;
   JobsFlags jobs;
 
-  // Access.
+  // Flags for access.
   std::vector<std::string> auth = {"none"};
   std::string jwt_issuer;
   std::string jwt_audience;
@@ -54,7 +53,7 @@ struct ServeFlags {
   std::vector<std::string> trusted_proxies;
   std::string audit_log;
 
-  // How much.
+  // Flags for limits.
   session::SessionsOptions sessions;
   service::Limits limits;
   access::QuotaLimits quotas;
@@ -78,14 +77,14 @@ Budgets BudgetsOf(const ServeFlags& flags);
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags);
 
-// The meaning of --auth and the flags that belong to it.
+// Creates the access control from --auth and the flags that belong to it.
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
 
-// Fills in what belongs together: limits in the units of the code, hosts, TLS.
+// Fills in dependent settings: limits in the units of the code, hosts, and TLS.
 absl::Status CompleteFlags(ServeFlags& flags);
 
-// INVALID_ARGUMENT where another machine could reach a port that lets everybody in, or sends what
-// it says in the clear, unless --insecure accepts that. The operators' port always does both.
+// Returns INVALID_ARGUMENT if another machine could reach a port without access control or without
+// encryption, unless --insecure accepts that. The operator port is always without both.
 absl::Status CheckReach(const ServeFlags& flags, const Address& http, const Address& grpc);
 
 }  // namespace thunderhead::app

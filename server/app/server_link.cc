@@ -13,7 +13,7 @@ namespace thunderhead::app {
 namespace {
 
 constexpr int kMaxResponseBytes = 128 << 20;
-// A server that is started again is found soon.
+// The delay is short, so that a restarted server is found soon.
 constexpr int kMaxReconnectBackoffMs = 2000;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A running server as commands call it: --server with what it asks for, one channel, and errors as
+// A running server as commands call it: --server and its related flags, one channel, and errors as
 // statuses.
 #pragma once
 
@@ -19,7 +19,7 @@
 namespace thunderhead::app {
 
 struct ServerFlags {
-  std::string address;  // HOST:PORT; empty: no server
+  std::string address;  // HOST:PORT; empty for no server
   ClientAccessFlags access;
 };
 
@@ -27,7 +27,8 @@ void AddServerFlags(CLI::App& command, ServerFlags& flags);
 
 class ServerLink {
  public:
-  // INVALID_ARGUMENT names the flag that is wrong. Does not wait for the server.
+  // Creates the link without waiting for the server. The error INVALID_ARGUMENT names the wrong
+  // flag.
   static absl::StatusOr<std::unique_ptr<ServerLink>> Open(const ServerFlags& flags);
 
   v1::ThunderheadService::Stub& Service() { return *service_; }
@@ -36,8 +37,8 @@ class ServerLink {
   const std::string& Token() const { return token_; }
   const std::string& Address() const { return address_; }
 
-  // Calls a unary rpc with the token: Call(&Stub::ListStorms of Service(), ...). A server that does
-  // not answer is UNAVAILABLE after a while.
+  // Calls a unary rpc with the token: Call(&Stub::ListStorms of Service(), ...). Returns
+  // UNAVAILABLE after a timeout if the server does not respond.
   template <typename Stub, typename Method, typename Request, typename Response>
   absl::Status Call(Stub& stub, Method method, const Request& request, Response* response) {
     grpc::ClientContext context;
@@ -46,14 +47,15 @@ class ServerLink {
     return StatusOf((stub.*method)(&context, request, response));
   }
 
-  // Shows the token.
+  // Adds the token to the call.
   void Prepare(grpc::ClientContext& context) const;
 
-  // The same code and message; the server's name with those of a lost connection.
+  // Returns a status with the same code and message. The message for a lost connection also has the
+  // server's name.
   absl::Status StatusOf(const grpc::Status& status) const;
 
  private:
-  // A server may have to read a storm first.
+  // The timeout is long because a server may have to read a storm first.
   static constexpr std::chrono::seconds kPatience{120};
 
   ServerLink(std::string address, std::string token, std::shared_ptr<grpc::Channel> channel);

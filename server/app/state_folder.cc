@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr char kNone[] = "none";
 constexpr char kFile[] = "sessions.db";
-// Then the folder's storage hangs. A disk may be busy with others' data for some seconds.
+// Timeout after which the folder's storage counts as hanging. A disk may be busy with other data
+// for some seconds.
 constexpr std::chrono::seconds kPatience{10};
 
 std::string Variable(const char* name) {
@@ -30,19 +31,19 @@ std::string Variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-// Empty if the environment names none.
+// Returns the default folder; empty if the environment names none.
 std::string DefaultFolder() {
-  // systemd lists several with colons.
+  // systemd separates several folders by colons; the first one is used.
   const std::string given = Variable("STATE_DIRECTORY");
   if (!given.empty()) return given.substr(0, given.find(':'));
-  // A relative one is to be ignored (XDG Base Directory Specification).
+  // A relative path must be ignored (XDG Base Directory Specification).
   const std::string state = Variable("XDG_STATE_HOME");
   if (fs::path(state).is_absolute()) return state + "/thunderhead";
   const std::string home = Variable("HOME");
   return home.empty() ? "" : home + "/.local/state/thunderhead";
 }
 
-// Creates the folder, for this user only, if it is not there.
+// Creates the folder for this user only, if it does not exist.
 std::error_code Create(const std::string& folder) {
   std::error_code error;
   if (fs::is_directory(folder, error)) return {};

@@ -1,4 +1,4 @@
-// Where `serve` keeps what outlives it.
+// The folder in which `serve` keeps the state that outlives it.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,18 @@
 
 namespace thunderhead::app {
 
-// State that outlives the server, each null if it ends with it.
+// State that outlives the server. Each store is null if its state ends with the server.
 struct State {
   std::shared_ptr<session::SessionStore> sessions;
   std::shared_ptr<jobs::JobStore> jobs;
-  std::string folder;  // empty: none
-  // Tells whether the folder's storage hangs; both stores are UNAVAILABLE then.
+  std::string folder;  // empty for none
+  // Reports whether the folder's storage hangs. Both stores then return UNAVAILABLE.
   std::shared_ptr<base::PatientCalls> calls;
 };
 
-// The state in the folder, which is created for this user only; nothing for "none". An empty
-// `folder` is the service manager's ($STATE_DIRECTORY) or the user's; if that cannot be created,
-// nothing, with a warning.
+// Opens the state in the folder, which is created for this user only. For "none" there is no state.
+// An empty `folder` means the service manager's ($STATE_DIRECTORY) or the user's. If that one
+// cannot be created, there is no state, and a warning is logged.
 absl::StatusOr<State> OpenState(const std::string& folder);
 
 }  // namespace thunderhead::app

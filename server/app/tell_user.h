@@ -8,7 +8,8 @@
 
 namespace thunderhead::app {
 
-// Writes one printable line to standard error: the names of files are among what is said.
+// Writes one line to standard error. The line is made printable because it may contain names of
+// files.
 inline void TellUser(std::string_view what) {
   std::cerr << "thunderhead: " << base::Printable(what) << std::endl;
 }

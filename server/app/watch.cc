@@ -31,7 +31,7 @@
 namespace thunderhead::app {
 namespace {
 
-// For file systems whose events do not arrive.
+// Interval of searches, for file systems without change events.
 constexpr absl::Duration kRescan = absl::Seconds(30);
 
 struct WatchFlags {
@@ -42,7 +42,8 @@ struct WatchFlags {
   PipelineFlags pipeline;
 };
 
-// When to end: never by itself, or after some files, or at a time; whichever comes first.
+// The conditions for ending: never, after some files, or at a time. The one that comes first
+// applies.
 struct End {
   std::optional<int> files;
   absl::Time at = absl::InfiniteFuture();
@@ -73,7 +74,7 @@ absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
                    "2030-05-20T06:00:00Z, or both"));
 }
 
-// The pictures of every ready file; those of files that are done count as made.
+// Returns the pictures of all ready files. Pictures of files that are done count as made.
 absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
     const PictureRunOptions& options, const std::vector<FolderStorm>& storms,
     const std::vector<storm_store::CataloguedStorm>& catalogue, const WatchedFolder& folder) {
@@ -93,8 +94,8 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
   return all;
 }
 
-// A file whose pictures are all made is done; one that cannot be drawn is bad, unless the error
-// names another file: without that one it is tried again.
+// Settles files. A file is done if all its pictures are made, and bad if it cannot be drawn. If the
+// error names another file, it is retried without that file.
 void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) {
   for (const std::string& path : folder.Unsettled()) {
     bool made = true;
@@ -109,13 +110,15 @@ void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) 
   }
 }
 
-// True for the name of a picture, as opposed to a file made from pictures or for making them.
+// Returns true for the name of a picture, as opposed to a file made from pictures or for making
+// them.
 bool IsPicture(const PictureRunOptions& options, const std::string& file) {
   return std::filesystem::path(file).extension() ==
          std::filesystem::path(options.product.Text()).extension();
 }
 
-// The view of a picture that an earlier run made as this one would; null for other products.
+// Returns the view of a picture that an earlier run made as this one would; null for other
+// products.
 const View* ViewOf(const PictureRun& run, const pipeline::ManifestEntry& entry) {
   const std::vector<View>& views = run.Options().views;
   const auto view = std::ranges::find(views, entry.view, &View::name);
@@ -127,7 +130,7 @@ const View* ViewOf(const PictureRun& run, const pipeline::ManifestEntry& entry) 
   return &*view;
 }
 
-// Files that earlier runs have drawn in every view count towards --until, also where they have been
+// Counts files that earlier runs have drawn in every view towards --until, even if they have been
 // moved away since.
 void RememberDone(const PictureRun& run, WatchedFolder& folder) {
   std::map<std::string, std::map<std::string, std::size_t>> views;  // by input and valid time
@@ -146,8 +149,9 @@ void RememberDone(const PictureRun& run, WatchedFolder& folder) {
   }
 }
 
-// Pictures that earlier runs made as this one would and that are not in `planned`, as their files
-// are not ready again or gone: a movie has them too, and does not shrink when `watch` is restarted.
+// Returns pictures that earlier runs made as this one would and that are not in `planned`. Their
+// files are not ready again, or are gone. A movie includes them too, so that it does not shrink
+// when `watch` is restarted.
 std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
                                        const std::vector<PlannedPicture>& planned) {
   const pipeline::Manifest& records = run.Records();
@@ -171,8 +175,8 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
   return pictures;
 }
 
-// Says what was assumed of the storms, such as which of two files with one time is drawn; each note
-// once, after which it is in `told`.
+// Logs the assumptions about the storms, such as which of two files with one time is drawn. Each
+// note is logged once and then added to `told`.
 void TellNotes(const std::vector<FolderStorm>& storms, std::set<std::string>& told) {
   for (const FolderStorm& storm : storms) {
     for (const std::string& note : storm.storm.notes) {
@@ -181,7 +185,7 @@ void TellNotes(const std::vector<FolderStorm>& storms, std::set<std::string>& to
   }
 }
 
-// Draws what has become ready.
+// Draws the files that have become ready.
 absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, PictureRun& run,
                        RunProgress& progress, std::set<std::string>& told,
                        const std::stop_token& stop) {

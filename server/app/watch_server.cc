@@ -18,11 +18,11 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Each look is a call that reads no storm, unless there is a new time.
+// Each check is a call that reads no storm, unless there is a new time.
 constexpr std::chrono::seconds kLook{2};
 constexpr std::chrono::seconds kWatchPatience{60};
 
-// How many times the storm has; nothing if it is not there (yet).
+// Returns the number of the storm's times; nothing if the storm does not exist (yet).
 absl::StatusOr<std::optional<int>> TimesOf(ServerLink& server, const std::string& id) {
   v1::ListStormsResponse listed;
   THUNDERHEAD_RETURN_IF_ERROR(server.Call(server.Service(),
@@ -45,7 +45,7 @@ class Watching {
   Watching(const ServerWatch& watch, ServerLink& server, PictureRun& run, RunProgress& progress)
       : watch_(watch), server_(server), run_(run), progress_(progress) {}
 
-  // Draws what has come since the last look.
+  // Draws the times that were added since the last check.
   absl::Status Look(const std::stop_token& stop) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<int> times, TimesOf(server_, watch_.storm));
     if (!times.has_value() || times == seen_) return absl::OkStatus();
@@ -70,7 +70,7 @@ class Watching {
       }
       if (absl::IsDataLoss(picture.outcome)) bad_ = picture.outcome;
     }
-    // Looked at again where something did not come that may.
+    // If a picture failed and may succeed later, the times are checked again.
     if (all_settled) seen_ = times;
     for (PlannedPicture& picture : pictures) {
       if (settled_.contains(picture.path)) picture.outcome = absl::OkStatus();
@@ -87,7 +87,7 @@ class Watching {
   PictureRun& run_;
   RunProgress& progress_;
   std::optional<int> seen_;
-  std::set<std::string> settled_;  // paths
+  std::set<std::string> settled_;  // paths of settled pictures
   absl::Status bad_;
 };
 

@@ -1,5 +1,5 @@
-// `thunderhead watch` on a storm of a running server: draws each of its times as the server's
-// catalogue offers it, complete by the server's rules.
+// Implements `thunderhead watch` for a storm of a running server. It draws each of the storm's
+// times when the server's catalogue offers it. The server's rules decide when a time is complete.
 #pragma once
 
 #include <functional>
@@ -16,14 +16,14 @@ namespace thunderhead::app {
 
 struct ServerWatch {
   std::string storm;
-  // Whether to end, once `times` are drawn.
+  // Returns whether to end once `times` are drawn.
   std::function<bool(int times)> is_over;
-  // Called with the pictures of all times after new ones were made.
+  // Called with the pictures of all times after new pictures were made.
   std::function<absl::Status(const std::vector<PlannedPicture>&)> after_new;
 };
 
-// Returns when it is over, with the worst that happened to a picture; CANCELLED after `stop`. A
-// server that cannot be reached for a minute is UNAVAILABLE.
+// Returns when the watch is over, with the worst error of any picture. Returns CANCELLED after
+// `stop`, and UNAVAILABLE if the server cannot be reached for a minute.
 absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
                          RunProgress& progress, const std::stop_token& stop);
 

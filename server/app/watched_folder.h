@@ -1,5 +1,4 @@
-// A folder that a model writes to: finds which of its files are complete, and groups these as times
-// of storms.
+// A folder that a model writes to. It finds the complete files and groups them as times of storms.
 #pragma once
 
 #include <chrono>
@@ -20,7 +19,7 @@
 
 namespace thunderhead::app {
 
-// A storm of a folder, under a name that stays the same as its files come.
+// A storm of a folder, with a name that stays the same as more files arrive.
 struct FolderStorm {
   std::string name;
   storm_store::CataloguedStorm storm;
@@ -28,31 +27,33 @@ struct FolderStorm {
 
 class WatchedFolder {
  public:
-  // `files` is a pattern of the names of data files, as fnmatch(3).
+  // `files` is a pattern for the names of data files, as in fnmatch(3).
   WatchedFolder(std::string folder, std::string files, pipeline::ReadinessPolicy policy)
       : folder_(std::move(folder)), files_(std::move(files)), policy_(std::move(policy)) {}
 
-  // Looks at the folder and opens the files that have become ready. A file that changes begins
-  // again. UNAVAILABLE if the folder cannot be listed.
+  // Checks the folder and opens the files that have become ready. A file that changes starts again.
+  // Returns UNAVAILABLE if the folder cannot be listed.
   absl::Status Look(RunProgress& progress);
 
-  // The storms of all files that are ready.
+  // Returns the storms of all files that are ready.
   std::vector<FolderStorm> Storms() const;
 
-  // Files that are ready and not settled yet, by path.
+  // Returns the files that are ready and not settled yet, by path.
   std::vector<std::string> Unsettled() const;
-  // All of a file's pictures are made, or, if `bad`, never will be as long as it does not change.
+  // Settles a file: all of its pictures are made. If `bad`, they cannot be made until the file
+  // changes.
   void Settle(const std::string& path, bool bad);
 
-  // Counts a file as done that an earlier run has drawn, for as long as it is not there (again).
+  // Counts a file as done because an earlier run has drawn it. That ends if the file appears again.
   void RememberDone(const pipeline::InputFile& file);
 
   bool IsDone(const std::string& path) const;
-  // Files that are gone since they were drawn, as into an archive, count as well.
+  // Returns the number of files that are done. Drawn files that were removed, for example into an
+  // archive, count as well.
   int DoneCount() const;
-  // Files that cannot be drawn as they are.
+  // Returns the number of files that cannot be drawn in their current state.
   int BadCount() const;
-  // Files that are there but not ready, or not settled.
+  // Returns the number of existing files that are not ready or not settled.
   int WaitingCount() const;
 
  private:
@@ -63,17 +64,17 @@ class WatchedFolder {
   struct File {
     pipeline::SeenFile seen;
     Time unchanged_since;
-    bool gone = false;  // when it had been drawn or found bad
+    bool gone = false;  // true if it was drawn or found bad before it was removed
     State state = State::kWaiting;
-    bool refused = false;  // waits for a change, as it does not open
+    bool refused = false;  // true if it does not open, so that it waits for a change
     std::optional<storm_files::StormFile> storm;
   };
 
   absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names,
                     Time now);
   void See(const std::string& path, pipeline::SeenFile& seen, std::int64_t changed_ns, Time now);
-  // Marks files that are not `there` any more as gone. Forgets those of them that are not done yet,
-  // and those that are there under another name.
+  // Marks files that are not in `there` as gone. Removes those that are not settled, and those that
+  // now exist under another name.
   void ForgetGone(const std::set<std::string>& there);
   void Open(const std::string& path, File& file, RunProgress& progress) const;
   int Count(State state) const;
@@ -82,7 +83,7 @@ class WatchedFolder {
   const std::string files_;
   const pipeline::ReadinessPolicy policy_;
   const storm_files::StormFormats formats_ = ConfinedFormats();
-  Time looked_ = Time::min();          // of the last look
+  Time looked_ = Time::min();          // time of the last check
   std::map<std::string, File> known_;  // by path
 };
 

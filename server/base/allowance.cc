@@ -5,7 +5,7 @@
 namespace thunderhead::base {
 namespace {
 
-// Those who are counted; beyond these, those that rest are forgotten.
+// Maximum number of names with a bucket. Beyond it, Allowances drops buckets that are full.
 constexpr std::size_t kMaxCounted = 4096;
 
 }  // namespace

@@ -1,5 +1,6 @@
-// How often one may do something, and each of many: a bucket that fills with time and holds two
-// seconds' worth, so that who has rested may do twice as much at once.
+// Rate limits, for one client or for many. Each is a token bucket that refills with time and holds
+// two seconds' worth of tokens. A client that has paused can therefore send a burst of twice its
+// rate.
 #pragma once
 
 #include <chrono>
@@ -16,11 +17,11 @@ class Allowance {
   Allowance(double per_second, Time now)
       : per_second_(per_second), left_(kBurst_s * per_second), at_(now) {}
 
-  // Takes one. If there is none, the time until there is.
+  // Takes one token. If there is none, returns the time until the next one.
   std::optional<std::chrono::milliseconds> Take(Time now);
-  // How many there are now.
+  // Returns the number of tokens at `now`.
   double LeftAt(Time now) const;
-  // True if nothing was taken for so long that the bucket is as full as a new one.
+  // Returns whether nothing was taken for so long that the bucket is as full as a new one.
   bool IsFull(Time now) const { return LeftAt(now) >= kBurst_s * per_second_; }
 
  private:
@@ -31,17 +32,17 @@ class Allowance {
   Time at_;
 };
 
-// By name. Used by one thread at a time.
+// A rate limit for each name. It must be used by one thread at a time.
 class Allowances {
  public:
   using Time = Allowance::Time;
 
-  // 0: no limit.
+  // With `per_second` = 0 there is no limit.
   explicit Allowances(double per_second) : per_second_(per_second) {}
 
-  // As Allowance::Take.
+  // Like Allowance::Take, from the bucket of `who`.
   std::optional<std::chrono::milliseconds> Take(const std::string& who, Time now);
-  // False if there is none left.
+  // Returns false if the bucket of `who` has no token left.
   bool HasAny(const std::string& who, Time now) const;
 
   double PerSecond() const { return per_second_; }

@@ -11,9 +11,9 @@ namespace thunderhead::base {
 namespace {
 
 constexpr std::size_t kNetworkBytes = 8;
-constexpr std::size_t kMappedBytes = 12;  // before an IPv4 address
+constexpr std::size_t kMappedBytes = 12;  // bytes before an IPv4 address
 
-// "1.2.3.4" of "1.2.3.4:80", "::1" of "[::1]:80".
+// Returns "1.2.3.4" for "1.2.3.4:80", and "::1" for "[::1]:80".
 std::string HostOf(const std::string& peer) {
   const std::size_t bracket = peer.find(']');
   if (!peer.empty() && peer.front() == '[' && bracket != std::string::npos) {

@@ -1,4 +1,4 @@
-// The right to use a device that several threads draw on in turn.
+// The exclusive right to use a device, which several threads take in turn.
 #pragma once
 
 #include "absl/status/status.h"
@@ -9,10 +9,12 @@ class DeviceTurn {
  public:
   virtual ~DeviceTurn() = default;
 
-  // Waits for it. An error, CANCELLED if nobody wants what is drawn any more, ends the drawing.
+  // Waits for the turn. An error means that the caller must stop drawing. It is CANCELLED if no
+  // caller needs the result any longer.
   virtual absl::Status Take() = 0;
   virtual void GiveBack() = 0;
-  // Why Take would end the drawing; OK while it would not. Does not wait; safe from any thread.
+  // Returns the error with which Take would stop the drawing, or OK. Does not wait. Safe from any
+  // thread.
   virtual absl::Status Wanted() const { return absl::OkStatus(); }
 };
 

@@ -16,9 +16,9 @@ constexpr char kField[] = "thunderhead/field";
 constexpr char kDescription[] = "thunderhead/description";
 constexpr char kRetryAfterMs[] = "thunderhead/retry_after_ms";
 constexpr char kPermanent[] = "thunderhead/permanent";
-constexpr char kMetadata[] = "thunderhead/metadata/";  // and the key
+constexpr char kMetadata[] = "thunderhead/metadata/";  // followed by the key
 
-// How long a process needs to end and another to start.
+// The time that a restart of the server process takes.
 constexpr std::chrono::seconds kRestart{5};
 
 void AddPayload(absl::Status& status, const std::string& name, const std::string& text) {
@@ -35,7 +35,7 @@ std::string PayloadOf(const absl::Status& status, const char* name) {
 
 absl::Status WithDetails(absl::Status status, const ErrorDetails& details) {
   AddPayload(status, kReason, details.reason);
-  // The description is of the field that it came with.
+  // A description belongs to its field, so it is not added to a status that has another field.
   if (!status.GetPayload(kField).has_value()) {
     AddPayload(status, kDescription, details.description);
   }

@@ -1,7 +1,8 @@
-// Details of an error for programs, beside the message for people: a reason that stays the
-// same when the words change, the field of the request that is at fault, limits, when to try again.
-// It travels with an absl::Status as payloads of plain text, attached where the error is made; the
-// service turns it into gRPC's form (service/status_table.h). This room knows no messages.
+// Machine-readable details of an error, in addition to its message. They hold a reason code that
+// stays the same when the message changes, the invalid request field, limits, and when to retry.
+// The code that makes an absl::Status attaches the details to it as plain-text payloads. The
+// service converts them to gRPC's form (service/status_table.h). This library does not depend on
+// the API's messages.
 #pragma once
 
 #include <chrono>
@@ -17,29 +18,29 @@ namespace thunderhead::base {
 struct ErrorDetails {
   std::string reason = {};       // UPPER_SNAKE_CASE
   std::string field = {};        // its path in the request, e.g. "scene.fields[1].radius_m"
-  std::string description = {};  // of what is wrong with the field; absent: the status' message
+  std::string description = {};  // what is wrong with it; else see the message
   std::map<std::string, std::string> metadata = {};  // e.g. "maximum" of "0.1" and "unit" of "m"
   std::optional<std::chrono::milliseconds> retry_after = {};
-  bool permanent = false;  // the same request will be refused again, so that a retry does not help
+  bool permanent = false;  // the same request will be refused again, so a retry does not help
 };
 
-// `status` with those details that it does not have yet: who found the error knows it best. OK
-// stays OK.
+// Returns `status` with the details that it does not have yet. Details that it already has stay,
+// because the code that found the error knows most about it. OK stays OK.
 absl::Status WithDetails(absl::Status status, const ErrorDetails& details);
 
 ErrorDetails DetailsOf(const absl::Status& status);
 
-// INVALID_ARGUMENT because of a field; the message is its path and `description`.
+// Returns INVALID_ARGUMENT for a field. The message is the field's path and `description`.
 absl::Status InvalidField(const std::string& field, const std::string& description,
                           const std::string& reason,
                           const std::map<std::string, std::string>& metadata = {});
 
-// UNAVAILABLE because the server stops; another may soon stand in its place.
+// Returns UNAVAILABLE because the server is stopping. Another server may soon replace it.
 absl::Status ShuttingDown();
 
-// RESOURCE_EXHAUSTED for a connection beyond the limits, which is closed.
+// Returns RESOURCE_EXHAUSTED for a connection over the limits, which will be closed.
 absl::Status TooManyConnections();
-// The same for one whose address begins TLS too often.
+// Returns the same error for a client address that starts TLS handshakes too often.
 absl::Status TooManyHandshakes();
 
 }  // namespace thunderhead::base

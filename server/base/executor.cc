@@ -17,10 +17,10 @@
 namespace thunderhead::base {
 namespace {
 
-// A task is a read or a picture's encoding; a few threads end hundreds of them in this time.
+// A task is a read or the encoding of an image. A few threads finish hundreds of them in this time.
 constexpr std::chrono::seconds kQueueRetryAfter{10};
 
-// Until a thread that had no memory to begin a task tries again.
+// How long a worker that had no memory to start a task waits before it tries again.
 constexpr std::chrono::milliseconds kMemoryPause{100};
 
 absl::Status Full(const char* of_whom, std::size_t max_waiting) {
@@ -116,7 +116,7 @@ void Executor::Stop() {
     for (const Waiting& waiting : tasks) waiting.task(ShuttingDown());
   }
   if (watch_.joinable()) watch_.join();
-  // One deadline for all: those that hang are not waited for one after another.
+  // One deadline covers all threads, so that hanging threads do not add up to a long wait.
   for (LooseThread& thread : threads) thread.LetGoBy(deadline);
 }
 
@@ -131,7 +131,7 @@ std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
   });
   if (!owner.has_value()) return std::nullopt;
   int& running = shared.running[*owner];
-  // Nothing from here on allocates: what is taken is run.
+  // Nothing below this line allocates, so a task that was taken from the queue is always run.
   const auto queue = shared.waiting.find(*owner);
   Task task = std::move(queue->second.front().task);
   queue->second.pop_front();
@@ -140,7 +140,7 @@ std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
   ++running;
   worker.owner = *std::move(owner);
   worker.busy_since = shared.time.Now();
-  // Until it is known how long it takes.
+  // The typical time is charged until the task's real time is known.
   worker.charged_ms = shared.typical_ms;
   shared.shares.Used(worker.owner, worker.charged_ms);
   return task;
@@ -168,7 +168,7 @@ std::optional<Executor::Task> Executor::WaitFor(Shared& shared, Worker& worker,
       if (task.has_value() || shared.stopping) return task;
       shared.changed.wait(lock);
     } catch (const std::bad_alloc&) {
-      // The task waits on.
+      // The task stays in the queue, so it is not lost.
       shared.changed.wait_for(lock, kMemoryPause);
       if (shared.stopping) return std::nullopt;
     }
@@ -177,12 +177,12 @@ std::optional<Executor::Task> Executor::WaitFor(Shared& shared, Worker& worker,
 
 void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr<Worker>& worker) {
   std::unique_lock lock(shared->mutex);
-  // Whose place another has taken does no more.
+  // A worker that was replaced because it hung exits.
   while (!worker->hangs) {
     std::optional<Task> task = WaitFor(*shared, *worker, lock);
     if (!task.has_value()) break;
     lock.unlock();
-    // The watch looks when this one would hang.
+    // The watch thread must update the time at which it checks whether this task hangs.
     shared->changed.notify_all();
     try {
       const absl::Status failed = Guarded([&] {
@@ -191,7 +191,7 @@ void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr
       });
       if (!failed.ok()) LogError(failed);
     } catch (const std::bad_alloc&) {
-      // There is none to say so either.
+      // There is no memory for a log line either.
     }
     task.reset();
     lock.lock();
@@ -212,7 +212,7 @@ void Executor::Replace(Clock::time_point now) {
     if (hanging >= shared_->limits.max_hanging) return;
     if (worker->hangs || !worker->busy_since.has_value()) continue;
     if (now - *worker->busy_since < shared_->limits.hangs_after) continue;
-    // First, as there may be no memory for it.
+    // The thread is added first, because this can fail for lack of memory.
     AddWorker();
     worker->hangs = true;
     Leave(*shared_, worker->owner);
@@ -225,7 +225,7 @@ void Executor::Replace(Clock::time_point now) {
 
 std::vector<Executor::Task> Executor::TakeLate(Shared& shared, Clock::time_point now) {
   std::vector<Task> late;
-  // Before any is taken, as it allocates.
+  // Reserves memory before any task is taken from the queue, because an allocation can fail.
   late.reserve(shared.waiting_count);
   for (auto owner = shared.waiting.begin(); owner != shared.waiting.end();) {
     std::deque<Waiting>& tasks = owner->second;
@@ -246,7 +246,7 @@ void Executor::Watch() {
     std::vector<Task> late;
     try {
       late = TakeLate(*shared_, now);
-      // Only those who wait need another thread.
+      // Another thread is needed only if tasks are waiting.
       if (!shared_->waiting.empty()) Replace(now);
     } catch (const std::exception& no_memory_or_thread) {
       spdlog::warn("cannot look after requests: {}", no_memory_or_thread.what());

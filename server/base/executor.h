@@ -1,7 +1,7 @@
 // A few threads that run blocking work for callers that must not block, with a bounded queue.
-// Owners of work get equal shares of the threads' time, and none can fill the queue or take every
-// thread. Work that hangs, as with a storage that has gone, gives up its place to others after a
-// while.
+// Owners of work get equal shares of the threads' time. No owner can fill the queue or occupy every
+// thread. When a task hangs, for example because its storage is gone, another thread replaces its
+// thread after a while.
 #pragma once
 
 #include <chrono>
@@ -27,20 +27,22 @@ namespace thunderhead::base {
 
 class Executor {
  public:
-  // Called exactly once: with OK on one of the threads, or, if it is refused, with the reason on
-  // the thread that called Submit or Stop, or on one of the executor's own.
+  // A task is called exactly once. It is called with OK on one of the threads. If the task is
+  // refused, it is called with the reason on the thread that called Submit or Stop, or on the
+  // executor's watch thread.
   using Task = std::function<void(const absl::Status&)>;
 
   struct Limits {
     int threads = 4;
-    // Tasks that wait: in all, and of one owner.
+    // Maximum number of waiting tasks, in total and for each owner.
     std::size_t max_waiting = 1024;
     std::size_t max_waiting_each = 256;
-    // A task that runs longer hangs: it does not count as one of `threads` any more.
+    // A task that runs longer than this counts as hanging, and its thread no longer counts as one
+    // of `threads`.
     std::chrono::milliseconds hangs_after = std::chrono::seconds(20);
-    // Tasks that hang, at most; with more, others wait.
+    // Maximum number of hanging tasks. When it is reached, hanging threads are not replaced.
     int max_hanging = 32;
-    // Who has waited longer is refused with DEADLINE_EXCEEDED.
+    // A task that has waited longer than this is refused with DEADLINE_EXCEEDED.
     std::chrono::milliseconds max_wait = std::chrono::seconds(60);
   };
 
@@ -50,14 +52,14 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  // `owner` is who asked for it, an identity. Empty: the server itself, which may fill the queue
-  // and take every thread.
+  // Queues a task. `owner` is the identity that asked for it. An empty owner is the server itself,
+  // which may fill the queue and take every thread.
   void Submit(const std::string& owner, Task task);
-  // Tasks that hang now.
+  // Returns how many tasks hang now.
   int Hanging() const;
 
-  // Waits for running tasks to end, for LooseThread::kPatience in all, and leaves behind those that
-  // do not; waiting and later tasks are refused.
+  // Refuses waiting and later tasks. Then waits for the running tasks to end, for
+  // LooseThread::kPatience in total, and abandons those that do not end.
   void Stop();
 
  private:
@@ -67,14 +69,14 @@ class Executor {
     Task task;
     Clock::time_point since;
   };
-  // A thread, and its task.
+  // A thread and its task.
   struct Worker {
     std::optional<Clock::time_point> busy_since;
-    std::string owner;  // of the task
+    std::string owner;  // the task's owner
     double charged_ms = 0.0;
     bool hangs = false;
   };
-  // All that threads use, which may be left behind.
+  // The state that the threads use. It outlives the executor if a thread is abandoned.
   struct Shared {
     Shared(const Limits& of, const TimeSource& by) : limits(of), time(by) {}
 
@@ -84,32 +86,33 @@ class Executor {
     std::condition_variable changed;
     std::map<std::string, std::deque<Waiting>> waiting;  // by owner; no queue is empty
     std::size_t waiting_count = 0;
-    std::map<std::string, int> running;  // by owner, without those that hang
+    std::map<std::string, int> running;  // by owner, without hanging tasks
     FairShare shares;
-    double typical_ms = 1.0;  // of the last task
+    double typical_ms = 1.0;  // how long the last task took
     std::list<std::shared_ptr<Worker>> workers;
     bool stopping = false;
   };
 
-  // The next task for that worker, once there is one; nothing when it is to end.
+  // Waits for the next task for the worker. Returns nothing when the worker must exit.
   static std::optional<Task> WaitFor(Shared& shared, Worker& worker,
                                      std::unique_lock<std::mutex>& lock);
   static void Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr<Worker>& worker);
-  // The following need the mutex.
-  // The next task of the owner who has had the least time, for that worker; nothing if none may
-  // begin. Owners keep one thread free for others.
+  // The functions below require the mutex.
+  //
+  // Returns the next task for the worker, from the owner who has used the least time. Returns
+  // nothing if no task may start. Every owner must leave one thread free for others.
   static std::optional<Task> Take(Shared& shared, Worker& worker);
   static void End(Shared& shared, Worker& worker);
   static void Leave(Shared& shared, const std::string& owner);
   static std::vector<Task> TakeLate(Shared& shared, Clock::time_point now);
-  // Notes who hangs, and begins threads in their place.
+  // Marks workers that hang, and starts threads that replace them.
   void Replace(Clock::time_point now);
   void AddWorker();
 
   void Watch();
 
   const std::shared_ptr<Shared> shared_;
-  std::list<LooseThread> threads_;  // with the mutex held
+  std::list<LooseThread> threads_;  // requires the mutex
   std::thread watch_;
 };
 

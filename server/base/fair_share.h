@@ -1,5 +1,5 @@
-// The next of those who wait: the one for whom least was done so far, in milliseconds. A plain
-// value.
+// Fair scheduling: chooses the client that has used the least time so far, in milliseconds. A plain
+// value type.
 #pragma once
 
 #include <functional>
@@ -12,18 +12,19 @@ namespace thunderhead::base {
 
 class FairShare {
  public:
-  // One of `waiting`, which must not be empty; the first where several are equal. Newcomers, and
-  // those who come back after a pause, start with as much as the one with least has had.
+  // Returns one of `waiting`, which must not be empty, or the first of several with the same time.
+  // A client that is new, or that returns after a pause, starts with the least time of those
+  // waiting.
   std::string Next(const std::vector<std::string>& waiting);
-  // One of those for whom `may` is true; none if there is none.
+  // Returns one of those for which `may` is true, or nothing if there is none.
   std::optional<std::string> Next(const std::vector<std::string>& waiting,
                                   const std::function<bool(const std::string&)>& may);
 
-  // So much was done for it, or less than was said if it is negative.
+  // Charges the client this time. A negative value corrects an earlier charge that was too high.
   void Used(const std::string& id, double milliseconds);
 
  private:
-  std::map<std::string, double> used_ms_;  // of those that waited last
+  std::map<std::string, double> used_ms_;  // only of the clients that waited last
 };
 
 }  // namespace thunderhead::base

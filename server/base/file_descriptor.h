@@ -1,4 +1,4 @@
-// An open file descriptor, closed when its owner goes.
+// An open file descriptor that its destructor closes.
 #pragma once
 
 #include <unistd.h>
@@ -10,7 +10,7 @@ namespace thunderhead::base {
 class FileDescriptor {
  public:
   FileDescriptor() = default;
-  // Negative: none.
+  // A negative number means that there is no descriptor.
   explicit FileDescriptor(int number) : number_(number) {}
   FileDescriptor(FileDescriptor&& other) noexcept : number_(other.Release()) {}
   FileDescriptor& operator=(FileDescriptor&& other) noexcept {
@@ -23,7 +23,7 @@ class FileDescriptor {
 
   int Get() const { return number_; }
   bool IsOpen() const { return number_ >= 0; }
-  // Whoever asks closes it.
+  // Hands the descriptor to the caller, who must close it.
   int Release() { return std::exchange(number_, -1); }
 
  private:

@@ -16,7 +16,8 @@
 namespace thunderhead::base {
 namespace {
 
-// Not IN_MODIFY: a file that is being written would wake its watcher at every block.
+// IN_MODIFY is left out, because a file that is being written would wake the watcher at every
+// block.
 constexpr std::uint32_t kEvents = IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE |
                                   IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 
@@ -67,7 +68,7 @@ bool FolderEvents::WaitUntil(std::chrono::steady_clock::time_point deadline) {
   }
 }
 
-// True if anything was read.
+// Returns whether anything was read.
 bool FolderEvents::Drain() {
   alignas(inotify_event) std::array<char, 16 * 1024> buffer{};
   bool any = false;

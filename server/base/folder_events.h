@@ -1,6 +1,6 @@
-// The kernel's word (inotify) that something has happened in some folders. What has happened is
-// for a scan to find out: events may be merged, come too often, or be lost, and a network file
-// system sends none for what other machines do.
+// Notifications from the kernel (inotify) that something has happened in some folders. The caller
+// must scan the folders to find out what has happened. Events can be merged, too frequent or lost.
+// A network file system sends none for changes that other machines make.
 #pragma once
 
 #include <chrono>
@@ -16,15 +16,16 @@ class FolderEvents {
   FolderEvents(const FolderEvents&) = delete;
   FolderEvents& operator=(const FolderEvents&) = delete;
 
-  // Watches the folder itself, not those below it; again does no harm. True if it was not watched
-  // before. A folder that cannot be watched is logged once for all.
+  // Watches the folder itself, but not its subfolders. A repeated call does no harm. Returns true
+  // if the folder was not watched before. Only the first folder that cannot be watched is logged.
   bool Watch(const std::string& folder);
 
-  // Waits until a file was written and closed, or anything was moved, made or deleted in a watched
-  // folder, until Wake, or until `deadline`. True for the first.
+  // Waits for an event, for Wake or until `deadline`. An event is a file that was written and
+  // closed, or anything that was moved, created or deleted in a watched folder. Returns whether
+  // there was an event.
   bool WaitUntil(std::chrono::steady_clock::time_point deadline);
 
-  // Ends a WaitUntil, or the next one; from any thread.
+  // Ends the current WaitUntil, or the next one. Safe from any thread.
   void Wake();
 
  private:

@@ -1,4 +1,4 @@
-// Work whose exceptions become statuses, so that one request that fails takes nothing else with it.
+// Converts exceptions to statuses, so that one request that fails does not affect others.
 #pragma once
 
 #include <chrono>
@@ -13,9 +13,9 @@
 
 namespace thunderhead::base {
 
-// An allocation that failed for a known reason, thrown where no status can be returned, as by the
-// constructors of GL objects: the memory budget refuses it, or the device has none. Only Guarded
-// catches it.
+// A failed allocation with a known reason: the memory budget refuses it, or the device has no
+// memory. It is thrown where no status can be returned, for example by constructors of GL objects.
+// Only Guarded catches it.
 class FailedAllocation : public std::bad_alloc {
  public:
   explicit FailedAllocation(absl::Status why) : why_(std::move(why)) {}
@@ -36,9 +36,9 @@ inline absl::Status OutOfMemory() {
 // only that the server failed, because the text may name files.
 absl::Status UnexpectedFailure(const char* what);
 
-// Returns the status or StatusOr of `work`: RESOURCE_EXHAUSTED if an allocation or a thread could
-// not be had, INTERNAL for any other exception, also those by which protobuf reports a failed
-// precondition.
+// Returns the status or StatusOr of `work`. Returns RESOURCE_EXHAUSTED if an allocation or a thread
+// was not available. Returns INTERNAL for any other exception, including those by which protobuf
+// reports a failed precondition.
 template <typename Work>
 auto Guarded(const Work& work) -> decltype(work()) {
   try {
@@ -47,10 +47,10 @@ auto Guarded(const Work& work) -> decltype(work()) {
     return failed.Why();
   } catch (const std::bad_alloc&) {
     return OutOfMemory();
-  } catch (const std::length_error&) {  // of containers: more than any memory
+  } catch (const std::length_error&) {  // a container larger than any memory
     return OutOfMemory();
   } catch (const std::system_error& failed) {
-    // A thread that the system has no room for.
+    // The system could not start another thread.
     if (failed.code() == std::errc::resource_unavailable_try_again) return OutOfMemory();
     return UnexpectedFailure(failed.what());
   } catch (const std::exception& failed) {

@@ -1,4 +1,4 @@
-// IEEE half floats, as textures have them.
+// IEEE half-precision floats, as textures store them.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,8 @@ namespace thunderhead::base {
 
 inline constexpr float kLargestHalf = 65504.0F;
 
-// The half float nearest to `value`; a number that is too large becomes the largest of its sign.
+// Returns the half float nearest to `value`. A magnitude that is too large becomes the largest half
+// of the same sign.
 inline std::uint16_t HalfFromFloat(float value) {
   constexpr std::uint16_t kNotANumber = 0x7E00;
   if (std::isnan(value)) return kNotANumber;
@@ -24,7 +25,7 @@ inline std::uint16_t HalfFromFloat(float value) {
   return static_cast<std::uint16_t>((bits < 0x38800000U ? subnormal : normal) | sign);
 }
 
-// The value of a half float that is a number and not negative; infinity becomes 65536.
+// Returns the value of a half float that is a number and not negative. Infinity becomes 65536.
 inline float FloatFromHalf(std::uint16_t half) {
   // Moves the exponent from a half's bias to a float's, subnormal halves included.
   return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 13U) * 0x1p112F;

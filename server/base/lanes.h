@@ -1,6 +1,6 @@
-// Numbers in lanes: eight that the processor computes with at once, or one, so that a formula is
-// written once for both. With THUNDERHEAD_IN_LANES functions are inlined, and use what the function
-// that calls them may use of the processor.
+// SIMD numbers. A formula is written once and is instantiated for eight lanes at once or for a
+// single number. Functions marked THUNDERHEAD_IN_LANES are inlined, so they use the instruction set
+// that their caller may use.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ inline constexpr std::size_t kLanes = 8;
 using EightFloats = float __attribute__((vector_size(4 * kLanes)));
 using EightIntegers = std::int32_t __attribute__((vector_size(4 * kLanes)));
 
-// The integers in as many lanes.
+// The integer type with as many lanes as `Floats`.
 template <typename Floats>
 struct IntegersOf;
 template <>
@@ -31,7 +31,7 @@ struct IntegersOf<EightFloats> {
 template <typename Floats>
 using Integers = typename IntegersOf<Floats>::Type;
 
-// The same number in all lanes.
+// Sets all lanes to the same number.
 template <typename Lanes, typename Number>
 THUNDERHEAD_IN_LANES void SetAll(Number number, Lanes* lanes) {
   *lanes = Lanes{} + number;
@@ -46,12 +46,12 @@ THUNDERHEAD_IN_LANES void Convert(const float& from, std::int32_t* to) {
 THUNDERHEAD_IN_LANES void Convert(const EightIntegers& from, EightFloats* to) {
   *to = __builtin_convertvector(from, EightFloats);
 }
-// Towards zero.
+// Rounds towards zero.
 THUNDERHEAD_IN_LANES void Convert(const EightFloats& from, EightIntegers* to) {
   *to = __builtin_convertvector(from, EightIntegers);
 }
 
-// Stores function(values in the lane...) in each lane.
+// Calls `function` with each lane's values and stores the result in the lane.
 template <typename Function, typename... Values>
 THUNDERHEAD_IN_LANES void ForLanes(const Function& function, float* result,
                                    const Values&... values) {
@@ -73,7 +73,7 @@ THUNDERHEAD_IN_LANES bool AnyAbove(float least, const EightFloats& values) {
   return any != 0;
 }
 
-// The number at `bytes` + `stride` `index`.
+// Loads the number at `bytes` + `stride` * `index`.
 template <typename Number>
 THUNDERHEAD_IN_LANES void Load(const void* bytes, std::ptrdiff_t stride, const std::int32_t& index,
                                std::int32_t* numbers) {

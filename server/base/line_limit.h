@@ -1,5 +1,6 @@
-// Limits how many lines a second are logged about events that others can cause as often as they
-// like. A plain value that is given the time; callers that share it lock.
+// Limits how many lines are logged per second about events that clients can trigger as often as
+// they like. A plain value type to which the caller passes the time. Callers that share it must
+// lock.
 #pragma once
 
 #include <chrono>
@@ -15,8 +16,8 @@ class LineLimit {
 
   explicit LineLimit(int lines_per_second) : most_(lines_per_second) {}
 
-  // How many lines have been left out since the last one taken; nothing if that of `now` is to be
-  // left out, too.
+  // Returns how many lines have been dropped since the last line that was allowed. Returns nothing
+  // if the line of `now` must be dropped, too.
   std::optional<std::uint64_t> Take(TimePoint now) {
     const auto second = std::chrono::floor<std::chrono::seconds>(now);
     if (second != second_) {
@@ -31,7 +32,7 @@ class LineLimit {
  private:
   const int most_;
   std::chrono::sys_seconds second_{};
-  int lines_ = 0;  // in it
+  int lines_ = 0;  // logged in second_
   std::uint64_t left_out_ = 0;
 };
 

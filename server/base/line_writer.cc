@@ -48,12 +48,12 @@ bool LineWriter::TryWrite(const Shared& shared, const Line& line) {
     shared.write(line.text, line.left_out);
     return true;
   } catch (const std::exception&) {
-    return false;  // as without memory
+    return false;  // for example, out of memory
   }
 }
 
 void LineWriter::Run(Shared& shared) {
-  std::uint64_t lost = 0;  // before the next that waits
+  std::uint64_t lost = 0;  // lines dropped before the next waiting line
   std::unique_lock lock(shared.mutex);
   while (true) {
     shared.changed.wait(lock, [&] { return shared.ending || !shared.waiting.empty(); });

@@ -1,5 +1,4 @@
-// Writes lines on a thread of its own, so that a disk that hangs holds up nobody who has something
-// to say.
+// Writes lines on a separate thread, so that a disk that hangs does not block the callers.
 #pragma once
 
 #include <chrono>
@@ -20,27 +19,27 @@ namespace thunderhead::base {
 
 class LineWriter {
  public:
-  // Writes a line; `left_out` is the number of lines that were dropped just before it. Called with
+  // Writes a line. `left_out` is the number of lines that were dropped just before it. Called with
   // an empty line at the end if the last lines were dropped. If it throws, the line counts as
-  // dropped. May hang, so it must own everything it uses.
+  // dropped. It may hang, so it must own everything it uses.
   using WriteLine = std::function<void(const std::string& line, std::uint64_t left_out)>;
 
-  // Beyond `max_waiting` waiting lines, new ones are dropped. `time` must outlive this.
+  // Drops new lines when `max_waiting` lines are waiting. `time` must outlive this.
   LineWriter(std::size_t max_waiting, WriteLine write, const TimeSource& time = SteadyTime());
   // Writes the waiting lines, unless writing hangs.
   ~LineWriter();
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
-  // Returns at once; from any thread.
+  // Returns at once. Safe from any thread.
   void Write(std::string line);
-  // Waits at most that long until all waiting lines are written; true if they are.
+  // Waits up to `time` until all waiting lines are written. Returns whether they are.
   bool Flush(std::chrono::milliseconds time);
 
  private:
   struct Line {
     std::string text;
-    std::uint64_t left_out = 0;  // before it
+    std::uint64_t left_out = 0;  // lines dropped before this one
   };
   struct Shared {
     Shared(std::size_t most, WriteLine by, const TimeSource& at)
@@ -52,13 +51,13 @@ class LineWriter {
     std::mutex mutex;
     std::condition_variable changed;
     std::deque<Line> waiting;
-    std::uint64_t left_out = 0;  // since the last that waits
+    std::uint64_t left_out = 0;  // lines dropped since the last waiting line
     bool writing = false;
     bool ending = false;
   };
 
   static void Run(Shared& shared);
-  // True if it is written.
+  // Returns whether the line was written.
   static bool TryWrite(const Shared& shared, const Line& line);
 
   const std::shared_ptr<Shared> shared_;

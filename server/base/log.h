@@ -1,4 +1,4 @@
-// Logs errors that no client is told in full, one line each.
+// Logs errors whose full text no client may see, one line each.
 #pragma once
 
 #include "absl/status/status.h"

@@ -54,7 +54,7 @@ void Looks::Run(const std::shared_ptr<Shared>& shared) {
       const SlowCall slow(shared->path);
       shared->look();
     } catch (const std::bad_alloc&) {
-      // The next look may have memory.
+      // The next check may have enough memory.
     }
     lock.lock();
     shared->done = asked;

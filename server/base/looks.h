@@ -1,5 +1,5 @@
-// Looks at something whose storage may hang, such as a file that may have changed, for those who
-// must not wait for it: the looks are taken on a thread of their own, one after another.
+// Checks something whose storage may hang, such as a file that may have changed. The checks run one
+// after another on a separate thread, so that callers do not have to wait for the storage.
 #pragma once
 
 #include <chrono>
@@ -21,12 +21,12 @@ class Looks {
  public:
   static constexpr std::chrono::seconds kPatience{1};
 
-  // `look` must own all that it uses, as it may outlive this. `path` is what it looks at, for the
-  // log. `time` must outlive this.
+  // Each check calls `look`, which must own everything it uses, because it may outlive this object.
+  // `path` names in the log what is checked. `time` must outlive this.
   Looks(const std::string& path, std::function<void()> look,
         std::chrono::milliseconds patience = kPatience, const TimeSource& time = SteadyTime())
       : Looks(path, std::move(look), patience, std::nullopt, time) {}
-  // Looks by itself, too, after each such pause.
+  // Returns an object that also checks automatically, after each `pause`.
   static std::unique_ptr<Looks> Every(std::chrono::milliseconds pause, const std::string& path,
                                       std::function<void()> look,
                                       const TimeSource& time = SteadyTime()) {
@@ -36,8 +36,8 @@ class Looks {
   Looks(const Looks&) = delete;
   Looks& operator=(const Looks&) = delete;
 
-  // Returns after a look that began after this call did; or once its patience is over, and at once
-  // until the look that hangs has ended. From any thread.
+  // Waits for a check that started after this call, but not longer than the object's patience.
+  // While a check hangs, it returns at once. Safe from any thread.
   void LookAgain();
 
  private:
@@ -49,7 +49,7 @@ class Looks {
     std::mutex mutex;
     std::condition_variable changed;
     std::uint64_t asked = 0;
-    std::uint64_t done = 0;  // the newest request for which a look has ended
+    std::uint64_t done = 0;  // the newest request for which a check has ended
     bool hangs = false;
     bool stopping = false;
   };

@@ -1,5 +1,5 @@
-// A thread that may hang in a system call that nobody can end, as on a storage that has gone: it is
-// left behind then, so what it runs must own all that it uses.
+// A thread that may hang in a system call that nothing can interrupt, for example because its
+// storage is gone. A hanging thread is abandoned, so what it runs must own everything it uses.
 #pragma once
 
 #include <chrono>
@@ -16,31 +16,32 @@ class LooseThread {
  public:
   using Time = TimeSource::Clock::time_point;
 
-  // How long an owner waits for the end of a thread that it has told to end.
+  // How long an owner waits for a thread to end after it has told the thread to end.
   static constexpr std::chrono::seconds kPatience{5};
 
   LooseThread() = default;
-  // The thread's end is waited for by `time`, which must outlive this.
+  // `time` measures the wait for the thread's end and must outlive this.
   LooseThread(std::string name, std::function<void()> run, const TimeSource& time = SteadyTime());
-  // Waits kPatience for its end; its owner must have told it to end before.
+  // Waits kPatience for the thread to end. The owner must have told it to end before.
   ~LooseThread();
   LooseThread(LooseThread&&) noexcept = default;
   LooseThread& operator=(LooseThread&&) = delete;
 
-  // Waits until it ends or until `deadline`; true if it has ended.
+  // Waits until the thread ends or until `deadline`. Returns whether it has ended.
   bool EndsBy(Time deadline) const;
   bool HasEnded() const;
 
-  // Throws what it threw, once it has ended.
+  // Rethrows the thread's exception, if there is one. Waits for the thread to end.
   void Rethrow() const { ended_.get(); }
 
-  // It has been waited for already: it is joined if it has ended, and left behind if not.
+  // Joins the thread if it has ended, and otherwise abandons it. For owners that have already
+  // waited.
   void LetGo() { LetGoBy(Time::min()); }
-  // Waits for its end until `deadline`, after which it is left behind.
+  // Waits for the thread to end until `deadline`, and then abandons it.
   void LetGoBy(Time deadline);
 
-  // True if one was left behind in this process: it must end by _exit, as the thread may wake up
-  // while what it uses is being destroyed.
+  // Returns whether this process has abandoned a thread. It must then end by _exit, because the
+  // thread may wake up while the objects that it uses are being destroyed.
   static bool AnyLeftBehind();
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
 
-// The number that a file begins with; none for "max" and for a file that is not there.
+// Returns the number at the start of a file, or nothing for "max" and for a missing file.
 std::optional<std::uint64_t> NumberIn(const std::string& path) {
   std::ifstream file(path);
   std::string word;
@@ -37,7 +37,7 @@ std::uint64_t TotalBytes(const std::string& root) {
   return kUnlimited;
 }
 
-// The least of the limits that stand in `file` of the group's folder and of those around it.
+// Returns the lowest limit in `file`, over the group's folder and its parent folders.
 std::uint64_t LeastAlong(const std::string& hierarchy, std::string group, const char* file) {
   std::uint64_t least = kUnlimited;
   while (true) {
@@ -52,7 +52,7 @@ std::uint64_t CgroupBytes(const std::string& root) {
   std::uint64_t least = kUnlimited;
   std::ifstream groups(root + "/proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {
-    // Number, controllers, path; version 2 has the number 0 and no controllers.
+    // A line holds number, controllers and path. Version 2 has the number 0 and no controllers.
     const std::vector<std::string> parts = absl::StrSplit(line, absl::MaxSplits(':', 2));
     if (parts.size() != 3) continue;
     const std::string group = parts[2] == "/" ? "" : parts[2];

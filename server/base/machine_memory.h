@@ -1,4 +1,5 @@
-// How much memory this process may use: the machine's, or less where its cgroup says so.
+// How much memory this process may use: the machine's memory, or the limit of its cgroup if that is
+// lower.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +7,8 @@
 
 namespace thunderhead::base {
 
-// Bytes; 0 if the system does not tell. `root` is the folder that /proc and /sys are in.
+// Returns the number of bytes, or 0 if the system does not report it. `root` is the folder that
+// contains /proc and /sys.
 std::size_t MachineMemoryBytes(const std::string& root = "");
 
 }  // namespace thunderhead::base

@@ -14,11 +14,11 @@
 namespace thunderhead::base {
 namespace {
 
-// Retry delay: viewers leave, or look at another storm, within seconds or not at all.
+// Retry delay: viewers leave, or switch to another storm, within seconds or not at all.
 constexpr std::chrono::seconds kMemoryRetryAfter{10};
 constexpr char kTooLarge[] = "TOO_LARGE_FOR_MEMORY";
 
-// The longest wait for memory: a turn of drawing, whose end gives back unused memory.
+// The longest wait for memory. It covers one turn of drawing, which frees unused memory at its end.
 constexpr std::chrono::seconds kLongestPatience{2};
 
 std::size_t IndexOf(MemoryUse use) { return static_cast<std::size_t>(use); }
@@ -107,7 +107,7 @@ std::size_t MemoryBudget::LimitOf(MemoryUse use) const {
 bool MemoryBudget::Take(MemoryUse use, std::size_t bytes) {
   const std::lock_guard lock(counting_);
   const std::size_t used = std::accumulate(used_.begin(), used_.end(), std::size_t{0});
-  // Drawing fills its own reserve first; other uses are not charged for memory within it.
+  // Drawing fills its own reserve first. Other uses are not charged for memory within it.
   const std::size_t drawing = used_[IndexOf(MemoryUse::kDrawing)];
   const std::size_t counted =
       use == MemoryUse::kDrawing ? used : used - std::min(drawing, options_.kept_for_drawing);
@@ -151,7 +151,7 @@ void MemoryBudget::Press(bool patient) {
   const std::uint64_t mine = ++refusals_;
   std::unique_lock lock(counting_);
   if (!on_pressure_) return;
-  // With the lock, so that it is not called once it was taken away.
+  // The lock is held, so that the listener is not called after it was removed.
   on_pressure_();
   if (!patient) return;
   answered_changed_.wait_for(lock, kLongestPatience, [&] { return answered_ >= mine; });
@@ -189,8 +189,8 @@ bool MemoryBudget::MakeRoomAndTake(MemoryUse use, std::size_t bytes) {
     oldest->DropOldestUnused();
     dropped = true;
   }
-  // Freed blocks of a megabyte or so stay with the arena of the thread that took them, where others
-  // cannot use them: the process would grow beyond the budget.
+  // The allocator keeps freed blocks of about a megabyte in the arena of the thread that took them,
+  // where other threads cannot use them. The process would grow beyond the budget.
   if (dropped) GiveBackFreedMemory();
   return true;
 }

@@ -1,7 +1,6 @@
 // The budget of memory that the process may use for its clients' requests, accounted by use. Each
-// use is a reservation that somebody owns, made before the memory is allocated; where there is no
-// room, cached objects are dropped first, beginning with the least recently used. Safe from any
-// thread.
+// use is a reservation with an owner, made before the memory is allocated. If the budget is full,
+// cached objects are evicted first, beginning with the least recently used. Safe from any thread.
 #pragma once
 
 #include <array>
@@ -30,13 +29,13 @@ inline constexpr std::array kMemoryUses{MemoryUse::kFields, MemoryUse::kReading,
                                         MemoryUse::kDrawing, MemoryUse::kTracing,
                                         MemoryUse::kPictures};
 
-// For people: "fields of storms". For metrics: "fields".
+// DescriptionOf is for people ("fields of storms"), LabelOf for metrics ("fields").
 std::string_view DescriptionOf(MemoryUse use);
 std::string_view LabelOf(MemoryUse use);
 
 class MemoryBudget;
 
-// Memory that is accounted for while this object lives; none if it is empty.
+// Memory that is accounted for while this object lives. An empty reservation accounts for none.
 class MemoryReservation {
  public:
   MemoryReservation() = default;
@@ -67,20 +66,20 @@ class MemoryReservation {
 class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
  public:
   enum class Urgency {
-    kAwaited,  // somebody waits for the result: a refusal counts, and is returned at once
-    kPatient,  // the same, but the caller can wait until others have given memory back
-    kAhead,    // nobody waits for it yet: a refusal does not count
+    kAwaited,  // a caller waits for the result: a refusal counts, and is returned at once
+    kPatient,  // the same, but the caller can wait until others have freed memory
+    kAhead,    // no caller waits for it yet: a refusal does not count
   };
 
   struct Options {
     std::string name = "memory";  // for messages: "memory", "GPU memory"
     std::string flag = "--memory-budget";
     std::size_t bytes = std::numeric_limits<std::size_t>::max();
-    // The part of `bytes` reserved for drawing, so that fields leave room to show them.
+    // The part of `bytes` reserved for drawing, so that storm fields leave memory to draw them.
     std::size_t kept_for_drawing = 0;
   };
 
-  // A cache of objects that nobody uses at the moment. Called by whichever thread makes a
+  // A cache of objects that are not in use at the moment. It is called by the thread that makes a
   // reservation.
   class Cache {
    public:
@@ -91,8 +90,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
     ~Cache() = default;
   };
 
-  // Registers a cache: while this object lives, the cache is asked for room. Its destructor waits
-  // for a call under way.
+  // Registers a cache. While this object lives, the budget can evict the cache's objects. The
+  // destructor waits for a call in progress.
   class Member {
    public:
     Member() = default;
@@ -109,28 +108,30 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   };
 
   static std::shared_ptr<MemoryBudget> Make(Options options);
-  // Refuses nothing, but counts.
+  // Returns a budget that counts but refuses nothing.
   static std::shared_ptr<MemoryBudget> Unlimited();
 
-  // RESOURCE_EXHAUSTED, with what the memory is used for, if it is more than caches can make room
-  // for; `what` says what it is for ("storm 'anvil'"). The caller must hold no lock that a cache
-  // takes.
+  // Reserves memory, and evicts cached objects if necessary. Returns RESOURCE_EXHAUSTED, with the
+  // current uses of the memory, if that does not free enough. `what` names the purpose ("storm
+  // 'anvil'"). The caller must not hold a lock that a cache takes.
   absl::StatusOr<MemoryReservation> Reserve(MemoryUse use, std::size_t bytes, std::string_view what,
                                             Urgency urgency = Urgency::kAwaited);
-  // Changes the size of `reservation` to `bytes`; for the difference as Reserve.
+  // Changes the size of `reservation` to `bytes`. An increase is reserved like in Reserve.
   absl::Status Resize(MemoryReservation& reservation, std::size_t bytes, std::string_view what);
 
   std::size_t Bytes() const { return options_.bytes; }
-  // True if `bytes` more fit into `share` of the budget as it is filled now; no cache gives memory
-  // back for it.
+  // Returns whether `bytes` more fit into `share` of the budget at the current use. Does not evict
+  // anything.
   bool HasRoom(std::size_t bytes, double share = 1.0) const;
   std::size_t Used() const;
   std::size_t Used(MemoryUse use) const;
-  // Awaited reservations for which there was no room so far. A thread that sees it grow gives back
-  // what only it can (GL objects, which only their own thread may delete), and calls Answer.
+  // Returns how many awaited reservations have been refused for lack of memory so far. When the
+  // number grows, a thread frees what only it can free, and calls Answer. For example, only their
+  // own thread may delete GL objects.
   std::uint64_t Refusals() const { return refusals_; }
   void Answer(std::uint64_t refusals);
-  // Called when Refusals has grown, on the thread that has no room; empty for nobody.
+  // Sets the listener that is called when Refusals has grown, on the thread that lacks memory. An
+  // empty function removes the listener.
   void OnPressure(std::function<void()> listener);
 
  private:
@@ -141,9 +142,9 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::size_t LimitOf(MemoryUse use) const;
   bool Take(MemoryUse use, std::size_t bytes);
   void GiveBack(MemoryUse use, std::size_t bytes);
-  // False if caches cannot make room for it.
+  // Returns false if caches cannot free enough memory.
   bool MakeRoomAndTake(MemoryUse use, std::size_t bytes);
-  // Tells of the refusal; `patient` waits for an answer, but not for ever.
+  // Reports the refusal. If `patient`, waits for an answer, up to a maximum time.
   void Press(bool patient);
   absl::Status Refusal(MemoryUse use, std::size_t bytes, std::string_view what) const;
 
@@ -154,21 +155,22 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::function<void()> on_pressure_;
   std::array<std::size_t, kMemoryUses.size()> used_{};
   std::atomic<std::uint64_t> refusals_{0};
-  std::mutex making_room_;  // held while caches are called; before their own locks
+  std::mutex making_room_;  // held while caches are called; locked before the caches' own locks
   std::vector<Cache*> caches_;
 };
 
-// True if `refused` says that a request is larger than the whole budget, so that waiting is of no
-// use.
+// Returns whether `refused` says that a request is larger than the whole budget, so that waiting
+// does not help.
 bool IsTooLargeForMemory(const absl::Status& refused);
 
 // Makes the allocator of the whole process take blocks of 256 KiB and more from the system, and
-// return them when freed: kept in the arena of one thread, they would be of no use to another.
+// return them when they are freed. Otherwise the arena of one thread would keep them, and other
+// threads could not use them.
 void ShareFreedBlocks();
-// Returns what the process has freed to the system; takes some milliseconds.
+// Returns memory that the process has freed to the system. Takes a few milliseconds.
 void GiveBackFreedMemory();
 
-// "1.5 GiB", "312 MiB".
+// Returns "1.5 GiB" or "312 MiB", for example.
 std::string InWords(std::size_t bytes);
 
 }  // namespace thunderhead::base

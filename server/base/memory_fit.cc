@@ -14,9 +14,9 @@
 namespace thunderhead::base {
 namespace {
 
-// The lesser of the machine's memory and the process's address space.
+// Returns the smaller of the machine's memory and the process's address space limit.
 std::size_t MostBytes() {
-  // A confined process may not look, and has a limit of its own.
+  // A confined process cannot read the machine's memory. Its own limit applies then.
   static const std::size_t machine = base::MachineMemoryBytes();
   const std::size_t most = machine > 0 ? machine : std::numeric_limits<std::size_t>::max();
   rlimit limit{};

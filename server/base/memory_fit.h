@@ -1,5 +1,5 @@
-// Checks that the arrays which a file announces fit into memory, before they are allocated: the
-// kernel may promise more memory than there is, and end the process when it is touched.
+// Checks that the arrays that a file announces fit into memory, before they are allocated. The
+// kernel may promise more memory than there is, and kill the process when it touches that memory.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace thunderhead::base {
 
-// The product of `lengths`. RESOURCE_EXHAUSTED if that many values of `bytes_each` are more than
-// this machine's memory, or this process's limit; `what` begins the message, e.g. "wrfout_d01:
-// QCLOUD".
+// Returns the product of `lengths`. Returns RESOURCE_EXHAUSTED if that many values of `bytes_each`
+// exceed this machine's memory or this process's limit. `what` begins the message, e.g.
+// "wrfout_d01: QCLOUD".
 absl::StatusOr<std::size_t> CountThatFits(const std::string& what,
                                           const std::vector<std::size_t>& lengths,
                                           std::size_t bytes_each);

@@ -31,13 +31,13 @@ absl::Status PatientCalls::Run(const std::string& storage, const std::function<v
     const std::lock_guard lock(mutex_);
     if (Hangs(storage)) return NoAnswer(storage);
   }
-  // From before the call begins.
+  // The time is taken before the call begins.
   const auto since = time_.Now();
   std::optional<LooseThread> thread;
   try {
     thread.emplace(absl::StrCat("a call to ", storage), call, time_);
   } catch (const std::system_error&) {
-    // The system has no room for another thread.
+    // The system cannot start another thread.
     return OutOfMemory();
   }
   if (thread->EndsBy(since + patience_)) {

@@ -1,5 +1,5 @@
-// Calls to a storage that may hang: each runs on a thread of its own, and its caller waits for it
-// no longer than its patience.
+// Calls with a timeout to a storage that may hang. Each call runs on a separate thread, and its
+// caller waits no longer than the timeout.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@
 
 namespace thunderhead::base {
 
-// The reason in details of an error.
+// The reason in the error's details.
 inline constexpr char kStorageHangs[] = "STORAGE_HANGS";
 
 class PatientCalls {
@@ -27,18 +27,20 @@ class PatientCalls {
   // `time` must outlive this.
   explicit PatientCalls(std::chrono::milliseconds patience, const TimeSource& time = SteadyTime())
       : patience_(patience), time_(time) {}
-  // Leaves behind what hangs.
+  // Abandons the calls that hang.
   ~PatientCalls();
   PatientCalls(const PatientCalls&) = delete;
   PatientCalls& operator=(const PatientCalls&) = delete;
 
-  // Runs `call`, which must own all that it uses, as it may outlive this. DEADLINE_EXCEEDED with
-  // the reason STORAGE_HANGS and a time to try again if it does not return in time, and at once
-  // while an earlier call for the same storage does not. `storage` names it in the message, such as
-  // a folder. What `call` throws is thrown here. From any thread.
+  // Runs `call`, which must own everything it uses, because it may outlive this object. If it does
+  // not return in time, returns DEADLINE_EXCEEDED with the reason STORAGE_HANGS and a retry delay.
+  // While an earlier call for the same storage hangs, returns that error at once. `storage` names
+  // the storage in the message, such as a folder. Rethrows what `call` throws. Safe from any
+  // thread.
   absl::Status Run(const std::string& storage, const std::function<void()>& call);
 
-  // The same for a call that gives a Status or a StatusOr: what it gave, or why it gave nothing.
+  // Does the same for a call that returns a Status or a StatusOr. Returns the call's result, or the
+  // reason why there is none.
   template <typename Call>
   std::invoke_result_t<Call> Ask(const std::string& storage, Call call) {
     const auto answer = std::make_shared<std::optional<std::invoke_result_t<Call>>>();
@@ -47,7 +49,7 @@ class PatientCalls {
     return *std::move(*answer);
   }
 
-  // Since the oldest call that hangs began; 0 if none hangs.
+  // Returns the seconds since the oldest hanging call began, or 0 if none hangs.
   double HangingSeconds();
 
  private:
@@ -57,7 +59,8 @@ class PatientCalls {
     TimeSource::Clock::time_point since;
   };
 
-  // With the mutex held; lets go of the calls that have returned.
+  // Returns whether a call for the storage hangs. Joins the calls that have returned. Requires the
+  // mutex.
   bool Hangs(const std::string& storage);
 
   const std::chrono::milliseconds patience_;

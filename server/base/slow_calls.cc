@@ -20,7 +20,7 @@ double Seconds(SlowCalls::Clock::duration time) {
 SlowCalls::SlowCalls(std::chrono::milliseconds patience,
                      std::function<void(const std::string&)> say, const TimeSource& time)
     : patience_(patience), say_(std::move(say)), time_(time) {
-  // Signals are for the threads that wait for them.
+  // Blocks all signals in the new thread, because other threads wait for them.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
@@ -30,7 +30,7 @@ SlowCalls::SlowCalls(std::chrono::milliseconds patience,
 }
 
 SlowCalls& SlowCalls::OfProcess() {
-  // Never destroyed, as a call that hangs outlives everything.
+  // The instance is never destroyed, because a call that hangs outlives everything else.
   static SlowCalls* const process =
       new SlowCalls(kPatience, [](const std::string& what) { spdlog::warn("{}", what); });
   return *process;

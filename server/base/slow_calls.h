@@ -1,6 +1,5 @@
-// Says which files and folders are being waited for where that takes long: a call to a storage that
-// hangs does not return, and its caller can say nothing any more. Bounds no call (patient_calls.h
-// does).
+// Reports which files and folders take long to respond. A call to a storage that hangs does not
+// return, so its caller cannot report it. This class only reports; patient_calls.h adds timeouts.
 #pragma once
 
 #include <chrono>
@@ -20,16 +19,16 @@ class SlowCalls {
  public:
   using Clock = TimeSource::Clock;
 
-  // Says, from a thread of its own, of each call that takes longer than `patience`, again each time
-  // that it has taken twice as long, and once it returns. `time` must outlive this.
+  // Reports each call that takes longer than `patience`, from a separate thread. It reports the
+  // call again each time its duration has doubled, and once it returns. `time` must outlive this.
   SlowCalls(std::chrono::milliseconds patience, std::function<void(const std::string&)> say,
             const TimeSource& time = SteadyTime());
-  // Must outlive its calls.
+  // The object must outlive its calls.
   ~SlowCalls() = default;
   SlowCalls(const SlowCalls&) = delete;
   SlowCalls& operator=(const SlowCalls&) = delete;
 
-  // The process's, which writes to the log after 10 s.
+  // Returns the instance of the process, which logs calls that take longer than 10 s.
   static SlowCalls& OfProcess();
 
  private:
@@ -54,7 +53,7 @@ class SlowCalls {
   std::jthread thread_;
 };
 
-// A call to the storage of `path`, under way while this lives.
+// A call to the storage of `path`, in progress while this object lives.
 class SlowCall {
  public:
   explicit SlowCall(std::string path, SlowCalls& watch = SlowCalls::OfProcess())

@@ -1,5 +1,5 @@
-// The transfer function of sRGB (IEC 61966-2-1), between linear light and what a display is sent,
-// both from 0 to 1.
+// The transfer function of sRGB (IEC 61966-2-1), between linear light and display values, both from
+// 0 to 1.
 #pragma once
 
 #include <array>

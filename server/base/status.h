@@ -1,6 +1,6 @@
-// Status values and the macros that pass them on. Errors from input or the environment are an
-// absl::Status that says what went wrong, where, and what to do next; a broken invariant of the
-// program's own is a THUNDERHEAD_CHECK. No exception leaves a room.
+// Status values and the macros that pass them on. An error from input or the environment is an
+// absl::Status that says what went wrong, where, and what to do next. A broken invariant of the
+// program itself is a THUNDERHEAD_CHECK. No library lets an exception escape.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace thunderhead::base {
 
-// `status` with `prefix` and ": " put before its message, and its payloads; OK stays OK.
+// Returns `status` with `prefix` and ": " put before its message, and its payloads. OK stays OK.
 absl::Status Annotate(const absl::Status& status, std::string_view prefix);
 
-// Prints the failed condition with its place and `detail`, then aborts.
+// Prints the failed condition, its place in the source and `detail`, then aborts.
 [[noreturn]] void CheckFailed(const char* file, int line, const char* condition,
                               const std::string& detail);
 

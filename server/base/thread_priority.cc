@@ -5,7 +5,7 @@
 
 namespace thunderhead::base {
 
-// Linux has priorities of threads, against POSIX.
+// On Linux a nice value belongs to a thread, although POSIX says that it belongs to a process.
 void LowerPriority(int niceness) {
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), niceness);
 }

@@ -1,6 +1,6 @@
-// The monotonic time that waiting code reads. Code that compares times or waits until one is given
-// a TimeSource, so that a test can move its time by hand (tests/support/manual_time.h) instead of
-// sleeping.
+// The monotonic time that waiting code reads. Code that compares times, or that waits until a time,
+// is given a TimeSource. A test can then move the time by hand (tests/support/manual_time.h)
+// instead of sleeping.
 #pragma once
 
 #include <chrono>

@@ -13,9 +13,9 @@
 namespace thunderhead::base {
 namespace {
 
-constexpr int kMappedBits = 96;  // before an IPv4 address
+constexpr int kMappedBits = 96;  // bits before an IPv4 address
 
-// "1.2.3.4" of "1.2.3.4:80" and "1.2.3.4", "::1" of "[::1]:80" and "::1".
+// Returns "1.2.3.4" for "1.2.3.4:80" and "1.2.3.4", and "::1" for "[::1]:80" and "::1".
 std::string_view HostOf(std::string_view address) {
   if (!address.empty() && address.front() == '[') {
     return address.substr(1, std::min(address.find(']'), address.size()) - 1);
@@ -88,8 +88,8 @@ std::string TrustedProxies::ClientOf(const std::string& peer,
     const std::size_t begin = comma == std::string_view::npos ? 0 : comma + 1;
     const std::string_view host = HostOf(Trimmed(forwarded_for.substr(begin)));
     Address address{};
-    // Trusted proxies append addresses: an entry that is none, and all before it, are the client's
-    // own claims.
+    // Trusted proxies append addresses. An entry that is no address, and all entries before it, are
+    // therefore the client's own claims.
     if (!ParseAddress(host, &address)) break;
     const bool is_v6 = host.find(':') != std::string_view::npos;
     client =

@@ -1,6 +1,6 @@
-// The proxies whose word on their clients' addresses is believed: by X-Forwarded-For, to which each
-// proxy appends the address that it was asked from. What others send there is ignored. Knows no
-// HTTP.
+// The proxies that are trusted to report their clients' addresses in X-Forwarded-For. Each proxy
+// appends the address from which it received the request. The header is ignored if it comes from
+// any other address. This class does not depend on HTTP.
 #pragma once
 
 #include <array>
@@ -15,21 +15,21 @@ namespace thunderhead::base {
 
 class TrustedProxies {
  public:
-  // Nobody.
+  // Trusts no proxy.
   TrustedProxies() = default;
-  // Addresses and networks: "127.0.0.1", "10.1.0.0/16", "2001:db8::/32". INVALID_ARGUMENT names the
-  // one that is neither.
+  // Parses addresses and networks: "127.0.0.1", "10.1.0.0/16", "2001:db8::/32". INVALID_ARGUMENT
+  // names the first text that is neither.
   static absl::StatusOr<TrustedProxies> Parse(const std::vector<std::string>& networks);
 
-  // `peer` is "1.2.3.4:80" or "[::1]:80".
+  // Returns whether `peer` is trusted. It is "1.2.3.4:80" or "[::1]:80".
   bool Holds(std::string_view peer) const;
-  // The client that a call of `peer` is for, in the form of `peer`: the last address of
-  // `forwarded_for` that is no trusted proxy's; its port is 0. `peer` itself unless it is trusted
-  // and names an address.
+  // Returns the client on whose behalf `peer` calls, in the form of `peer` and with port 0. The
+  // client is the last address in `forwarded_for` that is not a trusted proxy. Returns `peer`
+  // itself if it is not trusted or names no address.
   std::string ClientOf(const std::string& peer, std::string_view forwarded_for) const;
 
  private:
-  // Of IPv6; IPv4 as mapped into it.
+  // An IPv6 address. IPv4 addresses are mapped into IPv6.
   using Address = std::array<std::uint8_t, 16>;
   struct Network {
     Address address;

@@ -3,8 +3,8 @@
 namespace thunderhead::base {
 namespace {
 
-// Returns whether one valid UTF-8 character must not stand in a line of text; Printable lists
-// which.
+// Returns whether a valid UTF-8 character must not appear in a line of text. Printable lists these
+// characters.
 bool IsUnprintable(std::string_view character) {
   const unsigned char lead = character[0];
   if (character.size() == 1) return lead < 0x20 || lead == 0x7f;

@@ -1,6 +1,6 @@
-// Text from outside (names and attributes of files, marks, titles, what clients send) before it
-// leaves the process: in messages, whose strings must be valid UTF-8, in logs, in the audit, in
-// headers and in file names.
+// Cleans text from outside before it leaves the process. Such text is names and attributes of
+// files, marks, titles, and what clients send. It appears in messages, whose strings must be valid
+// UTF-8, in logs, in the audit, in headers and in file names.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,13 @@ namespace thunderhead::base {
 // Returns the length in bytes of the UTF-8 character at the start of `text`, or 0 if it is invalid.
 std::size_t Utf8CharacterBytes(std::string_view text);
 
-// Returns `text` as one line of valid UTF-8. A question mark replaces each byte that belongs to no
-// UTF-8 character, each control character (U+0000 to U+001F, U+007F to U+009F), each line or
-// paragraph separator (U+2028, U+2029), and each character that changes the direction of text
-// (U+202A to U+202E, U+2066 to U+2069), because these can make a log line or a file name look like
-// another.
+// Returns `text` as one line of valid UTF-8. These become question marks, because they can make a
+// log line or a file name look like another:
+//
+// - Each byte that belongs to no UTF-8 character.
+// - Each control character (U+0000 to U+001F, U+007F to U+009F).
+// - Each line or paragraph separator (U+2028, U+2029).
+// - Each character that changes the direction of text (U+202A to U+202E, U+2066 to U+2069).
 std::string Printable(std::string_view text);
 
 }  // namespace thunderhead::base

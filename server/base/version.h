@@ -1,4 +1,4 @@
-// The version of the program, set by the build from the project's one number.
+// The version of the program, which the build sets from the project's version number.
 #pragma once
 
 #include <string>

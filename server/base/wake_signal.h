@@ -1,5 +1,5 @@
-// Wakes one thread that waits for work. A notification given while the thread is busy is kept until
-// its next wait, so none is lost; several are merged into one.
+// Wakes one thread that waits for work. A notification that arrives while the thread is busy is
+// kept until its next wait, so none is lost. Several notifications are merged into one.
 #pragma once
 
 #include <chrono>

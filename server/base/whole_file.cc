@@ -27,14 +27,14 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
 
   int Number() const { return number_; }
-  // Zero, or an error that was kept until now, as by network file systems.
+  // Returns zero, or an error that was delayed until now, which network file systems do.
   int Close() { return close(std::exchange(number_, -1)); }
 
  private:
   int number_;
 };
 
-// The error of the last system call on the way to `path`.
+// Returns the error of the last system call while `path` was being written.
 absl::Status NotWritten(const std::string& path) {
   const int code = errno;
   return WriteProblem(
@@ -52,7 +52,7 @@ bool WriteAll(int file, std::string_view bytes) {
   return true;
 }
 
-// Removes a partial file and keeps the error that made it useless.
+// Removes the partial file and returns the error because of which it is useless.
 absl::Status Drop(const std::string& path) {
   absl::Status status = NotWritten(path);
   unlink(PartialPath(path).c_str());
@@ -112,7 +112,7 @@ absl::Status WriteWholeFile(const std::string& path, std::string_view bytes) {
 absl::Status PublishFile(const std::string& path) {
   const std::string partial = PartialPath(path);
   {
-    // fsync writes what any descriptor of the file has written.
+    // fsync flushes what any descriptor of the file has written.
     Descriptor file(open(partial.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.Number() < 0 || fsync(file.Number()) != 0) return Drop(path);
   }
@@ -120,7 +120,7 @@ absl::Status PublishFile(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const Descriptor entries(
       open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // Some file systems cannot do this for folders; the name is there all the same.
+  // Some file systems cannot sync folders. The new name exists anyway.
   if (entries.Number() >= 0 && fsync(entries.Number()) != 0 && errno == EIO) {
     return NotWritten(path);
   }

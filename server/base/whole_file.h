@@ -1,5 +1,6 @@
-// Reading and writing whole files. A file that is written appears whole or not at all, also where
-// the power goes: it is written beside its place, reaches the disk, and is then renamed.
+// Reads and writes whole files. A written file appears completely or not at all, even after a power
+// failure. It is written under a temporary name in the same folder, flushed to the disk, and then
+// renamed.
 #pragma once
 
 #include <string>
@@ -12,23 +13,24 @@ namespace thunderhead::base {
 
 absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 
-// Where a file is written before it is whole: in the same folder, so that it can be renamed.
+// Returns the temporary name of a file that is not complete yet. It is in the same folder, so that
+// the file can be renamed.
 std::string PartialPath(std::string_view path);
 
-// Writes the file at once. FAILED_PRECONDITION if its folder is missing or may not be written to,
-// UNAVAILABLE if it cannot take the file now, such as a full disk.
+// Writes the whole file. Returns FAILED_PRECONDITION if its folder is missing or not writable.
+// Returns UNAVAILABLE if the file cannot be written now, for example because the disk is full.
 absl::Status WriteWholeFile(const std::string& path, std::string_view bytes);
 
-// The meaning of a system call's error `code` for writers of files: FAILED_PRECONDITION where a
-// folder is missing or may not be written to, so that somebody has to look; UNAVAILABLE for what
-// may pass, such as a full disk.
+// Converts the error `code` of a system call to a status for code that writes files. Returns
+// FAILED_PRECONDITION if an operator has to act, because a folder is missing or not writable.
+// Returns UNAVAILABLE for conditions that may pass, such as a full disk.
 absl::Status WriteProblem(std::string_view message, int code);
 
-// Creates the folder and those above it. Errors as WriteProblem.
+// Creates the folder and its parents. Errors are those of WriteProblem.
 absl::Status MakeFolders(const std::string& folder);
 
-// Gives the file at PartialPath(path), which is complete, its name. Errors as above; the partial
-// file is gone then.
+// Renames the complete file at PartialPath(path) to `path`. Errors are those of WriteProblem. The
+// partial file is then removed.
 absl::Status PublishFile(const std::string& path);
 
 }  // namespace thunderhead::base

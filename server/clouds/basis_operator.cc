@@ -143,7 +143,7 @@ void BasisOperator::Apply(const std::vector<double>& weights, std::vector<float>
   });
 }
 
-// For each ball, adds up sum(values, offset, count) over its rows.
+// Adds up sum(values, offset, count) over the rows of each ball.
 template <typename Sum>
 std::vector<double> BasisOperator::SumOverRows(const Sum& sum) const {
   std::vector<double> sums(footprints_.size(), 0.0);

@@ -1,6 +1,6 @@
-// The linear map from metaballs' weights to a field on a grid, and its transpose, applied without
-// storing a matrix, row by row of the cells that each ball reaches. The same result for any number
-// of threads.
+// The linear map from metaballs' weights to a field on a grid, and its transpose. They are applied
+// without storing a matrix, row by row of the cells that each ball reaches. The result is the same
+// for any number of threads.
 #pragma once
 
 #include <vector>
@@ -15,18 +15,18 @@ class BasisOperator {
   BasisOperator(const volume::RegularGrid& grid, const std::vector<Metaball>& balls, Basis basis,
                 double overlap, int threads);
 
-  // The sum of all balls in every cell's middle: A v.
+  // Computes the sum of all balls at every cell's centre: A v.
   void Apply(const std::vector<double>& weights, std::vector<float>* field) const;
 
-  // For each ball the sum over cells of its value times the field's: A^T r.
+  // Computes for each ball the sum over cells of its value times the field's: A^T r.
   void ApplyTransposed(const std::vector<float>& field, std::vector<double>* sums) const;
 
-  // For each ball the sum over cells of its squared value: the diagonal of A^T A.
+  // Returns for each ball the sum over cells of its squared value: the diagonal of A^T A.
   std::vector<double> SquaredNorms() const;
 
  private:
-  // The box of cells that a ball reaches, and where its tables begin: one value for each x, y and z
-  // in the box.
+  // The box of cells that a ball reaches, and the start of its tables. They hold one value for each
+  // x, y and z in the box.
   struct Footprint {
     glm::ivec3 low{0};
     glm::ivec3 high{0};  // one past the last
@@ -48,7 +48,8 @@ class BasisOperator {
   double overlap_;
   int threads_;
   std::vector<Footprint> footprints_;
-  // Along each axis: for a Gaussian its factor, for Wyvill's field the squared distance over R^2.
+  // Values along each axis: for a Gaussian its factor, for Wyvill's field the squared distance over
+  // R^2.
   std::vector<float> tables_;
   std::vector<std::vector<std::uint32_t>>
       slabs_;  // indices of the balls that reach each slab of layers

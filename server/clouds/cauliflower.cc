@@ -17,7 +17,7 @@ absl::Status CheckScales(int scales) {
                                                  "; it must be from 1 to ", kMaxScales));
 }
 
-// Adds finer scales of bubbles to the existing ones.
+// Adds finer scales of bubbles to the existing bubbles.
 void AddScales(const CauliflowerOptions& options, int scales, CumulusSurface* surface) {
   std::size_t first = 0;
   for (int scale = 0; scale < scales; ++scale) {
@@ -46,7 +46,7 @@ absl::StatusOr<CumulusSurface> Cauliflower(const CauliflowerOptions& options) {
   const auto between = [&random](double low, double high) {
     return low + (high - low) * random.Next();
   };
-  // A body with towers leaning on it: wide ones at its rim, high ones in the middle.
+  // The shape is a body with towers leaning on it: wide ones at its rim, high ones in the middle.
   surface.bubbles.push_back(
       BubbleOf({{0.0, 0.0, 120.0}, {950.0, 800.0, 420.0}, {0.0, 0.0, between(0.0, 180.0)}}));
   constexpr int kTowers = 9;

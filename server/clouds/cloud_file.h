@@ -1,4 +1,4 @@
-// A generated cloud as a storm file, with its parameters as an attribute.
+// Writes a generated cloud as a storm file, with its parameters as an attribute.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace thunderhead::clouds {
 
-// The preset and seed that a shape was made from.
+// The preset and seed from which a shape was made.
 struct CloudOrigin {
   std::string preset;
   std::uint64_t seed = 1;
@@ -23,7 +23,7 @@ absl::Status WriteGenerated(const CloudShape& shape, const CloudOrigin& origin,
                             const std::string& path, const GenerateObserver& observer,
                             const std::stop_token& stop);
 
-// True if WriteGenerated wrote the file, by its `source` attribute.
+// Returns whether WriteGenerated wrote the file, by its `source` attribute.
 bool IsGenerated(const std::string& path);
 
 }  // namespace thunderhead::clouds

@@ -1,4 +1,5 @@
-// The parameters of a generated cloud: grid, noise, ellipsoids and amount of water. Plain values.
+// The parameters of a generated cloud: grid, noise, ellipsoids and amount of water. They are plain
+// values.
 #pragma once
 
 #include <optional>
@@ -12,15 +13,15 @@
 
 namespace thunderhead::clouds {
 
-// Rotated about x, then y, then z, through its centre. World metres: x and y from the middle of the
-// domain, z from sea level.
+// An ellipsoid that is rotated about x, then y, then z, through its centre. World coordinates are
+// in metres: x and y from the middle of the domain, z from sea level.
 struct Ellipsoid {
   glm::dvec3 centre_m{0.0};
   glm::dvec3 radii_m{1.0};
   glm::dvec3 rotation_deg{0.0};
 };
 
-// Rotation matrix: its columns are the unit vectors of the rotated axes.
+// Returns the rotation matrix. Its columns are the unit vectors of the rotated axes.
 glm::dmat3 AxesOf(const glm::dvec3& rotation_deg);
 
 struct CloudShape {
@@ -29,12 +30,12 @@ struct CloudShape {
   double feature_m = 400.0;           // size of the coarsest octave's lattice cells
   double threshold = 0.1;             // t: density below this counts as zero
   double dynamics = 1.0;              // d: scales the whole range of density
-  double water_kg_per_m3 = 2e-3;      // where the density is 1
+  double water_kg_per_m3 = 2e-3;      // amount at density 1
   std::optional<double> base_m;       // the cloud is cut off below it
   std::vector<Ellipsoid> ellipsoids;  // the cloud is their union
 };
 
-// Q of eq. 8 of one ellipsoid: 1 at its centre, 0 on its surface, below 0 outside. Its constants
+// Q of eq. 8 for one ellipsoid: 1 at its centre, 0 on its surface, below 0 outside. Its constants
 // q_0 to q_9 are those of 1 - (p - c)^T M (p - c).
 class Quadric {
  public:
@@ -46,7 +47,7 @@ class Quadric {
     return 1.0 - (from_centre.x * m.x + from_centre.y * m.y + from_centre.z * m.z);
   }
 
-  // Half the size of its axis-aligned bounding box.
+  // Returns half the size of the ellipsoid's axis-aligned bounding box.
   const glm::dvec3& HalfExtent_m() const { return half_extent_m_; }
   const glm::dvec3& Centre_m() const { return centre_m_; }
 

@@ -15,11 +15,11 @@
 namespace thunderhead::clouds {
 namespace {
 
-// Points assigned together, to the centres at that moment; within a group, a centre would move by a
-// small part of its cluster only. Larger groups keep more threads busy.
+// Number of points that are assigned together, to the centres at that moment. Within a group, a
+// centre would move by only a small part of its cluster. Larger groups keep more threads busy.
 constexpr std::size_t kGroup = 8192;
 
-// Finds the nearest centre, on a grid of cells with about two centres each.
+// Finds the nearest centre, with a grid of cells that hold about two centres each.
 class NearestCentre {
  public:
   explicit NearestCentre(const std::vector<glm::dvec3>& centres_m) : centres_m_(centres_m) {
@@ -42,7 +42,7 @@ class NearestCentre {
     std::uint32_t nearest = 0;
     const int farthest = std::max({cells_.x, cells_.y, cells_.z});
     for (int ring = 0; ring <= farthest; ++ring) {
-      // Lower bound of the distance to the cells of this ring.
+      // This is a lower bound of the distance to the cells of this ring.
       const double aoffset_m = (ring - 1) * cell_m_;
       if (ring > 0 && aoffset_m > 0.0 && aoffset_m * aoffset_m > best) break;
       SearchRing(home, ring, point_m, &best, &nearest);
@@ -117,7 +117,7 @@ class NearestCentre {
   std::vector<std::uint32_t> members_;
 };
 
-// Fisher-Yates shuffle; the same order for a seed on every machine.
+// Applies a Fisher-Yates shuffle. A seed gives the same order on every machine.
 std::vector<std::uint32_t> Shuffled(std::size_t count, std::uint64_t seed, std::uint64_t stream) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0U);
@@ -148,8 +148,8 @@ void Assign(const std::vector<glm::vec3>& points_m, const std::vector<std::uint3
   });
 }
 
-// Larger groups where there are many centres: building the search structure, once a group, costs as
-// much as some thousand look-ups.
+// Returns the number of points in a group. Groups are larger if there are many centres. Each group
+// builds the search structure once, which costs as much as some thousand look-ups.
 std::size_t GroupSize(std::size_t points, std::size_t centres) {
   return std::clamp(std::max(kGroup, 2 * centres), std::size_t{1}, points);
 }
@@ -165,10 +165,10 @@ class Adaptation {
     assigned_.assign(centres_m_.size(), 0);
   }
 
-  // One epoch; false if it was stopped.
+  // Runs one epoch. Returns false if it was stopped.
   bool RunEpoch(int epoch, const std::function<void(double)>& observer,
                 const std::stop_token& stop) {
-    // n(t) of eq. 22 is the number of points assigned to the centre in all earlier epochs; the
+    // n(t) of eq. 22 is the number of points assigned to the centre in all earlier epochs. The
     // first epoch uses a running count.
     const std::vector<std::int64_t> before = assigned_;
     const std::vector<std::uint32_t> order =
@@ -190,7 +190,7 @@ class Adaptation {
     return true;
   }
 
-  // The learning rate of the median centre.
+  // Returns the learning rate of the median centre.
   double Speed() const {
     std::vector<std::int64_t> counts = assigned_;
     const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);

@@ -1,5 +1,6 @@
 // The first two phases of Man's approximator: centres by adaptive k-means (eq. 21-22) and their
-// sizes (eq. 23). Unsupervised: it uses positions only. The same for any number of threads.
+// sizes (eq. 23). The clustering is unsupervised and uses positions only. The result is the same
+// for any number of threads.
 #pragma once
 
 #include <functional>
@@ -26,11 +27,11 @@ struct Clusters {
   int epochs = 0;
 };
 
-// Called from time to time with the share done.
+// A function that is called from time to time with the share done.
 using ClusteringObserver = std::function<void(double share)>;
 
-// There must be at least as many points as centres. If asked to stop, returns the centres found so
-// far.
+// Clusters the points. There must be at least as many points as centres. If asked to stop, it
+// returns the centres found so far.
 Clusters Cluster(const std::vector<glm::vec3>& points_m, double min_sigma_m,
                  const ClusteringOptions& options, const ClusteringObserver& observer,
                  const std::stop_token& stop);

@@ -14,14 +14,14 @@ namespace {
 
 using physics::CounterRandom;
 
-// Least ratio of a parent's radius to its child's.
+// Minimum ratio of a parent's radius to its child's.
 constexpr double kClearlyLarger = 1.4;
-// A bubble is hidden if its centre is closer to another's centre than this share of that one's
-// radius.
+// A bubble is hidden if its centre is inside another bubble, closer to that bubble's centre than
+// this share of its radius.
 constexpr double kBuried = 0.82;
-// Least distance of two bubbles of one parent, over the sum of their radii.
+// Minimum distance of two bubbles of one parent, over the sum of their radii.
 constexpr double kCloseness = 0.55;
-// Depth of a bubble's centre below its parent's surface, in its own radii.
+// Depth of a bubble's centre below its parent's surface, in the bubble's own radii.
 constexpr double kSunken = 0.4;
 // Attempts (darts thrown) for each bubble that fits.
 constexpr int kDarts = 8;
@@ -33,7 +33,8 @@ glm::dvec3 NormalAt(const Bubble& bubble, const glm::dvec3& point_m) {
   return length > 0.0 ? normal / length : glm::dvec3(0.0, 0.0, 1.0);
 }
 
-// Relative distance of a point from a bubble's centre: 0 in the centre, 1 on the surface.
+// Returns the relative distance of a point from a bubble's centre: 0 at the centre, 1 on the
+// surface.
 double Depth(const Bubble& bubble, const glm::dvec3& point_m) {
   return glm::length(UnitFromWorld(bubble) * (point_m - bubble.centre_m));
 }
@@ -46,7 +47,7 @@ glm::dvec3 HalfExtent_m(const Bubble& bubble) {
   return half_m;
 }
 
-// Direction away from those of the first `count` bubbles that this one touches.
+// Returns the direction away from the bubbles that this one touches.
 glm::dvec3 AwayFromNeighbours(const std::vector<Bubble>& bubbles, std::size_t self) {
   const Bubble& bubble = bubbles[self];
   const double radius_m = RadiusOf(bubble);
@@ -68,7 +69,7 @@ glm::dvec3 RandomDirection(CounterRandom* random) {
   return {across * CosineOfDegrees(azimuth_deg), across * SineOfDegrees(azimuth_deg), z};
 }
 
-// Number of bubbles that cover a whole parent.
+// Returns the number of bubbles that cover a whole parent.
 int Wanted(const Sprouting& sprouting) {
   return static_cast<int>(sprouting.cover * 4.0 /
                           (sprouting.relative_radius * sprouting.relative_radius));
@@ -177,7 +178,7 @@ void LayOnLarger(CumulusSurface* surface) {
     Bubble& bubble = bubbles[i];
     bubble.parent = -1;
     const double radius_m = RadiusOf(bubble);
-    // The last match is the smallest one: the next larger scale.
+    // The last match is the smallest bubble, which belongs to the next larger scale.
     for (std::size_t j = 0; j < i; ++j) {
       const double other_m = RadiusOf(bubbles[j]);
       if (other_m < kClearlyLarger * radius_m) break;
@@ -201,7 +202,7 @@ void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surfa
   for (std::size_t parent = first; parent < end; ++parent) parents += sprouts(parent) ? 1 : 0;
   const int room = sprouting.max_bubbles - static_cast<int>(end);
   if (parents == 0 || room <= 0) return;
-  // The same limit for each, so that no part of the surface is left bare.
+  // The limit is the same for each parent, so that no part of the surface is left bare.
   const int max = std::clamp(room / parents, 1, Wanted(sprouting));
   std::vector<std::size_t> near;
   for (std::size_t parent = first; parent < end; ++parent) {

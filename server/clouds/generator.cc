@@ -21,7 +21,8 @@ constexpr double kMaxWater_kg_per_m3 = 0.05;
 // Detail finer than this share of a cell is not visible, and its lattice would be large.
 constexpr double kFinestDetail_cells = 0.25;
 
-// `field` is the parameter's name on the command line and in requests, if it has one there.
+// Returns the error. `field` is the parameter's name on the command line and in requests, if it has
+// one there.
 absl::Status Wrong(const std::string& what, double value, const std::string& wanted,
                    const std::string& field = "") {
   return base::WithDetails(
@@ -89,7 +90,7 @@ struct Range {
   int last = -1;
 };
 
-// The cells whose middles lie within `half_m` of `centre_m` along `axis`.
+// Returns the cells whose centres are within `half_m` of `centre_m` along `axis`.
 Range CellsWithin(const volume::RegularGrid& grid, int axis, double centre_m, double half_m) {
   const double low = (centre_m - half_m - grid.low_corner_m[axis]) / grid.spacing_m[axis] - 0.5;
   const double high = (centre_m + half_m - grid.low_corner_m[axis]) / grid.spacing_m[axis] - 0.5;
@@ -102,7 +103,7 @@ double Middle_m(const volume::RegularGrid& grid, int axis, int cell) {
   return grid.low_corner_m[axis] + (cell + 0.5) * grid.spacing_m[axis];
 }
 
-// The maximum of all ellipsoids' modulations on the slice; 0 outside of all.
+// Computes the maximum of all ellipsoids' modulations on the slice. It is 0 outside all ellipsoids.
 void Modulate(const volume::RegularGrid& grid, const std::vector<Quadric>& quadrics, int z,
               std::vector<double>* modulation) {
   std::fill(modulation->begin(), modulation->end(), 0.0);

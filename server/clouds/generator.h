@@ -1,5 +1,5 @@
 // Man's cloud generator: noise inside a union of ellipsoids (eq. 1, 8-10) as liquid water on a
-// grid. The same bits for the same parameters on every machine.
+// grid. The same parameters give the same bits on every machine.
 #pragma once
 
 #include <functional>
@@ -11,16 +11,16 @@
 
 namespace thunderhead::clouds {
 
-// Called between slices with the share done.
+// A function that is called between slices with the share done.
 using GenerateObserver = std::function<void(double share)>;
 
-// INVALID_ARGUMENT if a parameter is out of range; the message names it.
+// Returns INVALID_ARGUMENT if a parameter is out of range. The message names the parameter.
 absl::Status CheckShape(const CloudShape& shape);
 
-// Liquid water (kg/m3) in every cell, x fastest. With N the noise and Q the largest of the
-// ellipsoids' modulations at a cell's middle, D = d N Q where N Q >= t and 0 elsewhere: eq. 10
-// (where the paper's text uses Q for the product of both). Fails if a parameter is out of range or
-// no cell holds any cloud; CANCELLED if `stop` asks to stop.
+// Returns the liquid water (kg/m3) of every cell, x fastest. N is the noise and Q is the largest of
+// the ellipsoids' modulations at a cell's centre. By eq. 10, D = d N Q where N Q >= t, and 0
+// elsewhere. (The paper's text uses Q for the product of both.) Fails if a parameter is out of
+// range or no cell holds any cloud. Returns CANCELLED if `stop` asks to stop.
 absl::StatusOr<std::vector<float>> Generate(const CloudShape& shape,
                                             const GenerateObserver& observer,
                                             const std::stop_token& stop);

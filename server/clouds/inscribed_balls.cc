@@ -12,10 +12,10 @@ namespace thunderhead::clouds {
 namespace {
 
 constexpr float kFar = 1e18F;         // squared metres
-constexpr float kFlatness = 3.0F;     // of the ellipsoids of layers
+constexpr float kFlatness = 3.0F;     // width over height of the ellipsoids of layers
 constexpr double kMinInCells = 0.75;  // so that neighbours of one cell each touch
 
-// Lower envelope of parabolas along one line of squared distances.
+// Computes the lower envelope of parabolas along one line of squared distances.
 class LinePass {
  public:
   LinePass(int count, float spacing_m)
@@ -25,7 +25,8 @@ class LinePass {
         places_(line_.size()),
         starts_(line_.size() + 1) {}
 
-  // `squared` holds `count` values `stride` apart. Beyond both ends it is 0: outside.
+  // Runs the pass. `squared` holds `count` values, `stride` apart. Beyond both ends the distance is
+  // 0, because cells there are outside.
   void Run(float* squared, std::size_t stride) {
     line_.front() = line_.back() = 0.0F;
     for (int i = 0; i < count_; ++i) line_[Index(i + 1)] = squared[Index(i) * stride];
@@ -52,7 +53,7 @@ class LinePass {
  private:
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-  // The intersection of the parabolas rooted at two cells, in cells.
+  // Returns the intersection of the parabolas rooted at two cells, in cells.
   float Meeting(int a, int b) const {
     const float scale = spacing_m_ * spacing_m_;
     const auto p = static_cast<float>(a);
@@ -67,15 +68,15 @@ class LinePass {
   std::vector<float> starts_;
 };
 
-// A ball, or an ellipsoid that is flat by `flatness`, around a cell's middle.
+// A ball, or an ellipsoid flattened by `flatness`, around a cell's centre.
 struct Candidate {
-  float radius_m;  // of the ball of the same volume
+  float radius_m;  // radius of the ball of the same volume
   float flatness;
   std::size_t cell;
 };
 
-// For each cell the larger of the biggest ball and the biggest flat ellipsoid that fit around it,
-// by volume; sorted from large to small.
+// Returns for each cell the larger of two shapes, by volume: the biggest ball and the biggest flat
+// ellipsoid that fit around it. They are sorted from large to small.
 std::vector<Candidate> CandidatesOf(const volume::RegularGrid& grid,
                                     const std::vector<float>& values, float level) {
   std::vector<Candidate> candidates;
@@ -106,8 +107,8 @@ glm::dvec3 MiddleOf(const volume::RegularGrid& grid, const glm::ivec3& cell) {
   return grid.low_corner_m + (glm::dvec3(cell) + 0.5) * grid.spacing_m;
 }
 
-// The distance ends at the centre of an outside cell, and the cloud half a cell before that;
-// nothing is smaller than a cell.
+// Makes the bubble. The distance ends at the centre of an outside cell, but the cloud ends half a
+// cell before that. No bubble is smaller than a cell.
 Bubble BubbleOf(const Candidate& candidate, const volume::RegularGrid& grid) {
   const double flatness = candidate.flatness;
   const double height_m = candidate.radius_m / std::cbrt(flatness * flatness);
@@ -120,7 +121,7 @@ Bubble BubbleOf(const Candidate& candidate, const volume::RegularGrid& grid) {
   return bubble;
 }
 
-// Marks the cells whose centres lie in `bubble` scaled by `spacing`.
+// Marks the cells whose centres are in `bubble` scaled by `spacing`.
 void Cover(const volume::RegularGrid& grid, const Bubble& bubble, double spacing,
            std::vector<bool>* covered) {
   const glm::dvec3 radii_m(bubble.semi_axes_m[0][0], bubble.semi_axes_m[1][1],

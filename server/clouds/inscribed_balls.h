@@ -1,6 +1,7 @@
-// Approximates the region where a field exceeds a level by balls inside it: greedily, each time the
-// largest that fits and whose centre no earlier one covers. Their union nearly fills the region;
-// thin layers get flat ellipsoids. Knows no storm and no GL.
+// Approximates the region where a field exceeds a level by balls inside it. The algorithm is
+// greedy: it always takes the largest ball that fits and whose centre no earlier ball covers. The
+// balls' union nearly fills the region. Thin layers get flat ellipsoids. This code does not depend
+// on storms or GL.
 #pragma once
 
 #include <vector>
@@ -16,14 +17,14 @@ struct InscribedBallsOptions {
   double spacing = 0.62;  // a ball's centre lies outside all earlier balls, scaled by this
 };
 
-// `values` has grid.CellCount() values, x fastest. Empty if nothing is above the level; parents and
-// outward directions are set.
+// Returns the balls with their parents and outward directions. `values` has grid.CellCount()
+// values, x fastest. The result is empty if nothing is above the level.
 CumulusSurface InscribedBalls(const volume::RegularGrid& grid, const std::vector<float>& values,
                               const InscribedBallsOptions& options);
 
-// Distance transform: metres from each cell's centre to the centre of the nearest cell that is not
-// above the level (as are all cells outside the grid), by one pass along each axis (Felzenszwalb
-// and Huttenlocher 2012).
+// Computes the distance transform. For each cell it is the distance in metres to the centre of the
+// nearest cell that is not above the level. All cells outside the grid count as not above it. One
+// pass along each axis suffices (Felzenszwalb and Huttenlocher 2012).
 std::vector<float> DistanceInside_m(const volume::RegularGrid& grid,
                                     const std::vector<float>& values, float level);
 

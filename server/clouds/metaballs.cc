@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::string_view kFirstLine = "thunderhead balls 1";
 
-// Cut-off radius in units of the Gaussian's s; values beyond are less than 1.3e-4 of the centre's.
+// Cut-off radius in units of the Gaussian's s. Values beyond it are less than 1.3e-4 of the
+// centre's.
 constexpr double kGaussianReach = 3.0;
 
 }  // namespace
@@ -30,7 +31,7 @@ double BasisValue(Basis basis, double overlap, double sigma_m, double distance_m
   }
   const double a = distance_m / (overlap * sigma_m);
   const double square = a * a;
-  // The scan prints the signs of eq. 12 wrongly: the field must fall from 1 to 0.
+  // The scan of the paper prints the signs of eq. 12 wrongly. The field must fall from 1 to 0.
   return 1.0 + square * (-22.0 / 9.0 + square * (17.0 / 9.0 - square * (4.0 / 9.0)));
 }
 

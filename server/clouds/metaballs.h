@@ -1,5 +1,5 @@
 // A cloud as metaballs: centres, sizes and amounts (Man, eq. 11-19), their sum as a field, and
-// their text format. Knows no storm and no rendering.
+// their text format. This code does not depend on storms or rendering.
 #pragma once
 
 #include <string>
@@ -11,9 +11,13 @@
 
 namespace thunderhead::clouds {
 
-// The basis function of one ball: Gaussian exp(-r2 / s2) with s = u sigma / 2, which is eq. 15 for
-// the printed u = 2, cut off at 3 s; or Wyvill's field of eq. 12 with radius R = u sigma (eq. 16),
-// without its constant k: 1 in the middle, 0 from R on.
+// The basis function of one ball.
+//
+// kGaussian is exp(-r2 / s2) with s = u sigma / 2, cut off at 3 s. It is eq. 15 for the printed u =
+// 2.
+//
+// kWyvill is the field of eq. 12 with radius R = u sigma (eq. 16), without its constant k. It is 1
+// in the middle, and 0 from R on.
 enum class Basis { kGaussian, kWyvill };
 
 std::string_view NameOf(Basis basis);
@@ -28,7 +32,7 @@ struct Metaball {
 
 struct MetaballCloud {
   std::string quantity = "extinction";  // or a hydrometeor's name
-  std::string units = "m-1";            // of weights
+  std::string units = "m-1";            // unit of the weights
   Basis basis = Basis::kGaussian;
   double overlap = 2.0;   // u of eq. 16
   glm::dvec3 low_m{0.0};  // the box that was approximated; world coordinates
@@ -38,13 +42,13 @@ struct MetaballCloud {
   bool operator==(const MetaballCloud&) const = default;
 };
 
-// A ball's value is 0 from this distance on.
+// Returns the distance from which a ball's value is 0.
 double Reach_m(Basis basis, double overlap, double sigma_m);
 
-// The value of a ball of weight 1 at `distance_m` from its middle.
+// Returns the value of a ball of weight 1 at `distance_m` from its centre.
 double BasisValue(Basis basis, double overlap, double sigma_m, double distance_m);
 
-// As text, without loss.
+// Returns the cloud as text, without loss.
 std::string ToText(const MetaballCloud& cloud);
 
 absl::Status SaveBalls(const MetaballCloud& cloud, const std::string& path);

@@ -7,7 +7,7 @@
 namespace thunderhead::clouds {
 namespace {
 
-// Shift of the lattice for a seed and octave; 0 for seed 0.
+// Returns the shift of the lattice for a seed and octave. It is 0 for seed 0.
 std::uint32_t ShiftOf(std::uint64_t seed, int octave) {
   if (seed == 0) return 0;
   std::uint64_t z = seed + 0x9e3779b97f4a7c15U * (static_cast<std::uint64_t>(octave) + 1U);
@@ -27,7 +27,7 @@ double LatticeNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_
 }
 
 double SmoothNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift) {
-  // Indexed by the number of coordinates in which a neighbour differs: centre, faces, edges,
+  // The index is the number of coordinates in which a neighbour differs: centre, faces, edges,
   // corners.
   constexpr std::array<double, 4> kWeights = {9.0 / 18.0, 4.0 / (6.0 * 18.0), 3.0 / (12.0 * 18.0),
                                               2.0 / (8.0 * 18.0)};
@@ -56,7 +56,7 @@ std::array<double, 4> InterpolationWeights(NoiseInterpolation interpolation, dou
     case NoiseInterpolation::kCubic:
       break;
   }
-  // P x^3 + Q x^2 + R x + S of eq. 6, gathered by value.
+  // These are P x^3 + Q x^2 + R x + S of eq. 6, gathered by value.
   const double square = x * x;
   const double cube = square * x;
   return {2.0 * square - cube - x, cube - 2.0 * square + 1.0, square + x - cube, cube - square};
@@ -144,7 +144,7 @@ const std::vector<double>& NoiseSlices::PlaneAt(Octave& octave, std::int32_t z) 
   return plane.values;
 }
 
-// Adds the octave at height `z`: interpolates between planes, then rows, then columns.
+// Adds the octave at height `z`. Interpolates between planes, then rows, then columns.
 void NoiseSlices::Add(Octave& octave, double z) {
   const double place = z * octave.frequency;
   const double floor = std::floor(place);

@@ -1,5 +1,6 @@
 // Man's noise: a sum of octaves of smoothed lattice noise (P. Man, "Generating and Real-Time
-// Rendering of Clouds", eq. 1-7). Pure numbers: knows no cloud. The same bits on every machine.
+// Rendering of Clouds", eq. 1-7). These are pure functions of numbers. The result has the same bits
+// on every machine.
 #pragma once
 
 #include <array>
@@ -17,20 +18,21 @@ struct NoiseParameters {
   std::uint64_t seed = 0;  // 0 gives the paper's formula; others shift each octave's lattice
 };
 
-// g, eq. 2: in (-1, 1]. The operators are illegible in the scanned paper; this is the well-known
-// 32-bit integer noise with the same constants, with n = (m << 13) ^ m. `shift` is added to m.
+// Computes g of eq. 2, in (-1, 1]. The operators are illegible in the scanned paper. This is the
+// well-known 32-bit integer noise with the same constants, with n = (m << 13) ^ m. `shift` is added
+// to m.
 double LatticeNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
 
-// f, eq. 3: the mean of g over 27 neighbours with weights 9/18 at the centre, 4/(6 18) for each of
-// 6 faces, 3/(12 18) for each of 12 edges, 2/(8 18) for each of 8 corners.
+// Computes f of eq. 3, the mean of g over 27 neighbours. The weight of the centre is 9/18. The
+// weights of the others are 4/(6 18) for 6 faces, 3/(12 18) for 12 edges, 2/(8 18) for 8 corners.
 double SmoothNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
 
-// Weights of the lattice values at -1, 0, 1 and 2 for interpolation at `fraction` (0 to 1): eq. 4,
-// 5 or 6.
+// Returns weights of the lattice values at -1, 0, 1 and 2 for interpolation at `fraction` (0 to 1),
+// by eq. 4, 5 or 6.
 std::array<double, 4> InterpolationWeights(NoiseInterpolation interpolation, double fraction);
 
-// Eq. 1 at one point, in units of the coarsest lattice. Slow but simple; the tests compare
-// NoiseSlices with it.
+// Computes eq. 1 at one point, in units of the coarsest lattice. It is slow but simple, and the
+// tests compare NoiseSlices with it.
 double Noise(const NoiseParameters& parameters, double x, double y, double z);
 
 // Positions of cells along an axis, in units of the coarsest lattice.
@@ -40,12 +42,14 @@ struct NoiseAxis {
   int count = 1;
 };
 
-// Eq. 1 on horizontal slices of a grid; each lattice value is computed once a plane.
+// Computes eq. 1 on horizontal slices of a grid. Each lattice value is computed once for each
+// plane.
 class NoiseSlices {
  public:
   NoiseSlices(const NoiseParameters& parameters, const NoiseAxis& x, const NoiseAxis& y);
 
-  // The values of the slice at height `z`, x fastest. Heights should rise from call to call.
+  // Returns the values of the slice at height `z`, x fastest. Heights should increase from call to
+  // call.
   const std::vector<double>& At(double z);
 
  private:

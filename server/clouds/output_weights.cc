@@ -9,7 +9,7 @@ namespace {
 constexpr int kGainOver = 10;  // iterations over which the gain is measured
 constexpr int kPowerIterations = 16;
 
-// The power method underestimates the largest eigenvalue.
+// This margin is needed because the power method underestimates the largest eigenvalue.
 constexpr double kStepMargin = 1.05;
 
 double SumOfSquares(const std::vector<float>& field) {
@@ -30,7 +30,7 @@ bool GainsLittle(const std::vector<double>& errors, double min_gain) {
   return before - errors.back() <= min_gain * before;
 }
 
-// The largest eigenvalue of A^T A, by the power method.
+// Returns the largest eigenvalue of A^T A, by the power method.
 double LargestEigenvalue(const BasisOperator& basis, std::size_t balls) {
   std::vector<double> vector(balls, 1.0 / std::sqrt(static_cast<double>(balls)));
   std::vector<double> image;
@@ -46,14 +46,14 @@ double LargestEigenvalue(const BasisOperator& basis, std::size_t balls) {
   return eigenvalue;
 }
 
-// field = target - A weights
+// Computes field = target - A weights.
 void Residual(const BasisOperator& basis, const std::vector<float>& target,
               const std::vector<double>& weights, std::vector<float>* field) {
   basis.Apply(weights, field);
   for (std::size_t i = 0; i < target.size(); ++i) (*field)[i] = target[i] - (*field)[i];
 }
 
-// Projected gradient step of 1 / eigenvalue, from weights extrapolated by `momentum`.
+// Takes projected gradient steps of 1 / eigenvalue, from weights extrapolated by `momentum`.
 OutputWeights Descend(const BasisOperator& basis, const std::vector<float>& target,
                       const WeightOptions& options, bool momentum, const WeightObserver& observer) {
   std::vector<double> sums;
@@ -81,7 +81,7 @@ OutputWeights Descend(const BasisOperator& basis, const std::vector<float>& targ
     speed = next_speed;
     Residual(basis, target, result.weights, &residual);
     result.errors.push_back(SumOfSquares(residual));
-    // Momentum is reset when it leads uphill.
+    // Momentum is reset when it increases the error.
     if (momentum && result.errors.back() > result.errors[result.errors.size() - 2]) {
       pushed = result.weights;
       speed = 1.0;
@@ -135,7 +135,8 @@ OutputWeights ByLeastSquares(const BasisOperator& basis, const std::vector<float
       direction[k] = scaled[k] + (gamma / before) * direction[k];
     }
   }
-  // Rounding errors accumulate in the residual that is updated step by step.
+  // The residual is computed anew, because rounding errors accumulate when it is updated step by
+  // step.
   Residual(basis, target, result.weights, &residual);
   result.errors.back() = SumOfSquares(residual);
   return result;

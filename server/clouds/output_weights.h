@@ -1,5 +1,5 @@
 // The third phase of Man's approximator: the metaballs' weights that approximate a field best, by
-// least squares. Knows no clustering.
+// least squares. This code does not depend on the clustering.
 #pragma once
 
 #include <functional>
@@ -21,16 +21,17 @@ struct OutputWeights {
   std::vector<double> errors;  // H after each iteration; the first is that of no balls at all
 };
 
-// Called after each iteration with H; false ends it.
+// A function that is called after each iteration with H. If it returns false, the iteration ends.
 using WeightObserver = std::function<bool(int iteration, double error)>;
 
-// Eq. 24: gradient descent on H, with a step size that cannot overshoot. Non-negative weights are
-// kept so by projection after each step.
+// Finds the weights by gradient descent on H (eq. 24), with a step size that cannot overshoot. If
+// weights must not be negative, each step ends with a projection.
 OutputWeights ByGradient(const BasisOperator& basis, const std::vector<float>& target,
                          const WeightOptions& options, const WeightObserver& observer);
 
-// Conjugate gradients on the normal equations, preconditioned by their diagonal; for non-negative
-// weights projected gradients with momentum (Beck and Teboulle 2009).
+// Finds the weights by conjugate gradients on the normal equations, preconditioned by their
+// diagonal. If weights must not be negative, it uses projected gradients with momentum (Beck and
+// Teboulle 2009).
 OutputWeights ByLeastSquares(const BasisOperator& basis, const std::vector<float>& target,
                              const WeightOptions& options, const WeightObserver& observer);
 

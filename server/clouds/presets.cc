@@ -17,7 +17,7 @@ double Between(CounterRandom* random, double low, double high) {
   return low + (high - low) * random->Next();
 }
 
-// A grid centred on the origin, from sea level up.
+// Returns a grid centred on the origin, from sea level up.
 volume::RegularGrid GridOf(const glm::ivec3& cells, double spacing_m) {
   volume::RegularGrid grid;
   grid.cells = cells;
@@ -96,7 +96,7 @@ CloudShape CumulusField(std::uint64_t seed) {
   CounterRandom random(seed, 3);
   for (int i = 0; i < 60; ++i) {
     Heap heap;
-    // Many small clouds and few large ones.
+    // The cube makes many small clouds and few large ones.
     const double size = random.Next();
     heap.radius_m = 220.0 + 700.0 * size * size * size;
     heap.height_m = heap.radius_m * Between(&random, 0.8, 1.3);

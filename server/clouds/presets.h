@@ -1,4 +1,4 @@
-// Clouds by name: unions of ellipsoids laid out from a seed. The same on every machine.
+// Named clouds: unions of ellipsoids laid out from a seed. They are the same on every machine.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace thunderhead::clouds {
 
-// "congestus", "cumulus-field" and "fair-weather-cumulus".
+// Returns "congestus", "cumulus-field" and "fair-weather-cumulus".
 std::vector<std::string> PresetNames();
 
-// INVALID_ARGUMENT lists the names.
+// Returns the preset. INVALID_ARGUMENT lists the names.
 absl::StatusOr<CloudShape> PresetNamed(std::string_view name, std::uint64_t seed);
 
 }  // namespace thunderhead::clouds

@@ -15,14 +15,14 @@
 namespace thunderhead::clouds {
 namespace {
 
-// A margin of empty cells around the cloud counts in H too, so that balls do not spread into clear
+// A margin of empty cells around the cloud also counts in H, so that balls do not spread into clear
 // air.
 constexpr int kBorderCells = 2;
 
 struct Training {
   volume::RegularGrid grid;         // the box
   std::vector<float> values;        // y of eq. 20, over the box
-  std::vector<glm::vec3> points_m;  // middles of the cells above 0, from the box's middle
+  std::vector<glm::vec3> points_m;  // centres of the cells above 0, from the box's middle
   glm::dvec3 middle_m{0.0};
 };
 

@@ -1,7 +1,7 @@
-// Man's approximator: any field on a grid as a sum of metaballs, by a network of radial basis
-// functions in its three phases (eq. 11-24). The paper leaves the third, the output weights, to
-// future work; here they are found by its gradient rule or by least squares (conjugate gradients).
-// The same for any number of threads.
+// Man's approximator: represents any field on a grid as a sum of metaballs. It uses a network of
+// radial basis functions in three phases (eq. 11-24). The paper leaves the third phase, the output
+// weights, to future work. Here they are found by its gradient rule or by least squares (conjugate
+// gradients). The result is the same for any number of threads.
 #pragma once
 
 #include <functional>
@@ -23,38 +23,38 @@ struct FitOptions {
   double overlap = 2.5;  // u of eq. 16; the paper has 2
   Solver solver = Solver::kDirect;
   bool non_negative = false;  // weights are 0 or more
-  int max_iterations = 200;   // of the third phase
+  int max_iterations = 200;   // maximum for the third phase
   double min_gain = 1e-4;     // it ends when H falls by less than this share in ten iterations
   std::uint64_t seed = 1;
   int threads = 0;  // 0: as many as the machine has
 };
 
-// Progress of the fit. `error` is H, eq. 20; 0 before the third phase.
+// Progress of the fit. `error` is H of eq. 20, or 0 before the third phase.
 struct FitProgress {
   std::string_view phase;
-  double share = 0.0;  // of this phase
+  double share = 0.0;  // share of this phase that is done
   double error = 0.0;
 };
 
 struct FitResult {
   MetaballCloud cloud;
-  double error = 0.0;           // H, eq. 20: over all cells of the box, empty ones too
+  double error = 0.0;           // H, eq. 20: over all cells of the box, including empty ones
   double relative_error = 0.0;  // sqrt(H / sum of squares)
   std::vector<double> errors;   // H after each iteration of the third phase
   std::size_t cells = 0;        // K of eq. 20
   std::size_t cloudy_cells = 0;
-  int epochs = 0;  // of the first phase
+  int epochs = 0;  // epochs of the first phase
 };
 
-// Approximates `values` (grid.CellCount(), x fastest, at least 0). INVALID_ARGUMENT if nothing is
-// above 0, or there are more balls than such cells. If `stop` asks to stop, the result is the best
-// so far; CANCELLED if no centres were found yet.
+// Approximates `values` (grid.CellCount(), x fastest, at least 0). Returns INVALID_ARGUMENT if no
+// value is above 0, or if there are more balls than such cells. If `stop` asks to stop, returns the
+// best result so far, or CANCELLED if no centres were found yet.
 absl::StatusOr<FitResult> Fit(const volume::RegularGrid& grid, const std::vector<float>& values,
                               const FitOptions& options,
                               const std::function<void(const FitProgress&)>& observer,
                               const std::stop_token& stop);
 
-// The sum of all balls at every cell's centre, x fastest; negative sums are set to zero.
+// Returns the sum of all balls at every cell's centre, x fastest. Negative sums are set to zero.
 std::vector<float> Evaluate(const MetaballCloud& cloud, const volume::RegularGrid& grid,
                             int threads);
 

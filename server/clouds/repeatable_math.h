@@ -1,5 +1,5 @@
-// Sine, cosine and cube root from the four operations alone, so that they are the same, bit for
-// bit, on every machine with IEEE doubles; the C library's are not. Accurate to 1e-15.
+// Sine, cosine and cube root from the four basic operations only. They are the same, bit for bit,
+// on every machine with IEEE doubles, unlike those of the C library. They are accurate to 1e-15.
 #pragma once
 
 #include <cmath>
@@ -7,9 +7,10 @@
 
 namespace thunderhead::clouds {
 
-// The sine of `degrees`, any finite number.
+// Returns the sine of `degrees`, any finite number.
 inline double SineOfDegrees(double degrees) {
-  // std::remainder is exact: reduces to within 180 degrees of 0, then 90.
+  // std::remainder is exact. It reduces the angle to within 180 degrees of 0, and the next lines to
+  // within 90.
   double rest = std::remainder(degrees, 360.0);
   if (rest > 90.0) rest = 180.0 - rest;
   if (rest < -90.0) rest = -180.0 - rest;
@@ -26,7 +27,7 @@ inline double SineOfDegrees(double degrees) {
 
 inline double CosineOfDegrees(double degrees) { return SineOfDegrees(degrees + 90.0); }
 
-// The cube root of a finite number that is not below 0, by Newton's rule.
+// Returns the cube root of a finite number that is not below 0, by Newton's method.
 inline double CubeRoot(double x) {
   if (x <= 0.0) return 0.0;
   int exponent = 0;

@@ -12,7 +12,7 @@ namespace thunderhead::codec {
 namespace {
 
 constexpr int kBits = 10;
-// Layout of libavif's pixels: the smallest that holds all of a FineImage's.
+// Bits per value in libavif's pixels: the smallest layout that holds all bits of a FineImage.
 constexpr int kPixelBits = 16;
 constexpr int kAvifChannels = 3;
 constexpr int kMaxAvifSide_px = 16384;
@@ -23,7 +23,7 @@ absl::Status AvifError(const char* action, avifResult result) {
   return absl::InternalError(absl::StrCat(action, ": ", avifResultToString(result)));
 }
 
-// The view of `pixels` that libavif works on.
+// Returns the view of `pixels` that libavif uses.
 avifRGBImage PixelsOf(const avifImage& image, std::uint16_t* pixels) {
   avifRGBImage rgb{};
   avifRGBImageSetDefaults(&rgb, &image);
@@ -52,7 +52,7 @@ absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image, const Avif
   coded->transferCharacteristics = AVIF_TRANSFER_CHARACTERISTICS_SRGB;
   coded->matrixCoefficients = AVIF_MATRIX_COEFFICIENTS_BT709;
   coded->yuvRange = AVIF_RANGE_FULL;
-  // libavif reads the pixels only.
+  // The cast is safe because libavif only reads the pixels.
   const avifRGBImage rgb = PixelsOf(*coded, const_cast<std::uint16_t*>(image.rgb.data()));
   if (const avifResult result = avifImageRGBToYUV(coded.get(), &rgb); result != AVIF_RESULT_OK) {
     return AvifError("cannot convert the picture for AVIF", result);

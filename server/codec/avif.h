@@ -1,5 +1,5 @@
-// AVIF by libavif: stills of 10 bits a channel without chroma subsampling, whose clear sky does not
-// band. Pure functions, safe from any thread.
+// AVIF by libavif: stills with 10 bits per channel without chroma subsampling, so that a clear sky
+// shows no banding. Pure functions, safe from any thread.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct AvifOptions {
 absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image,
                                        const AvifOptions& options = {});
 
-// For tests and measurements; clients bring their own.
+// Decodes an AVIF. For tests and measurements; clients have their own decoder.
 absl::StatusOr<frame::FineImage> DecodeAvif(const std::string& avif);
 
 }  // namespace thunderhead::codec

@@ -19,10 +19,10 @@ namespace {
 constexpr int kMaxVp9Side_px = 16384;
 constexpr int kVp9Channels = 3;
 constexpr double kPicturesPerSecond = 30.0;
-// Measured in decision 28: finer than this costs bytes that a moving picture does not show.
+// Measured in decision 28: a finer quantizer costs bytes without a visible gain in moving pictures.
 constexpr unsigned kFinestQuantizer = 24;
 constexpr unsigned kCoarsestQuantizer = 56;
-// libvpx's fastest.
+// The fastest speed of libvpx.
 constexpr int kSpeed = 9;
 
 absl::Status VpxError(const char* action, vpx_codec_ctx_t* codec) {
@@ -32,7 +32,7 @@ absl::Status VpxError(const char* action, vpx_codec_ctx_t* codec) {
                                           detail == nullptr ? "" : detail));
 }
 
-// For one thread: an encoder thread serves many streams.
+// Uses one thread, because each encoder thread serves many streams.
 vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   vpx_codec_enc_cfg_t config{};
   vpx_codec_enc_config_default(vpx_codec_vp9_cx(), &config, 0);
@@ -42,10 +42,10 @@ vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   config.g_timebase = {1, static_cast<int>(kPicturesPerSecond)};
   config.g_lag_in_frames = 0;
   config.g_pass = VPX_RC_ONE_PASS;
-  // Pictures may be dropped on the way: without this, each depends on the one before it even where
-  // it does not refer to it. It costs 2 % of the bytes.
+  // Droppable pictures may never reach the decoder. Without this option, each picture depends on
+  // the one before it even if it does not refer to it. The option costs 2 % of the bytes.
   config.g_error_resilient = VPX_ERROR_RESILIENT_DEFAULT;
-  config.kf_mode = VPX_KF_DISABLED;  // on demand only
+  config.kf_mode = VPX_KF_DISABLED;  // only on demand
   config.rc_end_usage = VPX_CBR;
   config.rc_target_bitrate = static_cast<unsigned>(
       std::ceil(Vp9Encoder::BitsPerPicture(width_px, height_px) * kPicturesPerSecond / 1000.0));
@@ -53,14 +53,14 @@ vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   config.rc_max_quantizer = kCoarsestQuantizer;
   config.rc_undershoot_pct = 50;
   config.rc_overshoot_pct = 50;
-  config.rc_buf_sz = 1000;  // milliseconds, as the next two
+  config.rc_buf_sz = 1000;  // milliseconds, as in the next two lines
   config.rc_buf_initial_sz = 500;
   config.rc_buf_optimal_sz = 600;
   config.rc_dropframe_thresh = 0;
   return config;
 }
 
-// References and updates of LAST, the only buffer that is used.
+// Returns the flags for references to and updates of LAST, the only buffer that is used.
 vpx_enc_frame_flags_t FlagsOf(Vp9Kind kind) {
   if (kind == Vp9Kind::kKey) return VPX_EFLAG_FORCE_KF;
   constexpr vpx_enc_frame_flags_t kOnlyLast =
@@ -94,7 +94,7 @@ std::size_t Vp9Encoder::BytesFor(int width_px, int height_px) {
 double Vp9Encoder::BitsPerPicture(int width_px, int height_px) {
   constexpr double kBits = 1.9e6 / kPicturesPerSecond;
   constexpr double kPixels = 1280.0 * 720.0;
-  // Larger pictures have smoother details.
+  // Larger pictures have smoother details, so the bits grow more slowly than the pixels.
   return kBits * std::pow(static_cast<double>(width_px) * height_px / kPixels, 0.75);
 }
 
@@ -116,7 +116,7 @@ absl::StatusOr<std::unique_ptr<Vp9Encoder>> Vp9Encoder::Create(int width_px, int
   }
   state->open = true;
   vpx_codec_ctx_t* const codec = &state->codec;
-  // Each control has its own type of argument.
+  // Each control has its own argument type, so the calls cannot be a loop.
   if (vpx_codec_control(codec, VP8E_SET_CPUUSED, kSpeed) != VPX_CODEC_OK ||
       vpx_codec_control(codec, VP9E_SET_AQ_MODE, 3U) != VPX_CODEC_OK ||
       vpx_codec_control(codec, VP9E_SET_COLOR_SPACE, VPX_CS_BT_601) != VPX_CODEC_OK ||
@@ -144,7 +144,8 @@ absl::StatusOr<Vp9Picture> Vp9Encoder::Encode(const frame::RgbImage& picture, Vp
                     image.planes[VPX_PLANE_V], image.stride[VPX_PLANE_V], width_px_, height_px_);
   vpx_codec_ctx_t* const codec = &state_->codec;
   const vpx_enc_frame_flags_t flags = FlagsOf(count_ == 0 ? Vp9Kind::kKey : kind);
-  // As if they came regularly, so that a picture takes no more bytes where few come.
+  // Timestamps pretend a regular rate, so that the size of a picture does not depend on the actual
+  // rate.
   if (vpx_codec_encode(codec, &image, count_++, 1, flags, VPX_DL_REALTIME) != VPX_CODEC_OK) {
     return VpxError("cannot encode the picture as VP9", codec);
   }

@@ -1,5 +1,5 @@
-// VP9 by libvpx: one stream of moving pictures, as WebCodecs decodes it. Colours are those of JPEG:
-// sRGB as full-range BT.601 4:2:0. An encoder or decoder is used by one thread at a time.
+// VP9 by libvpx: one stream of moving pictures that WebCodecs can decode. Colours are those of
+// JPEG: sRGB as full-range BT.601 4:2:0. An encoder or decoder is used by one thread at a time.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 namespace thunderhead::codec {
 
 enum class Vp9Kind {
-  kKey,        // needs none before it
-  kBase,       // needs the last key or base picture, and the next ones need it
-  kDroppable,  // needs the last key or base picture; no other needs it
+  kKey,        // needs no other picture
+  kBase,       // needs the last key or base picture; later pictures need it
+  kDroppable,  // needs the last key or base picture; no other picture needs it
 };
 
 struct Vp9Picture {
@@ -26,14 +26,15 @@ struct Vp9Picture {
 
 class Vp9Encoder {
  public:
-  // Bits that a picture may take, on average over a second of 30: at most 2 Mbit/s at 1280 x 720.
+  // Returns the bits of a picture, on average over a second of 30 pictures: at most 2 Mbit/s at
+  // 1280 x 720.
   static double BitsPerPicture(int width_px, int height_px);
 
-  // Memory that an encoder of that size takes, about: 27, 78 and 112 MiB were measured at 640 x
-  // 360, 1280 x 720 and 1600 x 900.
+  // Returns the approximate memory of an encoder for that size. Measured: 27, 78 and 112 MiB at 640
+  // x 360, 1280 x 720 and 1600 x 900.
   static std::size_t BytesFor(int width_px, int height_px);
 
-  // Both sides are 1 to 16384 pixels.
+  // Creates an encoder. Both sides must be 1 to 16384 pixels.
   static absl::StatusOr<std::unique_ptr<Vp9Encoder>> Create(int width_px, int height_px);
   ~Vp9Encoder();
   Vp9Encoder(const Vp9Encoder&) = delete;
@@ -42,7 +43,8 @@ class Vp9Encoder {
   int width_px() const { return width_px_; }
   int height_px() const { return height_px_; }
 
-  // Encodes the next picture, of the encoder's size. The first is a key picture whatever is asked.
+  // Encodes the next picture, which must have the encoder's size. The first one is always a key
+  // picture.
   absl::StatusOr<Vp9Picture> Encode(const frame::RgbImage& picture, Vp9Kind kind);
 
  private:
@@ -55,7 +57,7 @@ class Vp9Encoder {
   std::int64_t count_ = 0;
 };
 
-// For tests and measurements; clients bring their own.
+// A decoder for tests and measurements; clients have their own decoder.
 class Vp9Decoder {
  public:
   static absl::StatusOr<std::unique_ptr<Vp9Decoder>> Create();

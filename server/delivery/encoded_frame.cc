@@ -20,7 +20,7 @@ Problem::Code CodeOf(absl::StatusCode code) {
   }
 }
 
-// As calls that end with an error are counted.
+// Counts a failed request under its error reason, or else under its status code.
 void CountRefusal(const absl::Status& why) {
   const std::string reason = base::DetailsOf(why).reason;
   telemetry::Counted()

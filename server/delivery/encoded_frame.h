@@ -1,4 +1,4 @@
-// A frame as it is sent, and the reason why there is none. Plain values.
+// An encoded frame, and the reason why a scene has no frame. Plain values.
 #pragma once
 
 #include <chrono>
@@ -18,32 +18,33 @@ namespace thunderhead::delivery {
 
 // A frame ready to be sent.
 struct EncodedFrame {
-  std::uint64_t sequence = 0;  // counts the session's frames from 1; set by the hub
+  std::uint64_t sequence = 0;  // number of the frame in its session, from 1; set by the hub
   std::uint64_t scene_revision = 0;
-  // The picture, in one of these encodings.
+  // The encoded picture, in one of these encodings.
   std::string jpeg;
   std::string vp9;
   std::string avif;
-  bool key_frame = false;  // of video
+  bool key_frame = false;  // whether vp9 holds a key picture
   int width_px = 0;
   int height_px = 0;
-  int full_width_px = 0;  // of the scene's picture at rest; 0: the same
+  int full_width_px = 0;  // width of the scene's picture at rest; 0: width_px
   scene::Camera camera;
   scene::View view;
   scene::Sun sun;
   std::vector<StageTime> stages;
   Modelled modelled;
   bool refined = false;
-  bool at_rest = false;  // drawn when the scene had not changed for a while
+  bool at_rest = false;  // drawn after the scene had not changed for a while
   int tier = 0;
-  std::optional<Refinement> refinement;  // of a picture by the reference
+  std::optional<Refinement> refinement;  // set for a picture by the reference
   std::optional<AccuracyReport> accuracy;
-  // The time of the change of the scene that it shows; none if the scene has changed again since.
+  // The time of the scene change that the frame shows. Absent if the scene has changed again since.
   std::optional<std::chrono::steady_clock::time_point> changed_at;
-  // The reservation of its pixels' and bytes' memory, held while a frame made of the picture is
+  // The memory reservation of its pixels and bytes. It is held while a frame made of the picture is
   // kept or waits to be sent.
   std::shared_ptr<const base::MemoryReservation> memory;
-  // The frame without its sequence as the service serialized it, once for all viewers; opaque here.
+  // The serialized frame without its sequence. The service serializes it once for all viewers; it
+  // is opaque here.
   std::string serialized;
 };
 
@@ -52,7 +53,7 @@ struct Problem {
   enum class Code {
     kStormGone,
     kStormUnreadable,
-    kScene,  // asks for something that cannot be drawn
+    kScene,  // the scene asks for something that cannot be drawn
     kBusy,
     kInternal,
   };
@@ -62,9 +63,9 @@ struct Problem {
   Code code = Code::kInternal;
 };
 
-// The problem of a scene that could not be drawn, counted among the refusals.
+// Returns the problem of a scene that could not be drawn, and counts it among the refusals.
 Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
-// The problem of a scene whose storm could not be read, counted among the refusals.
+// Returns the problem of a scene whose storm could not be read, and counts it among the refusals.
 Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
 
 }  // namespace thunderhead::delivery

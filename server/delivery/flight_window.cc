@@ -5,13 +5,13 @@
 namespace thunderhead::delivery {
 namespace {
 
-// Frames that take little longer than the fastest do not wait for one another.
+// Frames that take little longer than the fastest one do not queue behind one another.
 constexpr double kFree = 1.3;
 constexpr double kFree_ms = 15.0;
-// Those that take so much longer do.
+// Frames that take this much longer than the fastest one queue.
 constexpr double kQueued = 2.0;
 constexpr double kQueued_ms = 40.0;
-// The shortest round trip is forgotten slowly, as a path may become longer.
+// The shortest round trip is forgotten slowly because the path may become longer.
 constexpr double kForget = 1.005;
 
 }  // namespace

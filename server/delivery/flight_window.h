@@ -1,6 +1,6 @@
-// How many small frames may be on their way to one viewer, by how long they take: more on a far
-// link, where two would leave it idle, and two on one that is full, where more would only wait. A
-// plain value that is told the time.
+// The maximum number of unacknowledged video frames of one viewer, from the round-trip times. It
+// grows on a link with a long delay, which two frames would leave idle. It shrinks to two on a
+// saturated link, where more frames would only queue. A plain value; the time is an argument.
 #pragma once
 
 #include <chrono>
@@ -15,13 +15,13 @@ class FlightWindow {
 
   std::size_t size() const { return size_; }
 
-  // A frame was acknowledged `round_trip` after it was sent; `was_full` when no further one could
-  // be sent meanwhile.
+  // Records that a frame was acknowledged `round_trip` after it was sent. `was_full` says that the
+  // window was full, so that no further frame could be sent meanwhile.
   void Acknowledged(std::chrono::nanoseconds round_trip, bool was_full);
 
  private:
   std::size_t size_ = kLeast;
-  double shortest_ms_ = 0.0;  // of an empty link; 0: not known
+  double shortest_ms_ = 0.0;  // shortest round trip, of an idle link; 0: not known
 };
 
 }  // namespace thunderhead::delivery

@@ -1,4 +1,4 @@
-// What a frame shows and how it was made. Plain values that travel with it.
+// The content of a frame and how it was made. Plain values that travel with the frame.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@ using scene::StageTime;
 
 // The content of a frame and the technique that drew it.
 struct Modelled {
-  std::string technique;  // its name
+  std::string technique;  // name of the technique
   renderers::Content content;
   int slices = 0;
   std::uint64_t device_bytes = 0;
-  std::int64_t traced_paths = 0;  // that corrected the light
+  std::int64_t traced_paths = 0;  // paths that corrected the light
   double exposure_ev = 0.0;
 };
 
 // Progress of a picture by the reference.
 struct Refinement {
-  int samples_per_pixel = 0;  // of every pixel
-  // Root of the mean squared standard error over the mean radiance; none if there are too few
-  // samples.
+  int samples_per_pixel = 0;  // of each pixel
+  // Root of the mean squared standard error, divided by the mean radiance. Absent if there are too
+  // few samples.
   std::optional<double> relative_error;
 
   bool operator==(const Refinement&) const = default;

@@ -11,7 +11,7 @@ namespace {
 
 using telemetry::Counted;
 
-// Larger for a form that is worth sending again.
+// Ranks forms of the same frame; a form with a larger value replaces one with a smaller value.
 int Worth(const FrameForm& form) {
   int worth = kTiers - form.tier;
   if (form.kind == FrameForm::Kind::kJpeg) worth += kTiers;
@@ -36,7 +36,7 @@ absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
     }
     watches_[id].viewer = std::move(viewer);
     watches_[id].wants = wants;
-    // JPEG as it is, then video in each tier.
+    // Step 0 is plain JPEG; the further steps are video in each tier.
     if (TakesVideo(watches_[id])) watches_[id].link = LinkEstimate(1 + kTiers);
     SetLeastSteps(time_.Now());
   }
@@ -52,7 +52,7 @@ void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
   watch.wants = wants;
   watch.waits_until.reset();
   SetLeastSteps(time_.Now());
-  // The newest picture again if it is too small now.
+  // Lets the viewer take the newest picture again if its own is too small now.
   if (frame_ != nullptr && IsTooSmall(watch, *frame_)) watch.last_sequence = 0;
 }
 
@@ -66,7 +66,7 @@ bool FrameHub::IsTooSmall(const Watch& watch, const PublishedFrame& frame) {
     case FrameForm::Kind::kVideo:
       break;
   }
-  return false;  // the next picture of the stream comes by itself, and at rest JPEG
+  return false;  // video needs no resend: the next picture follows on its own, and JPEG at rest
 }
 
 void FrameHub::Leave(std::uint64_t viewer_id) {
@@ -103,7 +103,8 @@ std::optional<int> FrameHub::VideoTier(const Watch& watch, const PictureWidth& w
 }
 
 bool FrameHub::KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const {
-  // The reference's frames come too fast to wait, and on a busy machine any may.
+  // Reference frames come too fast to wait for stills. On a busy machine stills of any frame may be
+  // late.
   if (next.refinement.has_value()) return false;
   if (stills_due_since_.has_value() && now - *stills_due_since_ > kLongestForStill) return false;
   const int for_window = TierForWindow(WidthOf(next), watch.wants.window_width_px);
@@ -129,10 +130,11 @@ std::optional<FrameHub::Offer> FrameHub::VideoFor(const Watch& watch, const Publ
       watch.place.CanTake(tier, picture)) {
     return Offer{newest, form, picture};
   }
-  // The base picture that it has missed, without which it can take none of the newer ones.
+  // Offers the base picture that the viewer has missed, because it can decode no newer picture
+  // without it.
   const VideoStream& stream = streams_[static_cast<std::size_t>(tier)];
   const VideoPicture& base = stream.NewestBase();
-  // It may be a key picture that nobody asked for, as where pictures have another size now.
+  // The base may be a key picture that no viewer requested, for example after a change of size.
   const std::uint64_t has = watch.place.BaseOf(tier);
   const bool missed = base.frame != nullptr && has != 0 && (base.needs == 0 || base.needs == has) &&
                       stream.NewestBaseSequence() > watch.last_sequence;
@@ -160,7 +162,8 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
   const bool awaits_still = watch.wants.takes_stills && frame.StillFollows();
   if (frame.Rests() && !awaits_still) return if_wanted(jpeg);
   if (auto video = VideoFor(watch, frame, *video_tier); video.has_value()) return video;
-  // Small pictures until the next key picture; nothing for who has the newest one of the stream.
+  // Sends small JPEG pictures until the next key picture. A viewer with the stream's newest base
+  // picture needs none.
   if (watch.place.BaseOf(*video_tier) != 0 || !is_new) return std::nullopt;
   return Offer{
       described.sequence,
@@ -227,7 +230,7 @@ std::optional<FrameEvent> FrameHub::NotMade(std::uint64_t viewer_id, const Offer
   return event;
 }
 
-// Without the lock, as a tier that nobody wanted before is encoded now.
+// Runs without the lock because a tier that no viewer needed before is encoded now.
 std::shared_ptr<const EncodedFrame> FrameHub::Made(const Offer& offer, PublishedFrame& published) {
   switch (offer.form.kind) {
     case FrameForm::Kind::kVideo:
@@ -248,7 +251,7 @@ bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
   }
   const EncodedFrame& frame = is_video ? *offer.picture.frame : frame_->Described();
   if (!VideoTier(watch, WidthOf(frame_->Described())).has_value()) watch.place.Leave();
-  // A viewer who has just come has missed nothing; a better form of a frame is not another one.
+  // A new viewer has missed no frames, and a better form of the same frame is not another frame.
   const bool has_had_any = watch.last_sequence > 0;
   if (has_had_any && offer.sequence > watch.last_sequence) {
     Counted().frames_skipped.Add(offer.sequence - watch.last_sequence - 1);

@@ -5,10 +5,10 @@
 namespace thunderhead::delivery {
 namespace {
 
-// Before a step is left, and before one on trial is judged.
+// Number of samples needed before a step is left, and before a step on trial is judged.
 constexpr int kFewestSamples = 4;
-// A smaller picture must arrive in at most this share of the time to be worth it, and a larger one
-// may take this many times as long.
+// A smaller picture is kept only if it arrives in at most kWorthIt times the previous time. A
+// larger picture may take kBearable times as long.
 constexpr double kWorthIt = 0.8;
 constexpr double kBearable = 1.25;
 
@@ -26,11 +26,11 @@ void LinkEstimate::SetLeast(int step, Time now) {
 }
 
 void LinkEstimate::Acknowledged(Time now, Time sent_at) {
-  // The time from one arrival to the next, where a frame was on its way all the time.
+  // If a frame was in flight all the time, the sample is the time from one arrival to the next.
   const bool waited = last_acknowledged_.has_value() && sent_at < *last_acknowledged_;
   const double sample_ms = Milliseconds(waited ? now - *last_acknowledged_ : now - sent_at);
   last_acknowledged_ = now;
-  if (sent_at < changed_at_) return;  // of another step
+  if (sent_at < changed_at_) return;  // the frame belongs to another step
   constexpr double kWeight = 0.3;
   frame_ms_ = samples_ == 0 ? sample_ms : (1.0 - kWeight) * frame_ms_ + kWeight * sample_ms;
   if (++samples_ >= kFewestSamples) Judge(now);

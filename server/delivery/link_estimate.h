@@ -1,8 +1,8 @@
-// How far moving pictures are to be reduced for one viewer's link, from when frames were sent and
-// acknowledged. A plain value that is told the time.
+// Chooses by how much to reduce moving pictures for one viewer's link, from the times at which
+// frames were sent and acknowledged. A plain value; the time is an argument.
 //
-// A slow link and a far one look alike: frames take long. So the next step is tried, and kept if it
-// helps.
+// A link with low bandwidth and one with a long delay look alike because frames take long on both.
+// So the estimate tries the next step and keeps it if it helps.
 #pragma once
 
 #include <chrono>
@@ -10,36 +10,37 @@
 
 namespace thunderhead::delivery {
 
-// Pictures are sent in this many sizes: tier 0 as the scene asks, each further one with half the
-// width and height.
+// Number of picture sizes. Tier 0 has the size that the scene asks for; each further tier has half
+// the width and height.
 inline constexpr int kTiers = 3;
 
 class LinkEstimate {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // A link that needs longer than this for a frame is tried with the next step, so that at least 10
-  // a second arrive.
+  // If frames take longer than this on a link, the next step is tried, so that at least 10 frames a
+  // second arrive.
   static constexpr std::chrono::milliseconds kLongest{100};
-  // The step before is tried after so long; each trial that fails doubles the wait for the next.
+  // Time until the previous step is tried again. Each failed trial doubles it.
   static constexpr std::chrono::seconds kShortestWait{4};
   static constexpr std::chrono::seconds kLongestWait{64};
 
-  // `steps` in all, each with fewer bytes than the one before: the tiers, unless the viewer can
-  // be reduced otherwise as well.
+  // `steps` is the number of steps; each has fewer bytes than the one before. By default the steps
+  // are the tiers.
   explicit LinkEstimate(int steps = kTiers) : steps_(steps) {}
 
-  // No step below this one.
+  // Sets the lowest step that may be used.
   void SetLeast(int step, Time now);
 
-  // A frame that was sent at `sent_at` was acknowledged.
+  // Records that a frame sent at `sent_at` was acknowledged.
   void Acknowledged(Time now, Time sent_at);
 
-  // Of moving pictures; stills are worth waiting for.
+  // Returns the step for moving pictures. Stills are sent in full because they are worth waiting
+  // for.
   int step() const { return step_; }
 
  private:
-  // A step on trial, and the one before it.
+  // The state before the step that is on trial.
   struct Trial {
     int step_before = 0;
     double frame_ms_before = 0.0;
@@ -52,8 +53,8 @@ class LinkEstimate {
   int steps_;
   int least_ = 0;
   int step_ = 0;
-  int samples_ = 0;        // of this step
-  double frame_ms_ = 0.0;  // smoothed: from one frame's arrival to the next's
+  int samples_ = 0;        // samples of this step
+  double frame_ms_ = 0.0;  // smoothed time from one frame's arrival to the next
   std::optional<Time> last_acknowledged_;
   Time changed_at_;
   std::optional<Trial> trial_;
@@ -61,15 +62,15 @@ class LinkEstimate {
   std::optional<Time> shrink_again_at_;
 };
 
-// Of a picture in pixels, and of the one at rest that it stands for, which may be wider.
+// The width of a picture, and of the picture at rest that it stands for, which may be wider.
 struct PictureWidth {
   int px = 0;
   int full_px = 0;
 };
 
-// The tier of a picture for a window: the smallest that fills it; 0 for a window of unknown width,
-// 0. One that moves has the tier that it will have at rest, unless it would have less than half of
-// the window's pixels.
+// Returns the tier of a picture for a window: the smallest one that fills it. It is 0 if the
+// window's width is unknown (0). A moving picture has the tier that it will have at rest, unless it
+// would then have less than half of the window's pixels.
 int TierForWindow(const PictureWidth& picture, int window_px);
 
 }  // namespace thunderhead::delivery

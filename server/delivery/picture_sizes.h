@@ -1,4 +1,4 @@
-// A picture in the sizes of all tiers, each made when it is first wanted. Safe from any thread.
+// A picture in the sizes of all tiers. Each size is made on its first use. Safe from any thread.
 #pragma once
 
 #include <array>

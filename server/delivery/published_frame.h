@@ -1,5 +1,5 @@
-// The newest frame of a session in all the forms that its viewers take: JPEG in several sizes,
-// pictures of video, and stills of higher quality, which come a little later. Safe from any thread.
+// The newest frame of a session in all forms that viewers take: JPEG in several sizes, video
+// pictures, and stills of higher quality, which come a little later. Safe from any thread.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@
 
 namespace thunderhead::delivery {
 
-// Makes a frame with its picture as JPEG in a tier (link_estimate.h); none if that fails, which it
-// tells by itself.
+// Makes a frame with its picture as JPEG in a tier (link_estimate.h). Returns none on failure,
+// which it reports itself.
 using EncodeFrame =
     std::function<std::optional<EncodedFrame>(const EncodedFrame& described, int tier)>;
 
-// Pictures of video by their tiers; null frames where there is none.
+// Video pictures by tier; the frame is null if a tier has no picture.
 using VideoPictures = std::array<VideoPicture, kTiers>;
 
-// A form of a frame.
+// An encoding and size of a frame.
 struct FrameForm {
   enum class Kind { kJpeg, kVideo, kStill };
 
@@ -34,25 +34,25 @@ struct FrameForm {
 
 class PublishedFrame {
  public:
-  // `described` has no picture. Without `encode` it is given for every tier. Where `still_follows`
-  // there will be stills, or word that there are none.
+  // `described` has no picture. Without `encode`, Jpeg returns `described` itself for every tier.
+  // If `still_follows`, a call of SetStill or NoStills must follow.
   PublishedFrame(EncodedFrame described, EncodeFrame encode, VideoPictures video = {},
                  bool still_follows = false);
 
   const EncodedFrame& Described() const { return described_; }
 
-  // Encoded when it is first wanted; null if that fails.
+  // Returns the frame as JPEG, encoded on its first use. Null if that fails.
   std::shared_ptr<const EncodedFrame> Jpeg(int tier);
 
   const VideoPicture& Video(int tier) const { return video_[static_cast<std::size_t>(tier)]; }
 
   void SetStill(int tier, EncodedFrame still);
   std::shared_ptr<const EncodedFrame> Still(int tier) const;
-  // There are no stills after all.
+  // Records that there will be no stills after all.
   void NoStills();
   bool StillFollows() const;
 
-  // No newer frame has come for a while, so it is worth waiting for in full.
+  // Records that no newer frame has come for a while, so that viewers get this one in full quality.
   void Rest();
   bool Rests() const;
 
@@ -62,7 +62,7 @@ class PublishedFrame {
   const VideoPictures video_;
   std::mutex encoding_;  // held while a JPEG is made
   std::array<std::shared_ptr<const EncodedFrame>, kTiers> jpegs_;
-  mutable std::mutex mutex_;  // of the rest
+  mutable std::mutex mutex_;  // guards the members below
   std::array<std::shared_ptr<const EncodedFrame>, kTiers> stills_;
   bool still_follows_;
   bool rests_;

@@ -1,5 +1,5 @@
-// The encoders of a session's streams of video, one a tier, which live while somebody watches.
-// Safe from any thread; pictures come one after another.
+// The encoders of a session's video streams, one per tier. They exist while there are viewers. Safe
+// from any thread; pictures are encoded one after another.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ namespace thunderhead::delivery {
 
 class VideoEncoders {
  public:
-  // Encodes the picture, whose size is that of the order's tier. It becomes a key picture, and the
-  // order says so, where another was asked for but its size is new. RESOURCE_EXHAUSTED if `memory`
-  // has no room for an encoder.
+  // Encodes the picture, which must have the size of the order's tier. If the size is new, it
+  // becomes a key picture even if another kind was ordered, and `order` is updated.
+  // RESOURCE_EXHAUSTED if `memory` has too little memory left for an encoder.
   absl::StatusOr<codec::Vp9Picture> Encode(const frame::RgbImage& picture, VideoOrder* order,
                                            base::MemoryBudget& memory);
 

@@ -29,7 +29,7 @@ void VideoStream::Ask(int tier, const Follower& follower, Time now) {
   place.Enter(tier);
   const std::uint64_t has = place.BaseOf(tier);
   const bool in_sequence = has != 0 && has == base_sequence_;
-  // It can still take the newest base picture, and then the next.
+  // The viewer can still take the newest base picture and then the next one.
   const bool catches_up = has != 0 && base_sequence_ > follower.last_sequence &&
                           (base_.needs == 0 || base_.needs == has);
   if (has != 0 && !in_sequence && !catches_up) place.Lost(now);

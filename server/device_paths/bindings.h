@@ -1,4 +1,4 @@
-// shaders/paths/bindings.glsl for C++.
+// Compiles shaders/paths/bindings.glsl as C++.
 #pragma once
 
 namespace thunderhead::shaders {

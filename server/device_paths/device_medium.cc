@@ -21,7 +21,7 @@ using reference::Optics;
 constexpr std::size_t kGroupsOfTexture = 4;
 constexpr std::size_t kMaxGroups = 8;
 
-// GroupOptics of paths/scattering.glsl.
+// The layout of GroupOptics in paths/scattering.glsl.
 struct GroupTexels {
   float albedo[3];
   float choice_albedo;
@@ -31,7 +31,8 @@ struct GroupTexels {
   std::int32_t colors;
 };
 
-// Values of both optics side by side; those of a medium without similar optics twice.
+// Returns the values of both optics interleaved. For a medium without similar optics, each value
+// appears twice.
 std::vector<float> Interleaved(const std::vector<float>& exact, const std::vector<float>& similar) {
   std::vector<float> both;
   both.reserve(2 * exact.size());
@@ -42,10 +43,11 @@ std::vector<float> Interleaved(const std::vector<float>& exact, const std::vecto
   return both;
 }
 
-// The tables of all phase functions one after another, the first after their common angles.
+// The tables of all phase functions one after another, preceded by their common angles.
 class Tables {
  public:
-  // Where the first of its colours begins; -1: it has none.
+  // Adds the tables of a phase function. Returns the index at which its first colour begins, or -1
+  // if it has no table.
   std::int32_t Add(const reference::SampledPhase& phase) {
     if (phase.Tables() == 0) return -1;
     const auto [found, is_new] = firsts_.emplace(&phase, static_cast<std::int32_t>(values_.size()));

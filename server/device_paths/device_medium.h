@@ -1,4 +1,4 @@
-// A reference medium on the device, as shaders/paths/ reads it.
+// A reference medium on the device, in the layout that shaders/paths/ reads.
 #pragma once
 
 #include <vector>
@@ -13,15 +13,15 @@ namespace thunderhead::device_paths {
 
 class DeviceMedium {
  public:
-  // Copies `medium`. UNIMPLEMENTED for one with periodic sides, constant cells, more than eight
-  // groups, or more cells along a side than the device's textures have; throws
-  // base::FailedAllocation where there is no room.
+  // Copies `medium` to the device. Returns UNIMPLEMENTED if it has periodic sides, constant cells,
+  // more than eight groups, or more cells along a side than the device's textures allow. Throws
+  // base::FailedAllocation if there is not enough memory.
   static absl::StatusOr<DeviceMedium> Of(const reference::Medium& medium);
 
-  // Of paths/trace.comp.
+  // Returns the defines of paths/trace.comp.
   gl::Defines Defines() const { return {{"GROUPS", groups_}}; }
   void Bind(const gl::Program& program) const;
-  // World coordinates to bricks from the first one's lower corner.
+  // Converts world coordinates to units of bricks from the first brick's lower corner.
   glm::dvec3 InBricks(const glm::dvec3& point_m) const {
     return (point_m - brick_low_m_) / brick_m_;
   }

@@ -22,13 +22,14 @@
 namespace thunderhead::device_paths {
 namespace {
 
-// The states of so many paths take at most 25 MB.
+// The states of this many paths take at most 25 MB.
 constexpr std::size_t kPathsOfChunk = 65536;
-// Of so many work groups in a pass, a guess until one is measured. GPUs run many at a time, so the
-// last paths of all, which few groups follow, must not tell what one of many costs.
+// The guessed cost of a pass with kGroupsOfBlock work groups, until one is measured. GPUs run many
+// groups at a time. The last paths need only a few groups, so their cost per group must not stand
+// for that of a full pass.
 constexpr gl::PieceCost kBlockOfPaths{"paths", 1e7};
 constexpr int kGroupsOfBlock = 64;
-// Paths that the host begins or ends at a time.
+// Number of paths that the host begins or ends per task.
 constexpr std::size_t kPathsOfTask = 256;
 
 // Runs work(i) for all i before `count` on `threads` threads.
@@ -40,7 +41,8 @@ void ForPaths(int threads, std::size_t count, const Work& work) {
                                });
 }
 
-// Keeps random numbers of the host apart from the device's, whose last word is a sample's number.
+// Separates the host's random streams from the device's, which use the sample's number as their
+// last word.
 constexpr std::uint64_t kHostStreams = std::uint64_t{1} << 63U;
 
 glm::uvec3 StreamOf(std::size_t ray, std::uint32_t sample, std::uint32_t kind,
@@ -59,12 +61,14 @@ struct DeviceTracer::Begun {
   reference::EyeSegment segment;
   std::uint32_t hero = 0;
   std::uint32_t air_hero = 0;
-  std::size_t first_state = 0;  // of what the device was asked: the shaded, the air, the path
+  // Index of this path's first state on the device. The states are those of the shaded light, of
+  // the air and of the path itself.
+  std::size_t first_state = 0;
 };
 
 absl::StatusOr<std::unique_ptr<DeviceTracer>> DeviceTracer::Create(
     const reference::Medium& medium, std::shared_ptr<gl::ProgramCache> programs) {
-  // Work of this thread but for copies to the device.
+  // Preparing the data is work of this thread, so the device is free for other contexts meanwhile.
   absl::StatusOr<DeviceMedium> on_device = absl::InternalError("not made");
   THUNDERHEAD_RETURN_IF_ERROR(programs->Pieces().OffTurn([&] {
     on_device = DeviceMedium::Of(medium);
@@ -134,7 +138,7 @@ absl::StatusOr<std::vector<glm::dvec3>> DeviceTracer::Trace(
       return static_cast<std::uint32_t>(path % of_ray);
     };
 
-    // Where the rays meet the medium's particles.
+    // Distances at which the rays meet the medium's particles.
     std::vector<PathState> met(count);
     std::vector<double> grounds_m(count);
     ForPaths(options.threads, count, [&](std::size_t i) {
@@ -147,7 +151,7 @@ absl::StatusOr<std::vector<glm::dvec3>> DeviceTracer::Trace(
     });
     THUNDERHEAD_RETURN_IF_ERROR(Run(surroundings, options, &met));
 
-    // The paths' first segments, and the states that go on from them.
+    // The paths' first segments, and the states that continue from them.
     std::vector<Begun> begun(count);
     ForPaths(options.threads, count, [&](std::size_t i) {
       reference::RandomStream random(options.seed, kHostStreams | ray_of(i), sample_of(i));
@@ -178,7 +182,7 @@ void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
                          std::vector<PathState>* states) const {
   begun->first_state = states->size();
   const reference::EyeSegment& segment = begun->segment;
-  // Kinds of streams beyond those of states, one for each that a path may need.
+  // The kinds of streams after those of states, one for each that a path may need.
   std::uint32_t kind = shaders::kPathMissed;
   for (const reference::ThroughMedium& light : segment.shaded) {
     states->push_back(StateOf(light.ray, shaders::kPathShines, StreamOf(ray, sample, ++kind)));
@@ -196,8 +200,8 @@ void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
   states->push_back(state);
 }
 
-// The sum of a path's first segment, of what its states have gathered, and of the sky where they
-// left.
+// Returns the sum of a path's first segment, of the light that its states have gathered, and of the
+// sky where they left.
 glm::dvec3 DeviceTracer::End(const reference::Surroundings& surroundings, const Begun& begun,
                              const std::vector<PathState>& states) {
   const auto light_of = [&](const PathState& state) {
@@ -231,9 +235,10 @@ absl::Status DeviceTracer::Run(const reference::Surroundings& surroundings,
   return programs_->Pieces().During([&]() -> absl::Status {
     const std::size_t bytes = states->size() * sizeof(PathState);
     if (states_.Bytes() < bytes) {
-      // A list is its length and the paths in it.
+      // A list holds its length and the paths in it.
       const std::size_t of_list = (states->size() + 1) * sizeof(std::uint32_t);
-      // The states last: their size tells that of the lists.
+      // The states are set last, because the size of states_ also implies that the lists are large
+      // enough.
       states_ = {};
       list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);
       next_list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);

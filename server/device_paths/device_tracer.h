@@ -1,7 +1,8 @@
-// The reference's paths on the device: what takes the time, the way through the medium, in compute
-// shaders (shaders/paths/trace.comp); sky, air and ground as the eye sees them by the reference's
-// own functions, on the processors. Estimates the same radiance as reference::TraceRays, with other
-// random numbers. Owns GL objects: use it on the context's thread.
+// The reference's paths on the device. Compute shaders (shaders/paths/trace.comp) trace the paths
+// through the medium, which takes most of the time. The reference's own functions compute sky, air
+// and ground as the eye sees them on the CPU. The result estimates the same radiance as
+// reference::TraceRays, with other random numbers. The tracer owns GL objects, so use it on the
+// context's thread.
 #pragma once
 
 #include <cstddef>
@@ -22,25 +23,26 @@
 
 namespace thunderhead::device_paths {
 
-// Returns whether the thread's device traces paths: only if THUNDERHEAD_PATHS is "device" in the
-// environment, because no GPU has been measured yet (docs/decisions/0057).
+// Returns whether the thread's device traces paths. It does only if THUNDERHEAD_PATHS is "device"
+// in the environment, because no GPU has been measured yet (docs/decisions/0057).
 bool TracesOnDevice();
 
 class DeviceTracer {
  public:
-  // Programs are linked and paths dispatched in pieces by `programs`. Fails as DeviceMedium::Of.
+  // Creates a tracer. `programs` links the programs and dispatches the paths in pieces. Fails as
+  // DeviceMedium::Of does.
   static absl::StatusOr<std::unique_ptr<DeviceTracer>> Create(
       const reference::Medium& medium, std::shared_ptr<gl::ProgramCache> programs);
 
-  // As reference::TraceRays: radiance along each of `rays`, the mean of its paths. The same on the
-  // same device however it is cut into pieces. Takes turns on the device itself. Fails if it cannot
-  // draw, or as `options.wanted` does.
+  // Returns the radiance along each of `rays`, the mean of its paths, like reference::TraceRays.
+  // The result on one device does not depend on how the work is cut into pieces. Takes and releases
+  // the device turn itself. Fails if it cannot draw, or as `options.wanted` does.
   absl::StatusOr<std::vector<glm::dvec3>> Trace(const reference::Surroundings& surroundings,
                                                 const std::vector<reference::Ray>& rays,
                                                 const reference::TraceRaysOptions& options);
 
  private:
-  // PathState of paths/trace.comp.
+  // The layout of PathState in paths/trace.comp.
   struct PathState {
     glm::vec4 place{0.0F};
     glm::vec4 direction{0.0F};
@@ -49,21 +51,21 @@ class DeviceTracer {
     glm::vec4 radiance{0.0F};
     glm::uvec4 counter{0U};
   };
-  struct Begun;  // what a ray's path has led to on the host
+  struct Begun;  // the result of a ray's path on the host
 
   DeviceTracer(DeviceMedium medium, const gl::Program* program,
                std::shared_ptr<gl::ProgramCache> programs);
 
   PathState StateOf(const reference::Ray& ray, int what, const glm::uvec3& stream) const;
-  // Adds what the device is asked for a path.
+  // Begins a path on the host and adds the states that the device must trace for it.
   void Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
              std::vector<PathState>* states) const;
-  // Radiance along its ray, from what the device has found.
+  // Returns the radiance along the path's ray from the results of the device.
   static glm::dvec3 End(const reference::Surroundings& surroundings, const Begun& begun,
                         const std::vector<PathState>& states);
   void BindSurroundings(const reference::Surroundings& surroundings,
                         const reference::TraceRaysOptions& options);
-  // Follows all paths to their ends.
+  // Traces all paths to their ends.
   absl::Status Run(const reference::Surroundings& surroundings,
                    const reference::TraceRaysOptions& options, std::vector<PathState>* states);
   absl::Status RunPasses(const reference::TraceRaysOptions& options, int count);
@@ -77,9 +79,9 @@ class DeviceTracer {
   gl::Buffer next_list_;
 };
 
-// Traces rays on the device where TracesOnDevice and a medium has room there, and else on the
-// processors. To be used, as what it makes, on the thread of the context of `programs`. Making one
-// fails if it cannot draw.
+// Returns a factory of tracers. It traces on the device if TracesOnDevice and the device has memory
+// for the medium, otherwise on the CPU. Use it and its tracers on the thread of the context of
+// `programs`. Making a tracer fails if the device cannot draw.
 reference::MakesTracer TracersFor(std::shared_ptr<gl::ProgramCache> programs);
 
 }  // namespace thunderhead::device_paths

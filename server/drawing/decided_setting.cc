@@ -6,7 +6,8 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Costs are learnt from drawn frames; after this many decisions they are known, or do not converge.
+// The costs are learnt from drawn frames. After this many decisions they are known or do not
+// converge.
 constexpr int kMaxDecidedAgain = 3;
 
 }  // namespace
@@ -33,8 +34,8 @@ absl::StatusOr<std::optional<session::NewestScene>> DecidedSetting::Decide(
       session::NewestScene{asked.revision, scene_, asked.changed_at, asked.usual_pause});
 }
 
-// True if `asked` wants the same accuracy as the previous scene, of the same storm by the same kind
-// of camera.
+// Returns true if `asked` has the same accuracy, the same storm and the same kind of camera as the
+// previous scene.
 bool DecidedSetting::ContinuesWith(const scene::Scene& asked) const {
   return scene_ != nullptr && scene_->accuracy == asked.accuracy &&
          scene_->storm_id == asked.storm_id && scene_->camera.index() == asked.camera.index();

@@ -1,5 +1,6 @@
-// The setting that a session's scene is drawn with: decided at once for the accuracy or speed that
-// it asks for, and again at rest with the measured costs and discretisation error. A plain value.
+// The setting with which a session's scene is drawn. It is decided at once for the requested
+// accuracy or speed, and again at rest with the measured costs and discretisation error. A plain
+// value.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +20,11 @@ class DecidedSetting {
   // `offers` must outlive it.
   explicit DecidedSetting(const accuracy::Offers& offers) : offers_(offers) {}
 
-  // The newest scene with its setting decided. The error is returned once; afterwards, none.
+  // Returns the newest scene with its setting decided. An error is returned once for each revision;
+  // afterwards the result is none.
   absl::StatusOr<std::optional<session::NewestScene>> Decide(const session::NewestScene& asked);
 
-  // True until Checked, for a setting that can be drawn with half the slices as well.
+  // Returns true until Checked is called, if the setting can also be drawn with half the slices.
   bool NeedsCheck() const;
   void Checked(double discretisation_error) {
     checked_ = true;
@@ -30,25 +32,27 @@ class DecidedSetting {
   }
   const std::optional<double>& discretisation_error() const { return discretisation_error_; }
 
-  // Decides again. True if another setting is better now, which happens at most a few times.
+  // Decides again. Returns true if another setting is better now, which happens a few times at
+  // most.
   bool DecideAgain(const session::NewestScene& asked);
 
-  // The whole picture was measured, its light traced to the end if it is traced. True if it surely
-  // has more error than the scene asks for and another setting is decided on; what was measured
-  // counts for later scenes as well that ask for the same of the same storm.
+  // Takes the measured error of the whole picture, whose light must be completely traced if it is
+  // traced. Returns true if the error is certainly larger than the scene allows and another setting
+  // was decided. The measurement also counts for later scenes of the same storm with the same
+  // requested accuracy.
   bool Measured(const accuracy::MeasuredError& error, const session::NewestScene& asked);
 
-  // True if the setting is final for this revision.
+  // Returns true if the setting is final for this revision.
   bool settled() const { return settled_; }
 
  private:
   bool ContinuesWith(const scene::Scene& asked) const;
-  // True if another setting is better now, which the scene has then.
+  // Returns true if another setting is better now, and gives it to the scene.
   bool DecideAnew(const session::NewestScene& asked);
 
   const accuracy::Offers& offers_;
   std::optional<std::uint64_t> revision_;
-  std::shared_ptr<const scene::Scene> scene_;  // null if that failed
+  std::shared_ptr<const scene::Scene> scene_;  // null if the decision failed
   accuracy::MeasuredErrors measured_;
   int decided_again_ = 0;
   int refuted_ = 0;

@@ -1,4 +1,4 @@
-// When to make the device ready again after it was lost, and when to give up. A plain value.
+// Decides when to reopen the device after it was lost, and when to give up. A plain value.
 #pragma once
 
 #include <chrono>
@@ -8,8 +8,8 @@
 namespace thunderhead::drawing {
 
 struct LossLimits {
-  // The first loss is mended at once, the next after this, and each further one within `window`
-  // after twice as long.
+  // After the first loss within `window` the device is reopened at once. After the second it is
+  // reopened after `first_pause`, and each further loss doubles the pause.
   std::chrono::milliseconds first_pause{1000};
   int max_losses = 6;
   std::chrono::milliseconds window = std::chrono::minutes(10);
@@ -21,13 +21,13 @@ class DeviceLosses {
 
   explicit DeviceLosses(const LossLimits& limits) : limits_(limits) {}
 
-  // The device was lost, or could not be made ready. When to try it; none to give up: a device that
-  // is lost again and again needs somebody else's help.
+  // Records that the device was lost or could not be opened. Returns when to open it, or none to
+  // give up: a device that is lost repeatedly needs an operator.
   std::optional<Time> Lost(Time now);
 
  private:
   const LossLimits limits_;
-  std::deque<Time> losses_;  // within the window
+  std::deque<Time> losses_;  // losses within the window
 };
 
 }  // namespace thunderhead::drawing

@@ -1,4 +1,4 @@
-// The measured error of a view at rest, and when to tell it. A plain value; the time is an
+// The measured error of a view at rest, and when to report it. A plain value; the time is an
 // argument.
 #pragma once
 
@@ -12,21 +12,21 @@ namespace thunderhead::drawing {
 
 class ErrorMeasuring {
  public:
-  // Starts again if the revision is a new one.
+  // Starts again if the revision is new.
   void BeginFor(std::uint64_t revision);
 
-  // Records progress. True if it should be told.
+  // Records progress. Returns true if a frame should report it.
   bool Measured(const accuracy::ErrorProgress& progress, session::Clock::time_point now);
-  // Records that a frame tells the error measured so far.
+  // Records that a frame reports the error measured so far.
   void Told(session::Clock::time_point now);
 
-  // Nothing is measured for the revision.
+  // Records that nothing is measured for the revision.
   void GiveUp();
 
   const std::optional<accuracy::MeasuredError>& error() const { return error_; }
-  // True if a frame is to tell it.
+  // Returns true if a frame must report the error.
   bool due() const { return due_; }
-  // True while nothing more is measured, unless the picture becomes a better one.
+  // Returns true while nothing further is measured, unless the picture improves.
   bool ended() const { return ended_; }
 
  private:

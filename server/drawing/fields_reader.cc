@@ -75,7 +75,7 @@ void FieldsReader::ServeFirst(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   FieldsRead read = Read(work);
   lock.lock();
-  // The owner was forgotten, or made another request, during the read.
+  // The request is obsolete if the owner was forgotten or made another request during the read.
   const auto asked = asked_.find(owner);
   if (asked == asked_.end() || asked->second.count != work.count) return;
   asked_.erase(asked);

@@ -1,6 +1,6 @@
-// Reads storms' fields for the render loop on a thread of its own, so that a long read delays only
-// the session that waits for it. Each owner (a session) has at most one pending read, which bounds
-// the queue.
+// Reads storms' fields for the render loop on its own thread, so that a long read delays only the
+// session that waits for it. Each owner (a session) has at most one pending read, which bounds the
+// queue.
 #pragma once
 
 #include <condition_variable>
@@ -23,7 +23,7 @@ namespace thunderhead::drawing {
 struct FieldsKey {
   std::string storm_id;
   int time_index = 0;
-  // volume::StormTime::version when it was asked for.
+  // volume::StormTime::version at the time of the request.
   std::uint64_t version = 0;
 
   bool operator==(const FieldsKey&) const = default;

@@ -14,11 +14,11 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A coarse frame is blurred by its smaller buffer anyway and is soon replaced; fewer bytes make it
+// A coarse frame is blurred by its smaller buffer anyway and is soon replaced. Fewer bytes make it
 // arrive sooner.
 constexpr int kCoarseJpegQuality = 75;
 
-// Of smaller tiers, for links that are slow.
+// JPEG quality of smaller tiers, for slow links.
 constexpr int kReducedJpegQuality = 70;
 
 using Pictures = delivery::PictureSizes<frame::RgbImage>;
@@ -32,7 +32,7 @@ void Count(const delivery::EncodedFrame& described, const scene::Scene& scene) {
   for (const StageTime& stage : described.stages) Count(stage);
 }
 
-// The frame without a picture.
+// Returns the frame without a picture.
 delivery::EncodedFrame Described(DrawnFrame& drawn, session::Clock::time_point now) {
   delivery::EncodedFrame frame;
   frame.scene_revision = drawn.scene_revision;
@@ -56,7 +56,7 @@ delivery::EncodedFrame Described(DrawnFrame& drawn, session::Clock::time_point n
   return frame;
 }
 
-// The frame with room for its picture in a tier.
+// Returns the frame with the size of a tier but without a picture.
 delivery::EncodedFrame At(const delivery::EncodedFrame& described, int tier,
                           const frame::RgbImage& picture) {
   delivery::EncodedFrame frame = described;
@@ -100,7 +100,8 @@ absl::StatusOr<delivery::EncodedVideo> WithVideo(const delivery::EncodedFrame& d
   return delivery::EncodedVideo{order, std::move(frame)};
 }
 
-// The pictures of video that viewers wait for. One that fails is left out: they get JPEG.
+// Returns the video pictures that viewers wait for. A picture that fails is left out; its viewers
+// get JPEG.
 std::vector<delivery::EncodedVideo> VideoOf(const delivery::EncodedFrame& described,
                                             session::Session& session, bool still_follows,
                                             Pictures& pictures, base::MemoryBudget& memory,
@@ -113,18 +114,18 @@ std::vector<delivery::EncodedVideo> VideoOf(const delivery::EncodedFrame& descri
     });
     if (encoded.ok()) {
       video.push_back(*std::move(encoded));
-    } else if (!absl::IsResourceExhausted(encoded.status())) {  // those are counted
+    } else if (!absl::IsResourceExhausted(encoded.status())) {  // counted elsewhere
       base::LogError(base::Annotate(encoded.status(), "encoding video"));
     }
   }
   return video;
 }
 
-// Encodes JPEG in a tier; an error is the frame's problem.
+// Returns a function that encodes a tier as JPEG. An error is published as the frame's problem.
 delivery::EncodeFrame JpegEncoder(const std::shared_ptr<session::Session>& session,
                                   const std::shared_ptr<Pictures>& pictures, int wanted_quality,
                                   const SerializeFrame& serialize) {
-  // The session keeps the frame, and the frame this.
+  // The session owns the frame, and the frame owns this function, so the pointer must be weak.
   return [weak_session = std::weak_ptr(session), pictures, wanted_quality, serialize](
              const delivery::EncodedFrame& described,
              int tier) -> std::optional<delivery::EncodedFrame> {
@@ -160,7 +161,7 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, base::M
     stills.Make(std::move(still));
     return absl::OkStatus();
   });
-  if (!made.ok()) session->hub().NoStills(sequence);  // the picture is there
+  if (!made.ok()) session->hub().NoStills(sequence);  // the picture is already published
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Encodes sessions' frames as JPEG and video on other threads than the render loop's, and publishes
-// them in the order in which they were drawn; stills of higher quality follow (still_maker.h). The
-// render loop submits at most two frames of a session at a time, which bounds the queue.
+// Encodes sessions' frames as JPEG and video on separate threads and publishes them in the order in
+// which they were drawn. Stills of higher quality follow (still_maker.h). The render loop submits
+// at most two frames of a session at a time, which bounds the queue.
 #pragma once
 
 #include <condition_variable>
@@ -27,10 +27,10 @@ struct DrawnFrame {
   std::uint64_t scene_revision = 0;
   scene::Scene scene;
   bool refined = false;
-  session::Clock::time_point rests_at;  // unless the scene changes before
+  session::Clock::time_point rests_at;  // unless the scene changes earlier
   DisplayFrame picture;
-  std::optional<frame::FineImage> fine;            // where viewers take stills of higher quality
-  std::optional<delivery::Refinement> refinement;  // of a picture by the reference
+  std::optional<frame::FineImage> fine;            // set if viewers take stills of higher quality
+  std::optional<delivery::Refinement> refinement;  // set for a picture by the reference
   scene::View view;
 };
 
@@ -38,8 +38,8 @@ class FrameEncoder {
  public:
   static constexpr int kMaxPending = 2;
 
-  // `on_encoded` is called on an encoding thread when a frame has been published. Encoders of video
-  // take their room in `memory`.
+  // `on_encoded` is called on an encoding thread when a frame has been published. Video encoders
+  // reserve their memory in `memory`.
   FrameEncoder(int threads, SerializeFrame serialize, std::shared_ptr<base::MemoryBudget> memory,
                std::function<void()> on_encoded, const base::TimeSource& time = base::SteadyTime());
   // Waits for the frames being encoded and drops the queued ones.
@@ -48,7 +48,7 @@ class FrameEncoder {
   FrameEncoder& operator=(const FrameEncoder&) = delete;
 
   void Encode(DrawnFrame frame);
-  // True if the session has the maximum number of pending frames.
+  // Returns true if the session has the maximum number of pending frames.
   bool IsFullFor(const session::Session& session);
 
  private:
@@ -64,8 +64,8 @@ class FrameEncoder {
   std::condition_variable changed_;
   bool stopping_ = false;
   std::deque<DrawnFrame> waiting_;
-  std::vector<const session::Session*>
-      encoding_;  // sessions with a frame being encoded: at most one each, which keeps the order
+  // Sessions with a frame being encoded. Each has at most one, which keeps the order.
+  std::vector<const session::Session*> encoding_;
   std::vector<std::thread> threads_;
 };
 

@@ -9,11 +9,11 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Steps between the coarsest and full quality, all by the same factor, so that small changes of the
-// estimate do not change the size of the buffers.
+// Number of steps between the coarsest and the full quality, all by the same factor. Steps keep
+// small changes of the estimate from changing the buffers' size.
 constexpr int kSteps = 8;
 
-// `quality` at one of the steps.
+// Returns `quality` at one of the steps.
 FrameQuality Step(int step, FrameQuality quality) {
   const double coarsest = quality.sparse ? kCoarsestSparse : kCoarsest;
   const double share = std::pow(coarsest, 1.0 - static_cast<double>(step) / kSteps);
@@ -22,16 +22,16 @@ FrameQuality Step(int step, FrameQuality quality) {
   return quality;
 }
 
-// Pictures are not made smaller than this for the sake of speed. Below so many pixels, their number
-// no longer decides what a frame costs.
+// Pictures are not made smaller than this for speed. Below this number of pixels, the number no
+// longer determines the cost of a frame.
 constexpr double kLeastOutputScale = 0.5;
 constexpr double kLeastPixels = 640.0 * 360.0;
-// During a gesture the size changes only if the wanted one differs by more than this factor: people
-// see each change, and video needs a key frame for it.
+// During a gesture the size changes only if the required size differs by more than this factor.
+// People see each change, and video needs a key frame for it.
 constexpr double kKept = 1.15;
 constexpr double kStep = 1.189207115;  // 2^(1/4)
 
-// Down to a step between 1 and the least for a picture of that many pixels.
+// Rounds the scale down to a step between 1 and the minimum for a picture of that many pixels.
 double OutputStep(double scale, double pixels) {
   constexpr double kRounding = 1e-6;
   const double least = std::clamp(std::sqrt(kLeastPixels / pixels), kLeastOutputScale, 1.0);
@@ -42,7 +42,7 @@ double OutputStep(double scale, double pixels) {
 
 bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
 
-// A finer frame is drawn whatever was drawn last.
+// A finer frame is drawn even if the last drawn frame shows the same scene.
 scene::Stage FirstDirtyAtRest(const std::optional<LastDrawn>& last_drawn,
                               const scene::Scene& scene) {
   return std::min(FirstDirty(last_drawn, scene), scene::Stage::kView);
@@ -76,8 +76,8 @@ Decision FramePlanner::Decide(const session::NewestScene& newest, session::Clock
 FramePlan FramePlanner::Coarse(const scene::Scene& scene,
                                const std::optional<LastDrawn>& last_drawn) const {
   scene::Stage first_dirty = FirstDirty(last_drawn, scene);
-  // Of a sparse picture the pixels that were chosen are not kept: one at rest takes too long for a
-  // moving tone.
+  // The chosen pixels of a sparse picture are not kept, so a changed tone redraws the picture. A
+  // sparse picture at rest takes too long for that, so a coarse one is drawn.
   if (last_drawn.has_value() && last_drawn->quality.sparse && drawn_.refined) {
     first_dirty = std::min(first_dirty, scene::Stage::kView);
   }
@@ -87,7 +87,7 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
     const bool large = output_scale < 1.0;
     FrameQuality moving;
     double speed_scale = 1.0;
-    // Within a gesture only where it is clear: a change of size is seen.
+    // Within a gesture the size changes only in clear cases because viewers see a change of size.
     const bool capped = !drawn_.refined && drawn_.quality.output_scale < 1.0;
     const double longest_ms = large ? targets_.coarse_ms : targets_.smooth_ms;
     if (whole_ms > (capped ? longest_ms / kKept : longest_ms)) {
@@ -98,7 +98,7 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
     const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms, moving);
     return {quality, IsFull(quality), speed_scale};
   }
-  // Only the tone changes: the linear frame is reused at its quality, at no cost.
+  // If only the tone changes, the linear frame is reused at its quality, at no cost.
   const bool as_refined_as_before = drawn_.refined && drawn_.quality == last_drawn->quality;
   return {last_drawn->quality, IsFull(last_drawn->quality) || as_refined_as_before, speed_scale_};
 }
@@ -112,7 +112,7 @@ double FramePlanner::SpeedScale(const scene::Scene& scene, const FrameQuality& m
   const double wanted = speed_scale_ * std::sqrt(targets_.whole_size_ms / ms);
   const bool gesture_begins = drawn_.refined;
   if (gesture_begins || wanted <= speed_scale_ / kKept) return OutputStep(wanted, pixels);
-  // A step at a time, as what is quick may have been so by chance.
+  // The scale grows one step at a time because one fast frame may be a coincidence.
   return wanted >= speed_scale_ * kKept ? OutputStep(kStep * speed_scale_, pixels) : speed_scale_;
 }
 
@@ -131,8 +131,8 @@ Decision FramePlanner::AtRest(const session::NewestScene& newest, session::Clock
   const double budget_ms =
       std::clamp(rested.count(), targets_.longest_ms, targets_.longest_at_rest_ms);
   const FrameQuality finest = Finest(*newest.scene, first_dirty, budget_ms);
-  // One that is no finer is drawn all the same if there is no refined frame yet: the estimate may
-  // be of a moment at which the machine was busy.
+  // If there is no refined frame yet, the frame is drawn even if it is no finer. The estimate may
+  // stem from a moment when the machine was busy.
   if (!IsFiner(finest) && drawn_.refined) return {};
   return {FramePlan{finest, true}, std::nullopt};
 }
@@ -180,11 +180,12 @@ bool FramePlanner::IsFiner(const FrameQuality& quality) const {
 
 FrameQuality FramePlanner::FinestSoon(const scene::Scene& scene, scene::Stage first_dirty) const {
   const FrameQuality rayed = Finest(scene, first_dirty, targets_.refined_ms);
-  // Larger pictures take the processors too long for each of their pixels.
+  // In larger pictures the work per pixel on the CPU takes too long.
   const bool sparse = accuracy::MovesSparsely(scene) && accuracy::MovingOutputScale(scene) >= 1.0;
   if (IsFull(rayed) || !sparse) return rayed;
   const FrameQuality fewer = Finest(scene, first_dirty, targets_.refined_ms, {.sparse = true});
-  // At the full scale it would say that none finer follows.
+  // A frame at the full scale would be taken for a full-quality one, and no finer frame would
+  // follow.
   return fewer.image_scale < 1.0 ? fewer : Step(kSteps - 1, fewer);
 }
 

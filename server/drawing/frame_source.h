@@ -1,6 +1,6 @@
-// The interface between the render loop and the engine that draws: a scene and a storm's fields in,
-// display pixels out. The GL engine implements it; service tests use a fake one. A FrameSource is
-// created, used and destroyed on one thread; there is one for each thread that draws.
+// The interface between the render loop and the drawing engine. Input is a scene and a storm's
+// fields; output is display pixels. The GL engine implements it; service tests use a fake one. A
+// FrameSource is created, used and destroyed on one thread; each drawing thread has its own.
 #pragma once
 
 #include <cstdint>
@@ -44,8 +44,8 @@ struct DisplayFrame {
   std::vector<StageTime> stages;
   delivery::Modelled modelled;
   std::optional<AccuracyReport> accuracy;
-  std::shared_ptr<const base::MemoryReservation> memory;  // that it counts in
-  std::optional<picture::LinearPicture> linear;  // before the tone map; where it was asked for
+  std::shared_ptr<const base::MemoryReservation> memory;  // memory of the pixels
+  std::optional<picture::LinearPicture> linear;  // before the tone map; set if it was requested
 };
 
 // A picture at full quality, and its difference from one with half the slices.
@@ -69,61 +69,63 @@ class FrameSource {
 
   virtual const DeviceInfo& Device() const = 0;
 
-  // In the order in which to offer them.
+  // Returns the techniques in the order in which to offer them.
   virtual std::vector<scene::TechniqueInfo> Techniques() const = 0;
 
-  // Null if no scene needs preparation.
+  // Returns null if no scene needs preparation.
   virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }
 
   // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ
-  // from the frame drawn before.
+  // from the previous frame.
   virtual absl::StatusOr<DisplayFrame> Draw(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       const FrameQuality& quality) = 0;
 
-  // Draws at full quality and with half the slices; a scene of one slice cannot be checked.
+  // Draws at full quality and with half the slices. A scene with one slice cannot be checked.
   virtual absl::StatusOr<CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
-  // Traces paths for a scene with traced light for about a tenth of a second, which improves what
-  // any of the sources made by one factory draws of it: now and then, and once `wanted_paths` are
-  // traced. RESOURCE_EXHAUSTED while light is traced for too many other scenes. `claim`, which may
-  // be null, is given a claim on what is traced for the scene.
+  // Traces paths for a scene with traced light for about a tenth of a second. The paths improve
+  // what all sources of the same factory draw of the scene: at intervals, and once `wanted_paths`
+  // are traced. RESOURCE_EXHAUSTED while light is traced for too many other scenes. `claim` may be
+  // null; otherwise it receives a claim on the light traced for the scene.
   virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       std::int64_t wanted_paths, accuracy::LightClaim* claim) = 0;
 
   // Measures the error of the scene's picture at full quality, with the light traced so far, for
-  // some tenths of a second more: traces paths, or draws the picture where its light has become
-  // much better. RESOURCE_EXHAUSTED while too many other scenes are measured.
+  // some tenths of a second. Traces paths, or draws the picture again if its light has become much
+  // better. RESOURCE_EXHAUSTED while too many other scenes are measured.
   virtual absl::StatusOr<accuracy::ErrorProgress> MeasureError(
       const scene::Scene& /*scene*/,
       const std::shared_ptr<const volume::HydrometeorFields>& /*fields*/) {
     return accuracy::ErrorProgress{.ended = true};
   }
 
-  // Tone maps a picture of `scene` computed elsewhere. Does not disturb the stages that Draw keeps.
+  // Tone maps a picture of `scene` computed elsewhere. Does not affect the stages that Draw keeps.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                             const scene::Scene& scene) = 0;
 
-  // The picture that Draw, DrawChecked or Tone has just given, with more than 8 bits; none if it
-  // cannot be had.
+  // Returns the picture that Draw, DrawChecked or Tone produced last, with more than 8 bits. An
+  // error if it is not available.
   virtual absl::StatusOr<frame::FineImage> Fine() {
     return absl::UnimplementedError("this frame source has pictures of 8 bits only");
   }
 
-  // The picture that Draw, DrawChecked or Tone has just given as light, with the storm's opacity.
+  // Returns the picture that Draw, DrawChecked or Tone produced last as linear radiance, with the
+  // storm's opacity.
   virtual absl::StatusOr<picture::LinearPicture> Linear() {
     return absl::UnimplementedError("this frame source has tone-mapped pictures only");
   }
 
-  // Gives back the memory of what it keeps for further pictures and has not drawn for so long.
+  // Frees cached memory that was not used for drawing for that long.
   virtual void FreeUnused(double /*unused_s*/) {}
 };
 
-// Makes a source on the thread that will use it. It takes `turn`, which must outlive it, for each
-// piece that it draws; null: it draws in one piece, and whoever calls it has the turn.
+// Creates a source on the thread that will use it. The source takes `turn`, which must outlive it,
+// for each piece that it draws. If `turn` is null, it draws in one piece and its caller must hold
+// the turn.
 using FrameSourceFactory =
     std::function<absl::StatusOr<std::unique_ptr<FrameSource>>(base::DeviceTurn* turn)>;
 

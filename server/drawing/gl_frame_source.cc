@@ -21,7 +21,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Shared by the sources of one device.
+// The state that the sources of one device share.
 struct Shared {
   std::shared_ptr<const renderers::TechniqueRegistry> registry =
       std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
@@ -33,7 +33,7 @@ std::shared_ptr<base::MemoryBudget> OrUnlimited(const std::shared_ptr<base::Memo
   return budget != nullptr ? budget : base::MemoryBudget::Unlimited();
 }
 
-// The budget that the GL objects of the thread's context count in.
+// Returns the budget for the GL objects of the thread's context.
 std::shared_ptr<base::MemoryBudget> BudgetOf(const GlSourceOptions& options) {
   return OrUnlimited(gl::DrawsInSoftware() ? options.memory : options.gpu_memory);
 }
@@ -110,7 +110,7 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<accuracy::ErrorProgress> MeasureError(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
-    // Where memory is short it is for pictures; the table's figure stays.
+    // If memory is scarce, pictures need it; the error from the table remains in use.
     if (!HasRoomToMeasure(scene, *fields)) return accuracy::ErrorProgress{.ended = true};
     const Correction correction = CorrectionOf(scene, fields);
     auto progress = base::Guarded([&] {
@@ -119,7 +119,8 @@ class GlFrameSource final : public FrameSource {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                        renderers_.Draw(measured, fields, Applied(correction, {})));
           auto picture = frame::PictureOf(*linear.radiance, programs_->Pieces());
-          // The light's correction draws the storm with a renderer of its own.
+          // If memory is scarce, unused renderers are freed, because the light's correction draws
+          // the storm with its own renderer.
           if (!HasRoomToMeasure(scene, *fields)) renderers_.DropUnusedFor(0.0);
           return picture;
         });
@@ -190,7 +191,7 @@ class GlFrameSource final : public FrameSource {
     return frame;
   }
 
-  // The picture drawn last, until anything else is drawn.
+  // The last drawn picture, until anything else is drawn.
   struct Drawn {
     const gl::Texture2D* linear;
     frame::ToneMapper* mapper;
@@ -201,11 +202,11 @@ class GlFrameSource final : public FrameSource {
     completed_.reset();
   }
 
-  // The device's fault since the last look, if any.
+  // Returns the device's fault since the last check, if any.
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
 
-  // Half of the budget is left beside the storm on the device, with its light and a picture of the
-  // scene's size: errors are measured where nobody is in want of memory.
+  // Returns true if half of the budget is still free after adding the storm with its light and a
+  // picture of the scene's size. Errors are measured only when memory is plentiful.
   bool HasRoomToMeasure(const scene::Scene& scene, const volume::HydrometeorFields& fields) const {
     constexpr std::size_t kBytesPerPixel = 64;
     constexpr std::size_t kBytesPerCell = 160;  // 154 of five fields
@@ -219,9 +220,9 @@ class GlFrameSource final : public FrameSource {
     return renderers_.DropOldest() || meters_.DropOldest() || correctors_.DropOldest();
   }
 
-  // The result of `draw`, or why the device could not. Where the device has no memory left it is
-  // given back all that is kept for other pictures, once. A renderer that did not get all its
-  // memory is of no use.
+  // Returns the result of `draw`, or the device's fault. If the device is out of memory, frees
+  // everything kept for other pictures and retries once, because a renderer without all its memory
+  // is useless.
   template <typename Draw>
   auto Watched(const Draw& draw) -> decltype(draw()) {
     ForgetDrawn();
@@ -234,7 +235,7 @@ class GlFrameSource final : public FrameSource {
     }
   }
 
-  // Of a scene's light by traced paths; null without any.
+  // The path-traced correction of a scene's light; null without traced paths.
   using Correction = accuracy::TracedLights::Found;
 
   static renderers::DrawQuality Applied(const Correction& correction,
@@ -279,19 +280,19 @@ class GlFrameSource final : public FrameSource {
   std::unique_ptr<gl::Context> context_;  // must outlive the GL objects below
   const Shared shared_;
   const std::unique_ptr<gl::DeviceWatch> watch_;
-  const gl::DeviceMemory memory_;  // of the GL objects below
+  const gl::DeviceMemory memory_;  // memory of the GL objects below
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::RendererPool renderers_{shared_.registry, programs_};
   accuracy::CorrectorPool correctors_{programs_, shared_.lights,
                                       OrUnlimited(shared_.options.memory)};
-  // Two at a time, as each holds its storm's fields and a copy of their extinction.
+  // Two at a time, because each holds its storm's fields and a copy of their extinction.
   accuracy::ErrorMeters meters_{OrUnlimited(shared_.options.memory), 2, 3.0, 5.0,
                                 device_paths::TracersFor(programs_)};
   frame::ToneMapper tone_mapper_{programs_};
-  frame::ToneMapper picture_tone_mapper_{programs_};  // of Tone, whose pictures have other sizes
-  gl::Texture2D picture_;                             // that Tone was given
+  frame::ToneMapper picture_tone_mapper_{programs_};  // for Tone, whose pictures have other sizes
+  gl::Texture2D picture_;                             // last picture given to Tone
   std::optional<Drawn> tone_mapped_;
-  std::optional<frame::FineImage> completed_;  // of a sparse picture
+  std::optional<frame::FineImage> completed_;  // picture completed from a sparse one
   DeviceInfo info_;
 };
 

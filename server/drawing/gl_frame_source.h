@@ -1,5 +1,5 @@
-// The engine that draws with OpenGL: a context, the scene renderers and the tone mapper behind
-// FrameSource.
+// The engine that draws with OpenGL: implements FrameSource with a context, the scene renderers and
+// the tone mapper.
 #pragma once
 
 #include <functional>
@@ -16,16 +16,15 @@
 namespace thunderhead::drawing {
 
 struct GlSourceOptions {
-  // The budget of GL objects: of the machine where its processors draw, else of the GPU. Null:
-  // nothing is refused.
+  // The budget of GL objects is `memory` if the CPU draws, else `gpu_memory`. Null means no limit.
   std::shared_ptr<base::MemoryBudget> memory;
   std::shared_ptr<base::MemoryBudget> gpu_memory;
   std::function<std::unique_ptr<gl::DeviceWatch>()> watch_device = gl::WatchDevice;
 };
 
-// Sources that draw on a device, each with a context of its own that it opens (gl::Context::Create)
-// on the calling thread, which must stay the one that draws. Light that one of them has traced is
-// shown by all.
+// Returns a factory of sources that draw on a device. Each source opens its own context
+// (gl::Context::Create) on the calling thread, which must remain the drawing thread. Light traced
+// by one source is shown by all of them.
 FrameSourceFactory GlFrameSources(const std::string& device, GlSourceOptions options = {});
 
 }  // namespace thunderhead::drawing

@@ -9,9 +9,9 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Display pixels, and as much again while they are encoded.
+// Display pixels, and the same amount again while they are encoded.
 constexpr std::size_t kBytesPerPixel = 6;
-// The same of a picture of 16 bits a channel, with its smaller sizes.
+// The same for a picture with 16 bits per channel and its smaller sizes.
 constexpr std::size_t kFineBytesPerPixel = 16;
 // Radiance, opacity and optical depths.
 constexpr std::size_t kLinearBytesPerPixel = 24;
@@ -88,7 +88,7 @@ class GuardedSource final : public FrameSource {
     return Reserved(kBytesPerPixel);
   }
 
-  // For the picture that was drawn last, or is about to be.
+  // Reserves memory for the picture that was drawn last or is about to be drawn.
   absl::StatusOr<std::shared_ptr<const base::MemoryReservation>> Reserved(
       std::size_t bytes_per_pixel) {
     THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -107,7 +107,7 @@ class GuardedSource final : public FrameSource {
   const SourceGuard guard_;
   const std::uint64_t generation_;
   std::size_t pixels_ = 0;
-  // Of the picture as light, which its caller has until the next is drawn.
+  // Memory of the linear picture, which its caller uses until the next picture is drawn.
   std::shared_ptr<const base::MemoryReservation> linear_memory_;
 };
 

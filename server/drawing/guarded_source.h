@@ -1,5 +1,5 @@
-// A frame source whose pictures count in the memory budget before they are drawn, and which says so
-// when its device is lost.
+// A frame source that reserves memory for each picture before drawing it, and reports the loss of
+// its device.
 #pragma once
 
 #include <atomic>
@@ -14,14 +14,15 @@ namespace thunderhead::drawing {
 
 struct SourceGuard {
   std::shared_ptr<base::MemoryBudget> memory;
-  // Counts the devices so far; a source belongs to the one at whose time it was made.
+  // Counts the devices opened so far. A source belongs to the device that was open when it was
+  // made.
   const std::atomic<std::uint64_t>& generation;
-  // Called on the thread that draws, whenever a picture failed with gl::DeviceLost, with the
-  // source's device.
+  // Called on the drawing thread, with the source's device, when a picture failed with
+  // gl::DeviceLost.
   std::function<void(std::uint64_t generation)> on_device_lost;
 };
 
-// Sources of `make`, guarded.
+// Returns a factory of guarded sources made by `make`.
 FrameSourceFactory GuardedSources(FrameSourceFactory make, SourceGuard guard);
 
 }  // namespace thunderhead::drawing

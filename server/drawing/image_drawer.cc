@@ -14,18 +14,20 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A picture expected within this time has a lane of its own.
+// A picture with at most this predicted time counts as quick and may use the lane for quick
+// pictures.
 constexpr double kQuick_ms = 5e3;
-// Pictures that hold their fields while their light is traced.
+// Maximum number of pictures that hold their fields while paths are traced for them.
 constexpr std::ptrdiff_t kMaxTraced = 8;
-// The time that a picture may take, over the longest that is predicted: predictions are not exact.
+// Ratio of the time limit of a picture to the longest allowed prediction, because predictions are
+// inexact.
 constexpr double kPatience = 2.0;
 
 bool AwaitsLight(const scene::Scene& scene) {
   return scene::TracedLightOf(scene.rendering.technique) == scene::TracedLight::kAwaited;
 }
 
-// True if paths are traced before it is drawn.
+// Returns true if paths are traced before the picture is drawn.
 bool IsTraced(const ImageJob& job) { return AwaitsLight(*job.decided) || job.error_seconds > 0.0; }
 
 absl::Status TooCostly(double predicted_s, double max_s) {
@@ -74,7 +76,7 @@ absl::Status ImageDrawer::Admit(ImageJob& job) const {
 
 void ImageDrawer::Begin(Lane& lane) {
   if (!lane.IsIdle()) return;
-  // Those that hold their fields come first.
+  // Pictures that already hold their fields come first.
   const auto ready = std::ranges::find_if(begun_, [&](const Begun& image) {
     const bool waits = image.phase == Phase::kToDraw || image.phase == Phase::kToRead;
     return waits && Suits(lane, image.quick);
@@ -101,7 +103,7 @@ void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
   if (image.phase == Phase::kToDraw) image.phase = Phase::kDrawing;
   if (image.phase == Phase::kToRead) image.phase = Phase::kReading;
   const bool draws = image.phase == Phase::kDrawing || !IsTraced(image.job);
-  // `begun_` keeps it until the lane is idle.
+  // The image stays in `begun_` until the lane is idle.
   lane.Begin(
       [&image, draws, preparation = preparation_](const absl::StatusOr<FrameSource*>& source) {
         image.status = base::Guarded([&]() -> absl::Status {
@@ -140,8 +142,8 @@ absl::Status ImageDrawer::Draw(Begun& image, FrameSource& source) {
   return image.job.encode(*image.frame);
 }
 
-// A picture does not fail with a device that was lost, nor for memory that only others' renderers
-// keep, which give it back by then. More often it may itself be the reason.
+// A picture is retried if the device was lost, or if memory is held by others' renderers, which
+// free it by then. After several failures the picture itself may be the cause.
 bool ImageDrawer::TriesAgain(Begun& image) {
   constexpr int kMaxAttempts = 3;
   const bool is_others = gl::IsDeviceLost(image.status) || absl::IsResourceExhausted(image.status);
@@ -182,7 +184,7 @@ void ImageDrawer::Trace(Begun& image) {
                             image.wanted_paths, true});
 }
 
-// Where no table knows the technique nobody is told an error.
+// If no table covers the technique, no error is reported, so none is measured.
 void ImageDrawer::Measure(Begun& image) {
   const bool tells = source_.Estimator().Report(*image.job.decided, {}, {}).has_value();
   if (image.job.error_seconds <= 0.0 || !tells) {

@@ -13,7 +13,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Time to draw a few pictures.
+// The time to draw a few pictures.
 constexpr std::chrono::seconds kQueueRetryAfter{5};
 
 absl::Status TooManyWaiting(const char* of_whom, std::size_t waiting) {
@@ -65,7 +65,7 @@ std::deque<ImageJob> ImageQueue::Extract(const std::function<bool(const ImageJob
 }
 
 void ImageQueue::Admit(const std::function<absl::Status(ImageJob&)>& admit) {
-  // New ones are at the end.
+  // Taking out the new jobs and appending the admitted ones keeps the order.
   std::deque<ImageJob> fresh =
       Extract([](const ImageJob& job) { return !job.decided.has_value(); });
   for (ImageJob& job : fresh) {
@@ -82,7 +82,7 @@ std::optional<ImageJob> ImageQueue::Take(const std::function<bool(const ImageJob
   const std::lock_guard lock(mutex_);
   std::map<std::string, std::deque<ImageJob>::iterator> first;  // by owner
   std::vector<std::string> owners;
-  auto found = waiting_.end();  // of those that give way
+  auto found = waiting_.end();  // first suitable background job
   for (auto job = waiting_.begin(); job != waiting_.end(); ++job) {
     if (!job->decided.has_value() || *job->cancelled) continue;
     if (!job->gives_way) owners.push_back(job->owner);

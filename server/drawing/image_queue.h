@@ -1,4 +1,4 @@
-// Pictures requested outside any session, waiting to be drawn. Safe from any thread.
+// A queue of pictures requested outside any session. Safe from any thread.
 #pragma once
 
 #include <atomic>
@@ -22,61 +22,62 @@ namespace thunderhead::drawing {
 
 // Progress of tracing the light of a picture.
 struct ImageProgress {
-  double share = 0.0;  // of the required paths, 0 to 1
+  double share = 0.0;  // traced share of the required paths, 0 to 1
   std::int64_t traced_paths = 0;
-  std::optional<double> estimated_error;  // of the picture with these paths
+  std::optional<double> estimated_error;  // estimated error of the picture with these paths
 };
 
-// Fields and camera of a picture.
+// The fields and the camera of a picture.
 struct ImageInput {
   std::shared_ptr<const volume::HydrometeorFields> fields;
-  scene::Camera camera;  // the scene's, framed by the fields
+  scene::Camera camera;  // the scene's camera, framed by the fields
 };
 
 // One picture at full quality, outside any session. Its fields are read when its turn comes, so
-// that waiting jobs take no memory.
+// that waiting jobs hold no fields in memory.
 struct ImageJob {
   scene::Scene scene;
-  std::function<absl::StatusOr<ImageInput>()> read;  // on a thread that may block
-  // Called with the picture on a thread that may block; may take its pixels away.
+  std::function<absl::StatusOr<ImageInput>()> read;  // called on a thread that may block
+  // Called with the picture on a thread that may block. It may move the pixels out.
   std::function<absl::Status(DisplayFrame&)> encode;
-  std::shared_ptr<const std::atomic<bool>> cancelled;  // true ends it at the next piece
-  // Called once, on the loop's thread or on the one that calls Add; must not block.
+  std::shared_ptr<const std::atomic<bool>> cancelled;  // true ends the job at its next piece
+  // Called once, on the loop's thread or on the thread that calls Add; must not block.
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
-  // If set, called on the loop's thread as more light is traced, and not after `done`; must not
+  // If set, called on the loop's thread when more light is traced, but never after `done`; must not
   // block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
-  // True if nobody waits for it: jobs that somebody waits for go first.
+  // Set for background jobs: no client waits for them, so jobs with a waiting client go first.
   bool gives_way = false;
-  bool linear = false;         // also wanted as linear radiance
-  double error_seconds = 0.0;  // of tracing, for its error to be measured
-  // Maximum time for reading, drawing and encoding it, not counting the time spent waiting for
-  // others, and the same since it was begun while it awaits light or its error; beyond it the job
-  // ends with `too_long`.
+  bool linear = false;         // the linear radiance is requested as well
+  double error_seconds = 0.0;  // maximum tracing time for measuring the picture's error
+  // Maximum time for reading, drawing and encoding, without the time spent waiting for other work.
+  // The same limit applies to the time since the start while the job waits for light or its error.
+  // A job that exceeds it ends with `too_long`.
   double max_work_ms = 1e15;
   absl::Status too_long = absl::OkStatus();
-  // Who asked for it; all owners get equal shares of the drawing time. Empty: counts for nobody.
+  // The identity that requested it. All owners get equal shares of the drawing time. Empty: no
+  // owner.
   std::string owner = "";
-  // Set on admission: the scene with its decided setting, and the predicted time to draw it.
+  // Set on admission: the scene with its decided setting, and its predicted drawing time.
   std::optional<scene::Scene> decided = std::nullopt;
   double predicted_ms = 0.0;
 };
 
 class ImageQueue {
  public:
-  // Limits of the pictures that may wait: in all, and of one owner.
+  // The maximum numbers of waiting pictures: in all, and of one owner.
   ImageQueue(std::size_t max_waiting, std::size_t max_waiting_each)
       : max_waiting_(max_waiting), max_waiting_each_(max_waiting_each) {}
 
-  // False if the job was refused, as the queue is full, the owner has as many in it as one may, or
-  // the server is stopping; `done` was called with the reason.
+  // Adds a job. Returns false after calling `done` with the reason if the queue is full, the owner
+  // has too many jobs in it, or the server is stopping.
   bool Add(ImageJob job);
-  // Asks `admit` of each job that came since the last call; those refused are done with the reason.
+  // Calls `admit` for each job added since the last call. Refused jobs are done with its error.
   void Admit(const std::function<absl::Status(ImageJob&)>& admit);
-  // Takes the first admitted job for which `suits` is true, of the owner who has had the least
-  // drawing time; one that gives way only if there is no other.
+  // Takes the first admitted job for which `suits` is true, of the owner that has used the least
+  // drawing time. Takes a background job only if there is no other.
   std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
-  // Charges the owner the time that drawing has taken, instead of the predicted one.
+  // Charges the owner for the actual drawing time instead of the predicted time.
   void Drew(const ImageJob& job, double milliseconds);
   // Drops cancelled jobs and calls their `done`.
   void DropCancelled();
@@ -86,7 +87,7 @@ class ImageQueue {
 
  private:
   std::size_t WaitingOf(const std::string& owner) const;  // needs mutex_
-  // Takes the jobs for which `is` is true.
+  // Removes and returns the jobs for which `is` is true.
   std::deque<ImageJob> Extract(const std::function<bool(const ImageJob&)>& is);
 
   const std::size_t max_waiting_;

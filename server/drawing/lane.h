@@ -1,6 +1,6 @@
-// A thread that draws beside the render loop, with a frame source of its own, so that a picture
-// that takes long can stop between two pieces while others are drawn. It uses the device only in
-// turns that the render loop gives it, and the processors at a low priority.
+// A thread that draws alongside the render loop with its own frame source. A long drawing can stop
+// between two pieces while others are drawn. The lane uses the device only in turns that the render
+// loop gives it, and the CPU at a low priority.
 #pragma once
 
 #include <atomic>
@@ -22,23 +22,23 @@ namespace thunderhead::drawing {
 
 class Lane {
  public:
-  // Called on the lane's thread with its source, which is made for the first work, or why there is
-  // none.
+  // Called on the lane's thread with its source, which is created for the first work, or with the
+  // error of creating it.
   using Work = std::function<void(const absl::StatusOr<FrameSource*>& source)>;
 
   struct Limits {
-    // True ends the work at its next piece, or where it traces within some rays
-    // (base::DeviceTurn::Wanted), with CANCELLED. So do the others.
+    // If set to true, ends the work with CANCELLED at its next piece. Tracing ends within some rays
+    // (base::DeviceTurn::Wanted). The limits below take effect at the same points.
     std::shared_ptr<const std::atomic<bool>> cancelled = nullptr;
-    // Of all its pieces; more ends it with RESOURCE_EXHAUSTED.
+    // Maximum drawing time of all its pieces. Beyond it, the work ends with RESOURCE_EXHAUSTED.
     double max_ms = 1e15;
-    // Of all that it does, without waiting for its turn; more ends it with `too_long` at its next
-    // piece.
+    // Maximum time of all its work, without waiting for turns. Beyond it, the work ends with
+    // `too_long` at its next piece.
     double max_work_ms = 1e15;
     absl::Status too_long = absl::OkStatus();
   };
 
-  // `on_change` is called on the lane's thread when it wants a turn or has done its work.
+  // `on_change` is called on the lane's thread when the lane needs a turn or has finished its work.
   Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
        const base::TimeSource& time = base::SteadyTime());
   // Ends the work at its next piece.
@@ -46,29 +46,29 @@ class Lane {
   Lane(const Lane&) = delete;
   Lane& operator=(const Lane&) = delete;
 
-  // No work.
+  // Returns true if the lane has no work.
   bool IsIdle() const;
-  // The lane must be idle.
+  // Starts the work. The lane must be idle.
   void Begin(Work work, Limits limits);
 
-  // Gives back what its source keeps and has not drawn for so long, if the lane is idle; returns
-  // when that is done.
+  // If the lane is idle, frees what its source keeps and has not used for that long. Returns when
+  // that is done.
   void FreeUnused(double unused_s);
-  // Ends the work, at its next piece, with gl::DeviceLost, and makes another source for what comes
-  // then: the device was lost.
+  // Replaces the source after the device was lost. Ends the current work with gl::DeviceLost at its
+  // next piece; later work gets another source.
   void RenewSource();
 
-  // True if its work waits to draw a piece. Lets work that was cancelled go on to its end.
+  // Returns true if the work waits to draw a piece. Also lets cancelled work run to its end.
   bool WantsTurn();
-  // Returns when the piece is drawn, with the milliseconds that it took.
+  // Lets the lane draw a piece. Returns when it is drawn, with the milliseconds that it took.
   double GiveTurn();
 
-  // For how long it has worked, on the processor or in a call that hangs, since its last piece; 0
-  // while it has no work or waits for its turn. Safe from any thread.
+  // Returns how long the lane has worked since its last piece, on the CPU or in a call that hangs.
+  // Returns 0 while it has no work or waits for its turn. Safe from any thread.
   double StalledSeconds() const;
 
  private:
-  // The source's turn at the device.
+  // Turns on the device for the lane's source.
   class Turn final : public base::DeviceTurn {
    public:
     explicit Turn(Lane& lane) : lane_(lane) {}
@@ -86,9 +86,9 @@ class Lane {
   absl::Status Take();
   void GiveBack();
   absl::Status Wanted() const;
-  // Why the work is to end; OK if it is not. With the mutex held.
+  // Returns why the work must end; OK if it must not. Needs mutex_.
   absl::Status Ended() const;
-  // Of this work, without waiting. With the mutex held.
+  // Returns the working time of the current work without waiting. Needs mutex_.
   double WorkedMs() const;
   void Run();
 
@@ -102,16 +102,16 @@ class Lane {
   std::condition_variable changed_;
   bool stopping_ = false;
   bool source_is_lost_ = false;
-  std::optional<double> frees_;  // what is unused for this many seconds
+  std::optional<double> frees_;  // request to free what was unused for this many seconds
   Work work_;
   Limits limits_;
   bool busy_ = false;
   Device device_ = Device::kUnused;
-  double used_ms_ = 0.0;    // by this work
-  double waited_ms_ = 0.0;  // by this work, for turns
+  double used_ms_ = 0.0;    // device time of the current work
+  double waited_ms_ = 0.0;  // time that the current work waited for turns
   Time begun_at_;
-  Time wanted_at_;    // the turn
-  Time progress_at_;  // last
+  Time wanted_at_;    // start of the wait for a turn
+  Time progress_at_;  // last piece or wait
   std::thread thread_;
 };
 

@@ -14,7 +14,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Others keep busy what the step needs.
+// Returns true if the failure is temporary: other work uses what the step needs.
 bool MayPass(const absl::Status& failed) {
   return absl::IsResourceExhausted(failed) && !base::IsTooLargeForMemory(failed);
 }
@@ -55,7 +55,8 @@ void LightTracer::TakeOutcome(session::Clock::time_point now) {
   wanted.news = std::move(outcome->progress);
 }
 
-// A picture needs no more paths and seconds than it asked for; a session says when it has enough.
+// Returns true if the request is complete. A picture ends at its requested paths and seconds; a
+// session calls Stop when it has enough.
 bool LightTracer::Ends(const Request& request, const TracedStep& step) {
   const bool traces = step.light.has_value() && step.light->steps > 0 &&
                       !(request.claims && step.light->HasTraced(request.wanted_paths));
@@ -79,9 +80,9 @@ LightTracer::Progress LightTracer::Trace(FrameSource& source, const Request& req
     step.error = *std::move(error);
     return step;
   }
-  // The device was lost, or the server ends.
+  // The device was lost, or the server is stopping.
   if (absl::IsUnavailable(error.status())) return error.status();
-  // The picture is as good without; what others keep busy is tried again with the next step.
+  // The picture is as good without its error. A temporary failure is retried with the next step.
   if (MayPass(error.status())) {
     if (!request.light) return error.status();
     return step;

@@ -1,6 +1,6 @@
-// Traces light for whoever rests, and measures the error of their pictures: of sessions, and of
-// pictures that await it, a step for one after another in a lane of its own. Used by the render
-// loop's thread only.
+// Traces light for views at rest and measures the errors of their pictures. The views are sessions,
+// and pictures that wait for light. It takes one step for each in turn, in a separate lane. Used by
+// the render loop's thread only.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@
 
 namespace thunderhead::drawing {
 
-// Delay before tracing is tried again when light is traced for too many other scenes.
+// Delay before tracing is tried again while light is traced for too many other scenes.
 inline constexpr session::Clock::duration kTraceAgainAfter = std::chrono::milliseconds(500);
 
 // The progress of a step.
@@ -40,20 +40,21 @@ class LightTracer {
     std::shared_ptr<const scene::Scene> scene;
     std::shared_ptr<const volume::HydrometeorFields> fields;
     std::int64_t wanted_paths = 0;
-    bool claims = false;  // while it traces, the light is not given up for another's
-    bool light = true;    // it is traced
-    bool error = false;   // it is measured
-    double wanted_error_s = std::numeric_limits<double>::infinity();  // of tracing for the error
+    bool claims = false;  // while it traces, its light is not evicted for another scene
+    bool light = true;    // trace light
+    bool error = false;   // measure the error
+    double wanted_error_s = std::numeric_limits<double>::infinity();  // tracing time for the error
   };
-  // Traces until Stop, or until a step fails or finds nothing to trace and nothing to measure.
+  // Traces until Stop is called, or until a step fails or finds nothing to trace or measure.
   void Want(const std::string& who, Request request);
   void Stop(const std::string& who);
-  // The progress since the last call, or why there is none.
+  // Takes the progress since the last call, or the error of a failed step.
   std::optional<absl::StatusOr<TracedStep>> TakeNews(const std::string& who);
 
-  // Takes what a step has brought since the last call.
+  // Takes the outcome of a finished step.
   void TakeOutcome(session::Clock::time_point now);
-  // Begins the next step if none is under way. Returns when to call again without a wake-up.
+  // Begins the next step if none is running. Returns when to call again if no wake-up comes
+  // earlier.
   std::optional<session::Clock::time_point> Begin(session::Clock::time_point now);
 
  private:
@@ -68,7 +69,7 @@ class LightTracer {
   };
   static Progress Trace(FrameSource& source, const Request& request, accuracy::LightClaim* claim);
   static bool Ends(const Request& request, const TracedStep& step);
-  // The outcome of a step, by the lane's thread.
+  // The outcome of a step, written by the lane's thread.
   struct Outcome {
     std::mutex mutex;
     std::optional<Progress> progress;
@@ -77,7 +78,7 @@ class LightTracer {
 
   Lane& lane_;
   std::map<std::string, Wanted> wanted_;
-  std::string tracing_for_;  // or the last
+  std::string tracing_for_;  // who the current or last step is for
   std::shared_ptr<const scene::Scene> tracing_scene_;
   std::shared_ptr<Outcome> outcome_;
 };

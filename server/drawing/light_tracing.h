@@ -12,23 +12,23 @@ namespace thunderhead::drawing {
 
 class LightTracing {
  public:
-  // Starts again if the revision is a new one.
+  // Starts again if the revision is new.
   void BeginFor(std::uint64_t revision, session::Clock::time_point now);
 
-  // Records progress. True if the picture should be drawn again with it.
+  // Records progress. Returns true if the picture should be drawn again with it.
   bool Traced(const accuracy::LightProgress& progress, session::Clock::time_point now);
   // Records that the picture was drawn with the light traced so far.
   void Shown(session::Clock::time_point now);
 
-  // Ends tracing for the revision; the picture is to be drawn once more if it is due.
+  // Ends tracing for the revision. If `due`, the picture must be drawn once more.
   void GiveUp(bool due) {
     ended_ = true;
     due_ = due;
   }
 
-  // True if the picture is to be drawn again.
+  // Returns true if the picture must be drawn again.
   bool due() const { return due_; }
-  // True if no more light is traced for the revision.
+  // Returns true if no further light is traced for the revision.
   bool ended() const { return ended_; }
 
  private:

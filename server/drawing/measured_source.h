@@ -1,5 +1,5 @@
-// A frame source with the cost model and error estimator: reports every frame to the cost model
-// once and adds the estimate of its error. Used by the render loop's thread only.
+// A frame source with the cost model and the error estimator. It reports each frame to the cost
+// model once and adds the estimate of the frame's error. Used by the render loop's thread only.
 #pragma once
 
 #include <memory>
@@ -25,23 +25,24 @@ class MeasuredSource {
   MeasuredSource(const MeasuredSource&) = delete;
   MeasuredSource& operator=(const MeasuredSource&) = delete;
 
-  // Draws a frame of `view`: a session's id, or the empty string for pictures outside any session.
-  // `evidence` is what is known of its error; the paths that corrected its light are added.
+  // Draws a frame of `view`, which is a session's id, or empty for pictures outside any session.
+  // `evidence` holds what is known of its error. The number of paths that corrected its light is
+  // added.
   absl::StatusOr<DisplayFrame> Draw(const std::string& view, const scene::Scene& scene,
                                     const Fields& fields, const FrameQuality& quality,
                                     const accuracy::Evidence& evidence = {});
   absl::StatusOr<CheckedFrame> DrawChecked(const std::string& view, const scene::Scene& scene,
                                            const Fields& fields);
-  // As FrameSource's.
+  // Forward to the FrameSource.
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
   absl::StatusOr<frame::FineImage> Fine();
   void FreeUnused(double unused_s) { source_->FreeUnused(unused_s); }
 
-  // Another source from now on, as the device was lost; null: nothing is drawn until there is one.
+  // Replaces the source after the device was lost. While the source is null, nothing can be drawn.
   void Replace(std::unique_ptr<FrameSource> source);
 
-  // Reports a frame that the source of that lane drew.
+  // Reports a frame that was drawn by the source of that lane.
   void Learn(std::string_view lane, const std::string& view, const scene::Scene& scene,
              const FrameQuality& quality, const accuracy::Evidence& evidence, DisplayFrame* frame);
 
@@ -63,7 +64,7 @@ class MeasuredSource {
   accuracy::MachineCosts costs_{tables_};
   const accuracy::Offers offers_{tables_, costs_};
   const accuracy::Estimator estimator_{tables_, costs_};
-  std::optional<LastDrawn> last_drawn_;  // none after a failure
+  std::optional<LastDrawn> last_drawn_;  // none after a failed drawing
 };
 
 }  // namespace thunderhead::drawing

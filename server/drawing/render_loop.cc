@@ -26,16 +26,17 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Behind whoever waits, but before tracing, which could use all processors for ever.
+// Priority below work that a viewer waits for, but above tracing, which could use all CPU cores
+// indefinitely.
 constexpr int kImageNiceness = 5;
-// Frames at rest, behind those that move.
+// Priority of frames at rest, below frames of changing scenes.
 constexpr int kSessionNiceness = 1;
 
-// Those who draw beside the render loop.
+// The lanes that draw alongside the render loop.
 class Lanes {
  public:
   struct Entry {
-    std::string name;  // before every session's
+    std::string name;  // sorts before all session ids
     TurnClass turn_class;
     Lane& lane;
   };
@@ -50,7 +51,8 @@ class Lanes {
              {"/quick images", TurnClass::kBatch, quick_images},
              {"/images", TurnClass::kBatch, images}} {}
 
-  // Those that compete for turns themselves; sessions' does for the session whose frame it draws.
+  // Returns the lanes that compete for turns themselves. The sessions' lane is not among them: it
+  // competes as the session whose frame it draws.
   const std::vector<Entry>& All() const { return all_; }
 
   Lane sessions;
@@ -62,7 +64,7 @@ class Lanes {
   const std::vector<Entry> all_;
 };
 
-// A scene looked at again within this time should find it as it was.
+// A scene that a viewer returns to within this time should still be cached.
 constexpr double kUnused_s = 3.0;
 constexpr std::chrono::milliseconds kBetweenAnswers{500};
 
@@ -71,8 +73,8 @@ RenderLoopOptions WithBudget(RenderLoopOptions options) {
   return options;
 }
 
-// Asks for what is unused to be given back when a budget has no room. Sees the budgets' refusals as
-// long as it lives.
+// Frees unused memory when a budget has refused a reservation. Watches the budgets' refusals during
+// its lifetime.
 class MemoryPressure {
  public:
   using Budgets = std::vector<std::shared_ptr<base::MemoryBudget>>;
@@ -195,7 +197,7 @@ void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl
                                       .generation = device_generation_,
                                       .on_device_lost = [this](std::uint64_t generation) {
                                         if (generation != device_generation_)
-                                          return;  // that is known
+                                          return;  // the loss is already known
                                         device_lost_ = true;
                                         wake_.Notify();
                                       }});
@@ -239,7 +241,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       drawer.DeviceReplaced();
     }
     pressure.Answer([&] {
-      // The sessions' lane draws what the render loop can draw as well: its copy goes first.
+      // The render loop can draw what the sessions' lane draws, so the lane's copy is freed first.
       if (session_lane.IsFree() && session_lane.Last().has_value()) {
         session_lane.Forget();
         lanes->sessions.FreeUnused(0.0);
@@ -264,7 +266,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       contenders.push_back({session->id(), session->IsOwnView(), wish.work});
       look_again_at = Earlier(look_again_at, wish.look_again_at);
     }
-    // After the sessions, some of whom may just have asked for light.
+    // This follows the sessions because they may just have requested light.
     look_again_at = Earlier(look_again_at, light_tracer.Begin(time_.Now()));
     for (const Lanes::Entry& entry : lanes->All()) {
       contenders.push_back({entry.name, false, std::nullopt});
@@ -306,7 +308,7 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
       if (options_.on_device_given_up) options_.on_device_given_up(why);
       return false;
     }
-    // Objects of a lost context are deleted before there is another.
+    // Objects of a lost context must be deleted before a new context is created.
     ++device_generation_;
     for (Lane* lane : lanes) lane->RenewSource();
     source.Replace(nullptr);
@@ -315,7 +317,7 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
     turn_began_ = 0;
     while (!stopping_ && time_.Now() < *at) wake_.Wait(*at, time_);
     if (stopping_) return false;
-    // A driver may hang here as well as in a picture.
+    // A driver can hang here just as it can while drawing.
     BeginTurn();
     auto made = make_source(nullptr);
     if (made.ok()) {

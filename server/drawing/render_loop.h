@@ -1,7 +1,7 @@
-// The render loop: one thread draws the sessions that have a viewer ready for a frame, and gives
-// turns on the device to them and to its lanes, in which their long frames and single pictures are
-// drawn and light is traced. Reads, encoding and the reference run on other threads. Knows no GL
-// (only the frame sources do) and no messages.
+// The render loop. One thread draws the sessions that have a viewer ready for a frame. It also
+// gives turns on the device to its lanes, which draw long frames and single pictures and trace
+// light. Reads, encoding and the reference run on other threads. Knows no GL (only the frame
+// sources do) and no message formats.
 #pragma once
 
 #include <atomic>
@@ -39,31 +39,34 @@ class MeasuredSource;
 struct RenderLoopOptions {
   PlannerTargets targets;
   std::size_t max_waiting_images = 1000;
-  std::size_t max_waiting_images_each = 600;  // of one owner
+  std::size_t max_waiting_images_each = 600;  // for one owner
   ImageLimits image_limits;
   int encoder_threads = 1;
-  // Lanes, and the threads that they start, run at a lower priority than frames that move. False
-  // where no session is served: other programs of the machine would come before them.
+  // If true, lanes and their threads run at a lower priority than frames of changing scenes. Set it
+  // to false if no session is served; otherwise other programs on the machine would slow the lanes
+  // down.
   bool lanes_yield = true;
   SerializeFrame serialize_frame = [](const delivery::EncodedFrame&) { return ""; };
-  // Sessions that show the reference; each takes some hundred bytes a pixel and the medium.
+  // Maximum number of sessions that show the reference. Each uses some hundred bytes per pixel,
+  // plus the storm fields.
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
-  // The budget of pictures; null: nothing is refused.
+  // The memory budget of pictures; null means no limit.
   std::shared_ptr<base::MemoryBudget> memory;
-  // The budget of GL objects; where it refuses, sources give back what they keep.
+  // The budgets of GL objects. If one refuses a reservation, sources free what they cache.
   std::vector<std::shared_ptr<base::MemoryBudget>> device_memory;
   LossLimits losses;
-  // Called once, on the loop's thread, when the device was lost too often: nothing is drawn any
-  // more.
+  // Called once, on the loop's thread, when the device was lost too often. Nothing is drawn after
+  // that.
   std::function<void(const absl::Status& why)> on_device_given_up;
 };
 
 class RenderLoop {
  public:
-  // Returns once the frame source is created, or its error. `sessions` must call `wake.Notify()`
-  // when there is work; the store, the sessions and the signal must outlive the loop.
+  // Returns when the frame source has been created, or its error. `sessions` must call
+  // `wake.Notify()` when there is work. The store, the sessions and the signal must outlive the
+  // loop.
   static absl::StatusOr<std::unique_ptr<RenderLoop>> Start(const RenderLoopOptions& options,
                                                            storm_store::StormStore& store,
                                                            session::Sessions& sessions,
@@ -74,25 +77,26 @@ class RenderLoop {
   RenderLoop& operator=(const RenderLoop&) = delete;
 
   const DeviceInfo& Device() const { return device_; }
-  // In the order in which to offer them.
+  // Returns the techniques in the order in which to offer them.
   const std::vector<scene::TechniqueInfo>& Techniques() const { return techniques_; }
 
   void RenderImage(ImageJob job);
 
-  // Since the turn of drawing under way began, or a lost device is being opened again; 0 while the
-  // loop waits for work.
+  // Returns how long the current drawing turn or the reopening of a lost device has taken. 0 while
+  // the loop waits for work.
   double TurnSeconds() const;
 
-  // The device was lost, and is not ready again.
+  // Returns true while the device is lost and not yet reopened.
   bool IsRecovering() const { return recovering_; }
   std::size_t WaitingImages() const { return images_.Waiting(); }
 
-  // For how long a lane has worked without drawing a piece or waiting for one; 0 while none works.
+  // Returns how long a lane has worked without drawing a piece or waiting for one. 0 while no lane
+  // works.
   double StalledSeconds() const;
 
-  // Stops drawing after the current frame or piece. Returns at once.
+  // Requests a stop after the current frame or piece. Returns at once.
   void RequestStop();
-  // Waits for the current frame or piece, refuses the waiting pictures and ends every thread.
+  // Waits for the current frame or piece, refuses the waiting pictures and ends all threads.
   void Stop();
 
  private:
@@ -102,9 +106,10 @@ class RenderLoop {
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
   void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
   void NoteLanes(std::vector<const Lane*> lanes);
-  // From now on TurnSeconds counts.
+  // Starts the time that TurnSeconds returns.
   void BeginTurn() { turn_began_ = time_.Now().time_since_epoch().count(); }
-  // After a loss of the device: returns when there is one again, false if it is given up.
+  // Reopens the device after a loss. Returns true when it is open again, false if the loop gives
+  // up.
   bool Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
                MeasuredSource& source);
 
@@ -112,19 +117,19 @@ class RenderLoop {
   storm_store::StormStore& store_;
   session::Sessions& sessions_;
   base::WakeSignal& wake_;
-  const base::TimeSource& time_;  // the sessions'
+  const base::TimeSource& time_;  // the sessions' time source
   DeviceInfo device_;             // like the next two, constant after Start
   std::vector<scene::TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};
-  std::atomic<std::uint64_t> device_generation_{0};  // devices made ready so far
+  std::atomic<std::uint64_t> device_generation_{0};  // number of devices opened so far
   std::atomic<bool> device_lost_{false};
   std::atomic<bool> recovering_{false};
   DeviceLosses losses_;
-  std::atomic<session::Clock::rep> turn_began_{0};  // since the clock's epoch; 0: none is under way
+  std::atomic<session::Clock::rep> turn_began_{0};  // since the clock's epoch; 0: no turn
 
   mutable std::mutex lanes_mutex_;
-  std::vector<const Lane*> lanes_;  // that exist
+  std::vector<const Lane*> lanes_;  // existing lanes
 
   ImageQueue images_;
   std::unique_ptr<FieldsReader> reader_;

@@ -17,14 +17,15 @@
 namespace thunderhead::drawing {
 namespace {
 
-// How often a scene is drawn again when the device is lost while drawing it: the scene itself may
+// How often a scene is drawn again after the device was lost while drawing it. The scene itself may
 // be the cause.
 constexpr int kMaxLosses = 2;
 
-// Time of a frame that is also drawn with half the slices, over that of the frame alone.
+// Ratio of the time of a frame that is also drawn with half the slices to the time of the frame
+// alone.
 constexpr double kCheckedShare = 1.5;
 
-// The scene that the work draws; null if it draws none.
+// Returns the scene that the work draws; null if it draws none.
 const session::NewestScene* ShownBy(const SessionWork& work) {
   if (const auto* draw = std::get_if<DrawFrame>(&work)) return &draw->shown;
   if (const auto* check = std::get_if<CheckSlices>(&work)) return &check->shown;
@@ -45,10 +46,10 @@ std::shared_ptr<session::Session> FindById(
   return found != sessions.end() && (*found)->id() == id ? *found : nullptr;
 }
 
-// Somebody must close something first.
+// The owner must close a session or view first.
 constexpr std::chrono::seconds kShareRetry{10};
 
-// That a frame holds until there is a newer one.
+// Returns the bytes that a frame holds until there is a newer one.
 std::size_t BytesOf(const DisplayFrame& picture) {
   return picture.memory == nullptr ? 0 : picture.memory->Bytes();
 }
@@ -73,7 +74,7 @@ absl::Status ReferencesBeyondShare(std::size_t references) {
        .retry_after = kShareRetry});
 }
 
-// The time at which to try again, if the failure is temporary.
+// Returns the time at which to try again if the failure is temporary.
 std::optional<session::Clock::time_point> TryAgainAt(const absl::Status& why,
                                                      session::Clock::time_point now) {
   const auto after = base::DetailsOf(why).retry_after;
@@ -112,7 +113,7 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
                       std::holds_alternative<ShowLight>(turn.kept.work);
   if (!traces) light_tracer_.Stop(session->id());
   Wish wish = std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
-  // Need may have replaced the work, as by showing light that has been traced meanwhile.
+  // Need may have replaced the work, for example by showing light traced meanwhile.
   turn.kept.in_lane = turn.kept.in_lane || IsLong(turn, turn.kept.work);
   if (turn.kept.in_lane && !lane_.IsFree()) wish.work.reset();
   return wish;
@@ -121,8 +122,8 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
 std::optional<SessionDrawer::Wish> SessionDrawer::LookInLane(const Turn& turn,
                                                              const session::NewestScene& newest) {
   if (!in_lane_.has_value() || !lane_.IsFor(turn.session->id())) return std::nullopt;
-  // Only refinement is cancelled by a change: an interactive frame is soon ready, and if each
-  // change ended it, none would be shown.
+  // A change cancels only refinement. An interactive frame is soon ready. If each change cancelled
+  // it, no frame would be shown.
   if (in_lane_->turn_class == TurnClass::kRefining &&
       in_lane_->newest_revision != newest.revision) {
     lane_.Cancel();
@@ -163,7 +164,7 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<session::Session
   alone_ = std::ranges::count_if(
                sessions, [](const auto& session) { return session->hub().HasViewers(); }) <= 1;
   if (!in_lane_.has_value()) return;
-  lane_.WantsTurn();  // lets a cancelled drawing end
+  lane_.WantsTurn();  // lets cancelled drawing end
   const std::string session_id = lane_.For();
   auto picture = lane_.Take();
   if (!picture.has_value()) return;
@@ -172,13 +173,13 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<session::Session
   const auto kept = kept_.find(session_id);
   if (session == nullptr || kept == kept_.end() || absl::IsCancelled(picture->status())) return;
   const Turn turn{session, kept->second};
-  // The session may show a newer scene by now, or have given up its fields.
+  // The session may show a newer scene by now, or have released its fields.
   const std::uint64_t revision = drawn.shown.revision;
   if (revision < turn.kept.view.shown_revision()) return;
   if (picture->ok()) {
     if (turn.kept.fields.Fields() == drawn.fields) Show(turn, drawn, **std::move(picture));
   } else if (absl::IsResourceExhausted(picture->status()) && turn.kept.whole_revision != revision) {
-    // Memory does not suffice for a second copy: the render loop's source draws it instead.
+    // Memory does not suffice for a second copy, so the render loop's source draws it instead.
     turn.kept.whole_revision = revision;
   } else {
     Fail(turn, revision, picture->status());
@@ -232,7 +233,7 @@ void SessionDrawer::ReleaseUnwatched(
       if (lane_.IsFor(kept->first)) lane_.Cancel();
     }
     if (session != nullptr) {
-      ++kept;  // keeps the session's view, as it may be watched again
+      ++kept;  // keeps the session's view because viewers may come back
     } else {
       source_.Forget(kept->first);
       kept = kept_.erase(kept);
@@ -242,7 +243,7 @@ void SessionDrawer::ReleaseUnwatched(
 
 void SessionDrawer::YieldMemory(const std::vector<std::shared_ptr<session::Session>>& sessions) {
   for (const auto& session : sessions) {
-    // Whoever comes back has it drawn again.
+    // The frame is drawn again when a viewer comes back.
     if (session->hub().DropUnwatched()) kept_.erase(session->id());
   }
   const session::Clock::time_point now = time_.Now();
@@ -291,8 +292,8 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const session::NewestScene& 
   const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
   turn.kept.in_lane = false;
   if (draw != nullptr && moves) {
-    // If only the tone changes of a picture that was drawn at rest, the lane's source still has its
-    // light.
+    // If only the tone of a picture drawn at rest changes, the lane's source still has its
+    // radiance.
     const scene::Scene& scene = *draw->shown.scene;
     const auto has_light = [&](const std::optional<LastDrawn>& last) {
       return FirstDirty(last, scene) >= scene::Stage::kTone;
@@ -317,7 +318,7 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   const session::NewestScene* shown = ShownBy(work);
   if (shown == nullptr || shown->revision == turn.kept.whole_revision) return false;
   if (turn.kept.view.state() == SessionView::State::kMoving) return false;
-  // Without room, others would have to give up memory for a second copy.
+  // If memory is short, a second copy in the lane would make other sessions free memory.
   if (!lane_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
       std::min(FirstDirty(IfDrawnFrom(turn.kept.fields.Fields(), source_.Last()), *shown->scene),
@@ -372,7 +373,7 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work
                            absl::StrCat("traced light: ", news->status().message())};
   }
   const ShowLight show{work.shown};
-  turn.kept.work = show;  // ends the life of `work`
+  turn.kept.work = show;  // `work` is invalid from here on
   return Need(turn, show);
 }
 
@@ -471,7 +472,7 @@ bool SessionDrawer::WantsFine(session::Session& session, int width_px) {
 std::optional<frame::FineImage> SessionDrawer::FineOf(const Turn& turn,
                                                       const DisplayFrame& picture) {
   if (!WantsFine(*turn.session, picture.width_px)) return std::nullopt;
-  // On an error its viewers get JPEG.
+  // On an error the viewers get JPEG.
   auto fine = source_.Fine();
   return fine.ok() ? std::optional(*std::move(fine)) : std::nullopt;
 }
@@ -523,7 +524,7 @@ absl::Status SessionDrawer::CheckReference(const Turn& turn) const {
 }
 
 void SessionDrawer::Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why) {
-  // Not a failure yet: the same work is due again once the device has been reopened.
+  // This is no failure yet: the same work is due again when the device has been reopened.
   const bool lost = gl::IsDeviceLost(why);
   if (lost && ++turn.kept.losses <= kMaxLosses) return;
   turn.kept.view.Failed(revision, lost ? std::nullopt : TryAgainAt(why, time_.Now()));

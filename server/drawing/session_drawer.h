@@ -1,6 +1,6 @@
-// Does the work that sessions' views ask for, one item in each turn: draws with the source and
-// passes frames to the encoder; what would take long is drawn in pieces, in a lane. What needs no
-// device it does while it looks for work. Used by the render loop's thread only.
+// Does the work of sessions' views, one item per turn: draws with the source and passes frames to
+// the encoder. Long frames are drawn in pieces, in a lane. Work that needs no device is done while
+// looking for work. Used by the render loop's thread only.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +26,10 @@ namespace thunderhead::drawing {
 
 class SessionDrawer {
  public:
-  // How much the sessions and own views of one identity may hold.
+  // Limits of what the sessions and own views of one identity may hold.
   struct Share {
-    std::size_t picture_bytes = std::numeric_limits<std::size_t>::max();  // their newest frames
-    std::size_t references = std::numeric_limits<std::size_t>::max();     // that are traced
+    std::size_t picture_bytes = std::numeric_limits<std::size_t>::max();  // of their newest frames
+    std::size_t references = std::numeric_limits<std::size_t>::max();     // traced references
   };
 
   // All references must outlive it.
@@ -39,26 +39,25 @@ class SessionDrawer {
                 const base::TimeSource& time = base::SteadyTime());
 
   struct Wish {
-    std::optional<TurnClass> work;  // to be done in a turn
+    std::optional<TurnClass> work;  // work that needs a turn
     std::optional<session::Clock::time_point> look_again_at;
   };
   Wish Look(const std::shared_ptr<session::Session>& session);
-  // Does the work that Look found for the session last: whole, or a piece of it.
+  // Does the work that the last Look found for the session: all of it, or one piece.
   void TakeTurn(const std::shared_ptr<session::Session>& session);
-  // Sends the frame that was drawn in the lane, if one is ready. `sessions` are in order of id.
+  // Sends the frame that was drawn in the lane, if one is ready. `sessions` must be ordered by id.
   void TakeDrawn(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
-  // Memory is short: frames of `sessions` that nobody watches are given up; sessions whose final
-  // pictures are shown leave their fields to others, and have
-  // no light traced, for a while; those whose pictures become finer do so too where a session has
-  // been refused the fields for its own.
+  // Frees memory when it is scarce. Drops frames of `sessions` without viewers. Sessions that show
+  // their final pictures release their fields and trace no light for a while. If the fields of a
+  // session were refused, sessions whose pictures are still being refined do so too.
   void YieldMemory(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
-  // The device is another: what the sources kept is gone.
+  // Forgets what the sources kept, because the device was replaced.
   void DeviceReplaced() { lane_.Forget(); }
 
-  // Frees the resources of sessions without viewers and of those not in `sessions`, which are in
-  // order of id.
+  // Frees the resources of sessions without viewers and of sessions that are not in `sessions`,
+  // which must be ordered by id.
   void ReleaseUnwatched(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
  private:
@@ -68,51 +67,53 @@ class SessionDrawer {
     SessionView view;
     SessionFields fields;
     SessionReference reference;
-    SessionWork work = WaitUntil{};  // found last
-    // Of that work, if it is to show traced light.
+    SessionWork work = WaitUntil{};  // last work found
+    // The part that ShowLight could not show.
     std::optional<scene::NotShown> not_shown = std::nullopt;
-    bool in_lane = false;            // where that work is to be done
-    bool gives_turn = false;         // to its frame that is in the lane; there is no other work
-    int losses = 0;                  // of the device, since the last frame
-    bool tells = false;              // the last frame said its error
-    bool refused = false;            // memory for its fields, since the last frame
+    bool in_lane = false;     // the work must be done in the lane
+    bool gives_turn = false;  // the next turn goes to its frame in the lane
+    int losses = 0;           // device losses since the last frame
+    bool tells = false;       // the last frame reported its error
+    bool refused = false;     // its fields were refused for lack of memory since the last frame
     std::uint64_t device_bytes = 0;  // of the last frame
-    std::size_t picture_bytes = 0;   // of it as well
-    // The revision whose frame at rest had no room in the lane; it is drawn whole.
+    std::size_t picture_bytes = 0;   // of the last frame
+    // The revision whose frame at rest did not fit into memory in the lane. The render loop draws
+    // it whole.
     std::uint64_t whole_revision = 0;
   };
-  // The frame in the lane.
+  // The frame that is drawn in the lane.
   struct InLane {
     SessionWork work;
     session::NewestScene shown;
     std::shared_ptr<const volume::HydrometeorFields> fields;
-    std::uint64_t newest_revision = 0;  // of the session when it was begun
+    std::uint64_t newest_revision = 0;  // newest revision of the session at the start
     TurnClass turn_class = TurnClass::kRefining;
   };
-  // A session whose turn it is.
+  // A session, and its state, whose turn it is.
   struct Turn {
     const std::shared_ptr<session::Session>& session;
     Kept& kept;
   };
 
   Kept& KeptFor(const session::Session& session);
-  // RESOURCE_EXHAUSTED if its owner's other frames leave no room for this picture, or other
-  // references none for one.
+  // RESOURCE_EXHAUSTED if the owner's other frames leave no memory for this picture, or if the
+  // owner already has the maximum number of references.
   absl::Status CheckPicture(const Turn& turn, const DisplayFrame& picture) const;
   absl::Status CheckReference(const Turn& turn) const;
   void TakeRead(const Turn& turn);
   SessionWork NextWork(const Turn& turn, const session::NewestScene& newest);
-  // The wish of a session whose frame is in the lane; none if that is not what it shows any more.
+  // Returns the wish of a session whose frame is in the lane. None if the session no longer shows
+  // that scene.
   std::optional<Wish> LookInLane(const Turn& turn, const session::NewestScene& newest);
-  // The work with the stages that the lane's source can reuse, where it can reuse more, or where it
-  // is too long for the render loop's own turn.
+  // Returns the work, placed in the lane if it is too long for the render loop or if the lane's
+  // source can reuse more stages. In the lane, the work is planned again for those stages.
   SessionWork Placed(const Turn& turn, const session::NewestScene& newest,
                      const std::optional<session::NewestScene>& drawable, SessionWork work);
   bool IsLong(const Turn& turn, const SessionWork& work) const;
   void BeginInLane(const Turn& turn, const SessionWork& work);
   void Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture);
 
-  // Each tells in which class the work is, if it needs a turn.
+  // Each returns the turn class of the work, if it needs a turn.
   Wish Need(const Turn& turn, const WaitUntil& work);
   Wish Need(const Turn& turn, const DrawFrame& work);
   Wish Need(const Turn& turn, const CheckSlices& work);
@@ -127,14 +128,14 @@ class SessionDrawer {
   void Do(const Turn& turn, const ShowLight& work);
   void Do(const Turn& turn, const ShowReference& work);
 
-  // The picture once more, with the light traced so far; it says what is missing.
+  // Draws the picture again with the light traced so far, and reports what it does not show.
   absl::Status DrawLight(const Turn& turn, const session::NewestScene& shown);
   void SendLight(const Turn& turn, const session::NewestScene& shown, DisplayFrame picture,
                  std::optional<frame::FineImage> fine);
   absl::Status ShowTraced(const Turn& turn, const session::NewestScene& shown);
-  // True if a refined frame of that width is wanted with more bits.
+  // Returns true if viewers need a refined frame of that width with more than 8 bits.
   static bool WantsFine(session::Session& session, int width_px);
-  // The same of the picture that the render loop's source has just given, if it is wanted.
+  // Returns the last picture of the render loop's source with more than 8 bits, if viewers need it.
   std::optional<frame::FineImage> FineOf(const Turn& turn, const DisplayFrame& picture);
   void Send(const Turn& turn, const session::NewestScene& shown, bool refined, DisplayFrame picture,
             std::optional<frame::FineImage> fine,
@@ -151,7 +152,7 @@ class SessionDrawer {
   const Share share_;
   const base::TimeSource& time_;
   bool alone_ = true;                 // at most one session is watched
-  std::optional<InLane> in_lane_;     // the lane's, until its outcome was taken
+  std::optional<InLane> in_lane_;     // set until its outcome was taken
   std::map<std::string, Kept> kept_;  // by session id
 };
 

@@ -5,7 +5,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A preparation that took less was already done.
+// Shorter preparations are not reported, because they were already done.
 constexpr double kMinReported_ms = 1.0;
 
 FieldsKey KeyOf(const storm_store::StormStore& store, const scene::Scene& scene) {
@@ -50,7 +50,7 @@ std::optional<session::NewestScene> SessionFields::Drawable(const session::Newes
       cached != nullptr && IsPrepared(*newest.scene, cached)) {
     fields_ = std::move(cached);
     key_ = key;
-    // Requested all the same, because the store prefetches the next times in Get.
+    // The fields are requested even so, because the store prefetches the next times in Get.
     reading_for_.reset();
     access_.reader.Ask(id_, key);
     return newest;

@@ -1,5 +1,6 @@
-// The fields of the storm that a session shows: requested, read on another thread than the render
-// loop's, and prefetched while a series plays. Used by the render loop's thread only. Knows no GL.
+// The fields of the storm that a session shows. They are requested, read on another thread than the
+// render loop's, and prefetched while a series plays. Used by the render loop's thread only. Knows
+// no GL.
 #pragma once
 
 #include <cstdint>
@@ -36,25 +37,25 @@ class SessionFields {
   // Takes the result of a finished read; returns its error, if any.
   std::optional<Unreadable> TakeRead();
 
-  // The scene to draw now: the newest if its fields are available. Otherwise requests them, and
-  // returns the scene whose fields have just been read, if it is newer than `shown_revision`, so
-  // that a time slider that moves faster than the disk still shows something.
+  // Returns the scene to draw now: the newest if its fields are available. Otherwise requests the
+  // fields and returns the scene whose fields have just been read, if it is newer than
+  // `shown_revision`. So a time slider that moves faster than the disk still shows something.
   std::optional<session::NewestScene> Drawable(const session::NewestScene& newest,
                                                std::uint64_t shown_revision);
 
-  // Fields that could not be read are asked for again.
+  // Requests unreadable fields again.
   void TryAgain() { unreadable_revision_ = 0; }
 
-  // The fields of the scene that Drawable returned last.
+  // Returns the fields of the scene that Drawable returned last.
   const std::shared_ptr<const volume::HydrometeorFields>& Fields() const { return fields_; }
 
-  // Called after `shown` was drawn: if a series is playing step by step, prefetches the next time.
+  // Prefetches the next time if a series is playing step by step. Call it after `shown` was drawn.
   void PrepareNext(const scene::Scene& shown);
 
   // Adds the time that reading and preparing took since the last frame.
   void AddStages(std::vector<StageTime>* stages);
 
-  // Leaves the fields to those who need room; Drawable asks for them again.
+  // Releases the fields for others that need memory. Drawable requests them again.
   void Yield();
 
   // Frees the memory and drops pending requests.
@@ -64,8 +65,8 @@ class SessionFields {
   bool IsPrepared(const scene::Scene& scene,
                   const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
   void Ask(const session::NewestScene& newest);
-  // The key of the newest scene's fields. It is looked up once for each revision: when a file is
-  // replaced, the sessions that show it get a new revision.
+  // Returns the key of the newest scene's fields. It is looked up once for each revision: when a
+  // file is replaced, the sessions that show it get a new revision.
   const FieldsKey& KeyFor(const session::NewestScene& newest);
 
   const FieldsAccess& access_;

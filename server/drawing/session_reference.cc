@@ -20,7 +20,7 @@ void SessionReference::EndUnless(const scene::Scene& newest) {
 absl::StatusOr<bool> SessionReference::Trace(
     const session::NewestScene& shown,
     const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  // Of a file that another has taken the place of.
+  // The fields change when the storm's file is replaced.
   if (traced_.has_value() && traced_->fields.lock() != fields) {
     tracer_.Stop(id_);
     traced_.reset();

@@ -1,5 +1,5 @@
-// A session's picture by the reference, refined by the tracer on another thread. Used by the render
-// loop's thread only. Knows no GL.
+// A session's picture by the reference, which the tracer refines on another thread. Used by the
+// render loop's thread only. Knows no GL.
 #pragma once
 
 #include <memory>
@@ -19,19 +19,20 @@ class SessionReference {
   SessionReference(TruthTracer& tracer, std::string session_id)
       : tracer_(tracer), id_(std::move(session_id)) {}
 
-  // Ends tracing if the newest scene shows something else.
+  // Stops tracing if the newest scene shows something else.
   void EndUnless(const scene::Scene& newest);
 
-  // Begins tracing `shown`, or takes the newest picture of it. True if there is one to be shown.
+  // Begins tracing `shown`, or takes its newest picture. Returns true if there is a picture to
+  // show.
   absl::StatusOr<bool> Trace(const session::NewestScene& shown,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
-  // The picture to be shown.
+  // Returns the picture to show.
   const TruthPicture& TakePicture() {
     traced_->is_new = false;
     return *traced_->picture;
   }
 
-  // True while something is traced, or was and is shown.
+  // Returns true while the reference is traced, or its picture is kept.
   bool IsTraced() const { return traced_.has_value(); }
 
   void Release();
@@ -40,7 +41,7 @@ class SessionReference {
   struct Traced {
     session::NewestScene shown;
     std::weak_ptr<const volume::HydrometeorFields> fields;
-    std::shared_ptr<const TruthPicture> picture;  // none yet
+    std::shared_ptr<const TruthPicture> picture;  // null until there is one
     bool is_new = false;
   };
 

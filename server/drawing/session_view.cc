@@ -7,7 +7,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Long enough for those who wait for memory to see their pictures.
+// Long enough for the sessions that wait for memory to show their pictures.
 constexpr std::chrono::seconds kYieldedFor{30};
 
 }  // namespace
@@ -43,7 +43,7 @@ SessionView::State SessionView::EnteredFor(
   const scene::Technique& technique = scene.scene->rendering.technique;
   if (scene::IsTraced(technique)) return State::kReference;
   if (scene.revision > planner_.revision()) return State::kMoving;
-  // Its fields were released while nobody watched.
+  // The fields were released while there were no viewers.
   return state_ == State::kWaitingForFields ? State::kRefining : state_;
 }
 
@@ -97,12 +97,12 @@ std::optional<SessionWork> SessionView::Check(const Now& now) {
 SessionWork SessionView::DrawAnew(const Now& now) {
   planner_.Again();
   state_ = State::kRefining;
-  return WaitUntil{now.time};  // with a new decision
+  return WaitUntil{now.time};  // the next call decides the setting again
 }
 
 bool SessionView::IsRefuted(const Now& now) {
   if (!error_.error().has_value() || now.shown.revision != now.newest.revision) return false;
-  // Light that is being traced lowers the error.
+  // The error still falls while light is being traced.
   const bool traced =
       scene::TracedLightOf(now.shown.scene->rendering.technique) != scene::TracedLight::kOff;
   if (traced && !(light_.ended() && error_.ended())) return false;
@@ -123,7 +123,7 @@ std::optional<SessionWork> SessionView::Trace(const Now& now) {
     if (light_.due() || error_.due()) return ShowLight{now.shown};
     const bool light =
         scene::TracedLightOf(technique) != scene::TracedLight::kOff && !light_.ended();
-    // Measured again as the light becomes better.
+    // The error is measured again as the light improves.
     if (light || !error_.ended()) return TraceLight{now.shown, light, true};
   }
   state_ = State::kSettled;
@@ -151,7 +151,7 @@ bool SessionView::LightTraced(const accuracy::LightProgress& progress,
 
 void SessionView::Failed(std::uint64_t revision,
                          std::optional<session::Clock::time_point> try_again_at) {
-  if (revision < planner_.revision()) return;  // a newer one is shown
+  if (revision < planner_.revision()) return;  // a newer revision is shown
   planner_.GiveUp(revision);
   failed_revision_ = revision;
   try_again_at_ = try_again_at;

@@ -18,7 +18,7 @@
 
 namespace thunderhead::drawing {
 
-// There is no work before `time`, unless something changes.
+// Nothing to do before `time`, unless something changes.
 struct WaitUntil {
   std::optional<session::Clock::time_point> time;
 };
@@ -26,21 +26,21 @@ struct DrawFrame {
   session::NewestScene shown;
   FramePlan plan;
 };
-// Draw at full quality and with half the slices.
+// Draws at full quality and with half the slices.
 struct CheckSlices {
   session::NewestScene shown;
 };
-// Have light traced, the picture's error measured, or both.
+// Requests light to be traced, the picture's error to be measured, or both.
 struct TraceLight {
   session::NewestScene shown;
   bool light = true;
   bool error = false;
 };
-// Draw with the light traced so far, and tell the error measured so far.
+// Draws with the light traced so far and reports the error measured so far.
 struct ShowLight {
   session::NewestScene shown;
 };
-// Show the reference's picture so far.
+// Shows the reference's current picture.
 struct ShowReference {
   session::NewestScene shown;
 };
@@ -52,74 +52,74 @@ class SessionView {
   enum class State {
     kWaitingForFields,
     kMoving,        // the scene is newer than the shown frame: draw at once, possibly coarse
-    kRefining,      // the scene rests and a finer frame follows
+    kRefining,      // the scene is at rest and a finer frame follows
     kChecking,      // drawn at full quality: measure error and time, and decide the setting again
-    kTracingLight,  // correct the light, and measure the error, by more and more paths
+    kTracingLight,  // correct the light and measure the error with more and more paths
     kReference,     // refined by the tracer
     kSettled,       // final, or until the scene has rested for as long as a finer frame takes
-    kYielded,       // its picture stays; its fields and light were given up for others
+    kYielded,       // its picture stays; its fields and light were released for other sessions
     kFailed,        // cannot be drawn
   };
 
-  // `costs` and `offers` must outlive it; `view` is the session's name in `costs`.
+  // `costs` and `offers` must outlive it. `view` is the session's name in `costs`.
   SessionView(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
               const accuracy::Offers& offers, const std::string& view);
 
-  // The newest scene with its decided setting. If that cannot be decided, returns an error the
-  // first time and none afterwards.
+  // Returns the newest scene with its decided setting. If the setting cannot be decided, returns an
+  // error the first time and none afterwards.
   absl::StatusOr<std::optional<session::NewestScene>> Decide(const session::NewestScene& newest);
 
-  // The work to do now. `newest` is the scene as requested; `drawable` is the decided scene whose
-  // fields are available, if any: the newest, or a slightly older one.
+  // Returns the work to do now. `newest` is the scene as requested. `drawable` is the decided scene
+  // whose fields are available, if any: the newest, or a slightly older one.
   SessionWork Next(const session::NewestScene& newest,
                    const std::optional<session::NewestScene>& drawable,
                    session::Clock::time_point now, const std::optional<LastDrawn>& last_drawn);
 
-  // Notifications of the outcome of work.
+  // The following functions report the outcome of work.
   void Drawn(const DrawFrame& work);
   void Checked(double discretisation_error);
-  // True if the next work is to show the light traced so far, until LightShown.
+  // Returns true if the next work is to show the light traced so far, until LightShown is called.
   bool LightTraced(const accuracy::LightProgress& progress, session::Clock::time_point now);
-  // The light stays as traced before; the picture is shown once more, with the reason.
+  // Keeps the light traced before. The picture is shown once more, with the reason.
   void LightFailed() { light_.GiveUp(true); }
-  // No light is traced and no error measured for this view.
+  // Records that this view traces no light and measures no error.
   void LightIsOthers() {
     light_.GiveUp(false);
     error_.GiveUp();
   }
-  // As LightTraced.
+  // Works like LightTraced.
   bool ErrorMeasured(const accuracy::ErrorProgress& progress, session::Clock::time_point now) {
     return error_.Measured(progress, now);
   }
-  // No viewer wants to know the error: it is not measured.
+  // Records that no error is reported to viewers, so that it is not measured.
   void ErrorIsUntold() { error_.GiveUp(); }
   void LightShown(session::Clock::time_point now) {
     light_.Shown(now);
     error_.Told(now);
   }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
-  // The revision is not tried again, or not before `try_again_at`.
+  // Records that the revision cannot be drawn. It is not retried, or not before `try_again_at`.
   void Failed(std::uint64_t revision,
               std::optional<session::Clock::time_point> try_again_at = std::nullopt);
-  // True once when a failed revision may be tried again; it is the next work then.
+  // Returns true once when a failed revision may be retried, which is then the next work.
   bool TriesAgain(session::Clock::time_point now);
-  // Memory is short: true if the view can do without its fields and light for a while, since the
-  // picture of its scene is shown: the final one, or any if others have been refused the memory for
-  // theirs.
+  // Called when memory is scarce. Returns true if the view releases its fields and light for a
+  // while. It can do so if its final picture is shown. If the fields of other sessions were
+  // refused, any picture of the scene suffices.
   bool Yield(session::Clock::time_point now, bool others_lack_pictures);
-  // None if `decided` is to be drawn; else the time at which to ask again, if that can be before a
-  // change.
+  // Returns none if `decided` must be drawn. Otherwise returns the time at which to ask again, if
+  // that can be before a change.
   std::optional<WaitUntil> Resting(const session::NewestScene& decided,
                                    session::Clock::time_point now);
-  // Called while there is still no room for the revision: true if its picture is shown already, so
-  // that nothing is missing.
+  // Called while there is still no memory for the revision. Returns true if its picture is already
+  // shown, so that nothing is missing.
   bool StaysYielded(std::uint64_t revision, session::Clock::time_point now);
 
   State state() const { return state_; }
-  // The newest revision that was shown, or has failed.
+  // The newest revision that was shown or has failed.
   std::uint64_t shown_revision() const { return planner_.revision(); }
   bool LightIsTraced() const { return light_.ended(); }
-  // Estimates of the error of the picture at full quality.
+  // Returns the estimates of the error of the picture at full quality.
   accuracy::Evidence evidence() const {
     return {.discretisation_error = setting_.discretisation_error(), .measured = error_.error()};
   }
@@ -135,16 +135,16 @@ class SessionView {
 
   State EnteredFor(const session::NewestScene& newest,
                    const std::optional<session::NewestScene>& drawable) const;
-  // Each returns work, or none after a transition to another state.
+  // Each function returns work, or none after a transition to another state.
   std::optional<SessionWork> In(State state, const Now& now);
   SessionWork Move(const Now& now);
   std::optional<SessionWork> Refine(const Now& now);
   std::optional<SessionWork> Check(const Now& now);
   std::optional<SessionWork> Trace(const Now& now);
   std::optional<SessionWork> Settle(const Now& now);
-  // True if the picture has too much error for the scene, and another setting is decided on.
+  // Returns true if the picture's error is too large for the scene and another setting was decided.
   bool IsRefuted(const Now& now);
-  // With the setting that is decided on anew for the same scene.
+  // Draws with the newly decided setting for the same scene.
   SessionWork DrawAnew(const Now& now);
 
   const PlannerTargets targets_;
@@ -154,9 +154,9 @@ class SessionView {
   LightTracing light_;
   ErrorMeasuring error_;
   std::optional<std::uint64_t> failed_revision_;
-  std::optional<session::Clock::time_point> try_again_at_;  // the failed revision
+  std::optional<session::Clock::time_point> try_again_at_;  // time to retry the failed revision
   std::optional<session::Clock::time_point>
-      returns_at_;  // to refining or tracing light, after yielding
+      returns_at_;  // time to return to refining or tracing light after yielding
 };
 
 }  // namespace thunderhead::drawing

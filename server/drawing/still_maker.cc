@@ -36,7 +36,7 @@ void StillMaker::Make(StillToMake still) {
   Time due = still.described.at_rest ? now : std::max(now + kRestsAfter, still.rests_at);
   {
     const std::lock_guard lock(mutex_);
-    // A better one of a picture at rest takes the turn of the one before.
+    // An improved picture at rest keeps the due time of the one that it replaces.
     const auto before = waiting_.find(session.get());
     if (still.described.at_rest && before != waiting_.end()) {
       due = std::min(due, before->second.due);
@@ -98,7 +98,7 @@ void StillMaker::MakeNow(const StillToMake& still) const {
     }
     session->hub().AddStill(still.sequence, tier, *std::move(frame));
   }
-  // Whoever wants another tier by now waits in vain.
+  // Viewers that need another tier by now get no still of this frame.
   session->hub().NoStills(still.sequence);
 }
 

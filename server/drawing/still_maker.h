@@ -1,6 +1,7 @@
-// Makes stills of higher quality of frames that stay: AVIF, on a thread of its own with low
-// priority, so that nobody's moving pictures wait for them. A newer frame of a session drops the
-// still of the older one, unless that is being encoded, which takes about a tenth of a second.
+// Makes stills of higher quality of frames that stay. Stills are AVIF and are encoded on a separate
+// thread with low priority, so that moving pictures need not wait for them. A newer frame of a
+// session drops the still of the older one, unless that is already being encoded, which takes about
+// a tenth of a second.
 #pragma once
 
 #include <chrono>
@@ -19,7 +20,7 @@
 
 namespace thunderhead::drawing {
 
-// Makes the bytes of a frame that every viewer is sent.
+// Serializes a frame into the bytes that all viewers are sent.
 using SerializeFrame = std::function<std::string(const delivery::EncodedFrame&)>;
 
 // A published frame that may become a still.
@@ -28,13 +29,14 @@ struct StillToMake {
   std::uint64_t sequence = 0;
   delivery::EncodedFrame described;  // without a picture
   session::Clock::time_point rests_at;
-  // Null where nobody takes stills of higher quality.
+  // Null if no viewer takes stills of higher quality.
   std::shared_ptr<delivery::PictureSizes<frame::FineImage>> fine;
 };
 
 class StillMaker {
  public:
-  // A frame that was drawn in motion rests after so long without a newer one, or later.
+  // A frame that was drawn in motion is at rest this long after it if there is no newer frame, or
+  // later.
   static constexpr std::chrono::milliseconds kRestsAfter{150};
 
   explicit StillMaker(SerializeFrame serialize, const base::TimeSource& time = base::SteadyTime());
@@ -61,7 +63,7 @@ class StillMaker {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;
-  std::map<const session::Session*, Waiting> waiting_;  // the newest of each session
+  std::map<const session::Session*, Waiting> waiting_;  // newest frame of each session
   std::thread thread_;
 };
 

@@ -9,14 +9,14 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Take a tenth of a second on a slow core.
+// These take a tenth of a second on a slow core.
 constexpr std::int64_t kFirstPixels = 4096;
-// At each smaller size; together these sizes cost a third of as many samples at full size.
+// Samples at each smaller size. Together these sizes cost a third of as many samples at full size.
 constexpr int kSamplesOfSize = 8;
-// A larger picture with a single sample a pixel is noisier than the smaller one that it follows.
+// A larger picture with a single sample per pixel is noisier than the smaller one that it follows.
 constexpr int kMinShownSamples = 2;
 constexpr double kShowEvery_s = 1.0;
-// Relative error far below one level of an 8-bit display.
+// A relative error far below one level of an 8-bit display.
 constexpr double kFinished = 1e-3;
 constexpr int kMaxSamples = 1 << 16;
 

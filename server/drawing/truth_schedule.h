@@ -1,6 +1,6 @@
-// The sizes at which a picture by the reference is refined, and when it is shown: small at first,
-// so that something is visible within a fraction of a second, then twice as large each time, and at
-// full size as long as somebody watches. Plain values; the time is an argument.
+// The sizes at which a picture by the reference is refined, and when it is shown. The first size is
+// small, so that something is visible within a fraction of a second. Each further size is twice as
+// large, up to the full size. Plain values; the time is an argument.
 #pragma once
 
 #include "drawing/frame_source.h"
@@ -12,27 +12,28 @@ class TruthSchedule {
  public:
   explicit TruthSchedule(const glm::ivec2& full_size_px);
 
-  // Size of the picture to refine now.
+  // Returns the size of the picture to refine now.
   glm::ivec2 SizePx() const;
   bool IsFull() const { return halvings_ == 0; }
-  // Number of samples per pixel to refine to.
+  // Returns the number of samples per pixel to refine to.
   int UntilSamples() const;
 
-  // True if the picture should be shown now, and then assumes that it is. `shown_ago_s` is the time
-  // since the last was shown, or since the beginning.
+  // Returns true if the picture should be shown now, and then assumes that it is shown.
+  // `shown_ago_s` is the time since the last picture was shown, or since the beginning.
   bool ShowNow(const delivery::Refinement& refinement, double shown_ago_s);
 
-  // True if the picture has enough samples to begin the next larger one; SizePx is then its size.
+  // Returns true if the picture has enough samples to begin the next larger one. SizePx then
+  // returns the new size.
   bool GrowAt(const delivery::Refinement& refinement);
 
-  // True if more samples would make no visible difference.
+  // Returns true if more samples would make no visible difference.
   bool Finished(const delivery::Refinement& refinement) const;
 
  private:
   glm::ivec2 full_size_px_;
   int halvings_ = 0;
   bool any_shown_ = false;
-  int shown_samples_ = 0;  // of the picture of this size
+  int shown_samples_ = 0;  // samples of the last shown picture of this size
 };
 
 }  // namespace thunderhead::drawing

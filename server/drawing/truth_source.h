@@ -1,5 +1,6 @@
-// Refines a picture towards the truth for the render loop: the Monte Carlo reference, or a fake in
-// service tests. A TruthSource is used by one thread at a time. Knows no sessions.
+// The interface that refines a picture with the reference for the render loop. The Monte Carlo
+// reference implements it; service tests use a fake one. A TruthSource is used by one thread at a
+// time. Knows no sessions.
 #pragma once
 
 #include <functional>
@@ -18,12 +19,12 @@ class TruthSource {
  public:
   virtual ~TruthSource() = default;
 
-  // Begins a picture of `size_px`, which overrides the scene's size, without any samples.
+  // Begins a picture of `size_px`, which overrides the scene's size, with no samples yet.
   virtual absl::Status Begin(const scene::Scene& scene,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields,
                              const glm::ivec2& size_px) = 0;
 
-  // Adds samples until every pixel has `until_samples`, for at most `seconds` or until `stop` is
+  // Adds samples until each pixel has `until_samples`, for at most `seconds` or until `stop` is
   // requested. Another call continues.
   virtual delivery::Refinement Refine(int until_samples, double seconds,
                                       const std::stop_token& stop) = 0;
@@ -33,8 +34,8 @@ class TruthSource {
 
 using TruthSourceFactory = std::function<std::unique_ptr<TruthSource>()>;
 
-// The reference on `threads` threads; 0: all cores except a quarter of them, at least one, for
-// everything else.
+// Returns the reference on `threads` threads. 0 means all cores except a quarter of them, but at
+// least one, for other work.
 std::unique_ptr<TruthSource> MakeReferenceTruthSource(int threads = 0);
 
 }  // namespace thunderhead::drawing

@@ -14,10 +14,10 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Length of a turn.
+// Duration of a turn.
 constexpr double kTurn_s = 0.25;
 
-// Mean and variance of radiance, opacity, distance, and a picture that waits to be shown.
+// Covers mean and variance of radiance, opacity, distance, and a picture that waits to be shown.
 constexpr std::size_t kTracedBytesPerPixel = 160;
 
 std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& size_px) {
@@ -42,12 +42,12 @@ struct TruthTracer::Job {
         schedule({scene->output.width_px, scene->output.height_px}),
         shown_at(by_time.Now()) {}
 
-  // A picture if one is due, and whether it is the last.
+  // The result of a turn: a picture if one is due, and whether it is the last.
   struct Turn {
     Found found;
     bool ended = false;
   };
-  // Refines for a turn. An error ends the picture.
+  // Refines the picture for one turn. An error ends it.
   absl::StatusOr<Turn> Refine(base::MemoryBudget& memory);
 
   const std::string owner;
@@ -153,7 +153,7 @@ void TruthTracer::Forget(const std::string& owner) {
   owned_.erase(owner);
 }
 
-// Round robin: the job of the owner after the one served last.
+// Returns the job of the owner after the one served last (round robin).
 std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
   const auto after_last = owned_.upper_bound(last_served_);
   const auto has_job = [](const auto& entry) { return entry.second.job != nullptr; };
@@ -176,7 +176,7 @@ void TruthTracer::Keep(Job& job, Found found, bool ended) {
 }
 
 void TruthTracer::Run() {
-  // Threads that it starts inherit that.
+  // Threads that this thread starts inherit the priority.
   base::LowerPriority(base::kLowestPriority);
   std::unique_lock lock(mutex_);
   while (true) {
@@ -191,7 +191,7 @@ void TruthTracer::Run() {
     } else {
       Keep(*job, turn.status(), true);
     }
-    // Frees its fields and pictures, maybe many megabytes, before taking the lock.
+    // Frees the job's fields and pictures, which may take many megabytes, before taking the lock.
     job.reset();
     lock.lock();
   }

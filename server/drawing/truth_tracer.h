@@ -1,5 +1,5 @@
-// Refines sessions' pictures towards the truth on a thread of its own, in short turns. A request
-// replaces the owner's earlier one and ends it at once, so nothing queues; a picture that was not
+// Refines sessions' pictures with the reference on its own thread, in short turns. A request
+// replaces the owner's earlier one and ends it at once, so nothing queues. A picture that was not
 // taken is replaced by the next.
 #pragma once
 
@@ -25,7 +25,7 @@
 
 namespace thunderhead::drawing {
 
-// A picture so far.
+// The current picture of the reference.
 struct TruthPicture {
   picture::LinearPicture picture;
   delivery::Refinement refinement;
@@ -35,9 +35,8 @@ struct TruthPicture {
 
 class TruthTracer {
  public:
-  // Each owner has a source of its own, which keeps its buffers; they count in `memory`, and there
-  // are at most `max_owners`.
-  // `on_picture` is called on the tracing thread when a picture can be taken.
+  // Each owner has its own source, whose buffers are reserved in `memory`. There are at most
+  // `max_owners`. `on_picture` is called on the tracing thread when a picture can be taken.
   TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
               std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture,
               const base::TimeSource& time = base::SteadyTime());
@@ -46,12 +45,12 @@ class TruthTracer {
   TruthTracer(const TruthTracer&) = delete;
   TruthTracer& operator=(const TruthTracer&) = delete;
 
-  // Begins the owner's picture; RESOURCE_EXHAUSTED if there are too many owners.
+  // Begins the owner's picture. RESOURCE_EXHAUSTED if there are too many owners.
   absl::Status Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
                      std::shared_ptr<const volume::HydrometeorFields> fields);
-  // Takes the owner's newest picture, or its error, if there is one.
+  // Takes the owner's newest picture or its error; none if there is neither.
   std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> Take(const std::string& owner);
-  // Stops tracing the owner's picture; keeps its source for the next.
+  // Stops tracing the owner's picture but keeps its source for the next.
   void Stop(const std::string& owner);
   // Stops tracing and frees the owner's source.
   void Forget(const std::string& owner);
@@ -59,7 +58,7 @@ class TruthTracer {
  private:
   struct Job;
   using Found = std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>>;
-  // Only the tracing thread uses the source.
+  // The state of an owner. Only the tracing thread uses the source.
   struct Owned {
     std::shared_ptr<TruthSource> source;
     std::shared_ptr<base::MemoryReservation> reserved;  // for the source's buffers

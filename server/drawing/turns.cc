@@ -7,12 +7,12 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A class that is owed less than half a piece waits.
+// A class that is owed less than half a piece must wait.
 constexpr double kWorthATurn_ms = 7.5;
 
 std::size_t IndexOf(TurnClass turn_class) { return static_cast<std::size_t>(turn_class); }
 
-// Shared and private pictures, in each class.
+// Shared and own views form separate groups in each class.
 std::string GroupOf(const Contender& contender) {
   return std::to_string(IndexOf(*contender.work)) + (contender.own_view ? " own" : "");
 }
@@ -22,8 +22,8 @@ struct Refilled {
   double raised_ms = 0.0;
 };
 
-// Raises all balances by as much as lets one of `waiting` have a turn, and says who that is: of
-// several the one after `last`.
+// Raises all balances until one of `waiting` may have a turn, and returns which one. Among several
+// it is the one after `last`.
 Refilled Refill(const std::set<std::string>& waiting, const std::string& last,
                 std::map<std::string, double>* balances) {
   double best = -std::numeric_limits<double>::infinity();
@@ -105,7 +105,7 @@ void Turns::Used(const Contender& contender, double milliseconds) {
   group.balances[contender.id] -= milliseconds;
   group.last_served = contender.id;
   const std::size_t used = IndexOf(*contender.work);
-  // Where nobody else had work it owes the others no more than its last turn.
+  // If no other class had work, this class owes the others at most its last turn.
   owed_ms_[used] = std::max(owed_ms_[used] - milliseconds, -milliseconds);
   for (std::size_t i = used + 1; i < kTurnClasses; ++i) {
     owed_ms_[i] += milliseconds * kMinShare / (1.0 - kMinShare);

@@ -1,10 +1,13 @@
-// The order of drawing: deficit round robin in ms. Pictures that people wait for come before what
-// becomes finer while they look, and that before pictures for nobody's eyes; but the later ones get
-// a tenth of the time however much the earlier have to do, so that they end. Within a class all get
-// the same time, however long each one's pieces are; who comes when another has left takes over
-// what that one used beyond its share, so that coming and leaving over and over gains nothing. What
-// many people see and what one sees for himself count as two, so that a class of pupils who look
-// around takes at most half of the time. A plain value, without a clock.
+// The order of drawing: deficit round robin in ms. There are three classes: pictures that people
+// wait for, refinement while they look, and pictures outside sessions, in this order. The later
+// classes get a tenth of the time even if the earlier ones always have work, so that they finish.
+//
+// Within a class all contenders get the same time, whatever the length of their pieces. A newcomer
+// inherits the overuse of one that left, so that leaving and coming back gains nothing. Shared
+// views and own views each form a group with half of the time. So a class of pupils who look around
+// takes at most half.
+//
+// A plain value, without a clock.
 #pragma once
 
 #include <array>
@@ -24,44 +27,44 @@ enum class TurnClass {
 };
 inline constexpr std::size_t kTurnClasses = 3;
 
-// Of the time that the classes before it use.
+// Minimum share of a class, relative to the time that the classes before it use.
 inline constexpr double kMinShare = 0.1;
 
-// Those who may have a turn.
+// A session or lane that may get a turn.
 struct Contender {
   std::string id;
-  bool own_view = false;          // of one person
-  std::optional<TurnClass> work;  // that waits to be done
+  bool own_view = false;          // view of one person
+  std::optional<TurnClass> work;  // pending work, if any
 };
 
 class Turns {
  public:
-  // The index of who is to draw next; none if nobody has work. Among those who have had the same
-  // time it is the one whose id comes after that of the last served.
+  // Returns the index of the contender that draws next; none if no contender has work. Among
+  // contenders with the same used time, it is the one whose id follows that of the last served.
   std::optional<std::size_t> Next(const std::vector<Contender>& contenders);
 
-  // It has drawn for so long.
+  // Charges the contender for the time that it has drawn.
   void Used(const Contender& contender, double milliseconds);
 
  private:
-  // Time that was used beyond the share of the one that used least: zero or less.
+  // Time used beyond the share of the contender that used least; zero or negative.
   using Balances = std::map<std::string, double>;
-  // Of a class: what people see together, or what one sees for himself.
+  // A group of a class: shared views, or own views of one person.
   struct Group {
     Balances balances;
-    std::vector<double> left_behind;  // negative balances of those who have left
+    std::vector<double> left_behind;  // negative balances of contenders that left
     std::string last_served;
   };
 
   static void Leave(const std::set<std::string>& present, Group* group);
-  // Who of `waiting` has the next turn.
+  // Returns which of `waiting` has the next turn.
   static std::string NextOf(const std::set<std::string>& waiting, Group* group);
   std::optional<TurnClass> ClassNow(const std::vector<Contender>& contenders);
 
   std::map<std::string, Group> groups_;
   Balances group_balances_;
   std::string last_group_;
-  // Time that a class may use before the others.
+  // Time that a class may use before the earlier classes.
   std::array<double, kTurnClasses> owed_ms_{};
 };
 

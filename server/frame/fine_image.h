@@ -1,4 +1,4 @@
-// A display picture with more than 8 bits a channel, for stills whose sky must not band.
+// A display picture with more than 8 bits a channel, for images whose sky must not show bands.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,14 @@
 
 namespace thunderhead::frame {
 
-// sRGB of 16 bits, three values a pixel, rows from top to bottom, without the noise that pictures
-// of 8 bits have.
+// 16-bit sRGB, three values a pixel, rows from top to bottom. It lacks the noise that 8-bit
+// pictures have.
 struct FineImage {
   int width_px = 0;
   int height_px = 0;
   std::vector<std::uint16_t> rgb;
-  std::shared_ptr<const base::MemoryReservation> memory;  // that it counts in; null: in none
+  // Counts the image's memory; null: not counted.
+  std::shared_ptr<const base::MemoryReservation> memory;
 };
 
 }  // namespace thunderhead::frame

@@ -6,8 +6,9 @@
 
 namespace thunderhead::frame {
 
-// Half the width and height, rounded up: each pixel the mean of four, of fewer at an odd edge. The
-// mean is of sRGB values, which keeps a picture's look and is not its mean light.
+// Returns a picture of half the width and height, rounded up. Each pixel is the mean of four
+// pixels, or of fewer at an odd edge. The mean is that of sRGB values, which keeps a picture's look
+// but is not the mean of its light.
 RgbImage Halved(const RgbImage& image);
 FineImage Halved(const FineImage& image);
 

@@ -22,7 +22,7 @@ constexpr int kMaxSide_px = 65535;
 // Side of a minimum coded unit of JPEG with 4:2:0 chroma.
 constexpr int kUnitSide_px = 16;
 constexpr int kMaxRestartInterval = 65535;
-// Minimum size of a strip that is worth a thread: about half a millisecond.
+// Smallest size of a strip that is worth a thread: about half a millisecond.
 constexpr double kMinStripPixels = 3e5;
 
 struct TurboDeleter {
@@ -68,8 +68,8 @@ absl::Status TurboError(const char* action, void* handle) {
 
 int UnitsInRow(int width_px) { return (width_px + kUnitSide_px - 1) / kUnitSide_px; }
 
-// The first rows of the strips that a picture is encoded in, and its height. All strips but the
-// last have one height, whose rows of units fit in a restart interval.
+// Returns the first rows of the strips in which a picture is encoded, followed by its height. All
+// strips except the last have one height. The units of their rows fit in a restart interval.
 std::vector<int> StripRows(int width_px, int height_px) {
   const int unit_rows = (height_px + kUnitSide_px - 1) / kUnitSide_px;
   const double pixels = static_cast<double>(width_px) * height_px;
@@ -148,7 +148,7 @@ absl::StatusOr<std::string> EncodePng(int width_px, int height_px,
   png.image.width = static_cast<png_uint_32>(width_px);
   png.image.height = static_cast<png_uint_32>(height_px);
   png.image.format = PNG_FORMAT_RGB;
-  // Asking libpng for the exact size would compress the picture twice, so the upper bound is
+  // Querying libpng for the exact size would compress the picture twice, so the upper bound is
   // reserved.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
   std::string file(size, '\0');

@@ -1,5 +1,5 @@
 // Encodes and decodes JPEG (libjpeg-turbo) and PNG (libpng). Pixels are 8-bit sRGB, three bytes
-// each, rows from top to bottom. Pure functions, safe from any thread.
+// each, rows from top to bottom. The functions are pure and safe to call from any thread.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct RgbImage {
   std::vector<std::uint8_t> rgb;
 };
 
-// JPEG with 4:2:0 chroma; `quality` is 1 to 100. A large picture is encoded by several threads.
+// Encodes a JPEG with 4:2:0 chroma. `quality` is 1 to 100. Several threads encode a large picture.
 absl::StatusOr<std::string> EncodeJpeg(int width_px, int height_px,
                                        absl::Span<const std::uint8_t> rgb, int quality);
 

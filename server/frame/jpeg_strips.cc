@@ -24,21 +24,21 @@ unsigned char ByteAt(std::string_view jpeg, std::size_t at) {
   return static_cast<unsigned char>(jpeg[at]);
 }
 
-// Where things are in a JPEG of one scan.
+// Offsets in a JPEG of one scan.
 struct Layout {
-  std::size_t frame_height = 0;  // two bytes
+  std::size_t frame_height = 0;  // offset of the height, two bytes
   std::size_t scan_header = 0;
   std::size_t scan_data = 0;
-  std::size_t end = 0;  // of the data
+  std::size_t end = 0;  // end of the scan's data
 };
 
 std::optional<Layout> LayoutOf(std::string_view jpeg) {
   Layout layout;
-  std::size_t at = kMarkerBytes;  // after the start of the image
+  std::size_t at = kMarkerBytes;  // begins after the start-of-image marker
   while (at + 2 * kMarkerBytes <= jpeg.size() && ByteAt(jpeg, at) == kMarker) {
     const unsigned char kind = ByteAt(jpeg, at + 1);
     const std::size_t length = ByteAt(jpeg, at + 2) * std::size_t{256} + ByteAt(jpeg, at + 3);
-    // After the marker, the length and the samples' bits.
+    // The height follows the marker, the length and the bits per sample.
     if (kind == kStartOfFrame) layout.frame_height = at + 5;
     if (kind == kStartOfScan) {
       layout.scan_header = at;
@@ -84,7 +84,7 @@ absl::StatusOr<std::string> JoinJpegStrips(const std::vector<std::string>& strip
       joined[layout->frame_height] = static_cast<char>(height_px >> 8);
       joined[layout->frame_height + 1] = static_cast<char>(height_px & 0xFF);
       AppendMarker(kRestartInterval, &joined);
-      AppendNumber(4, &joined);  // the segment's length
+      AppendNumber(4, &joined);  // length of the segment
       AppendNumber(units, &joined);
       joined.append(strip, layout->scan_header, layout->scan_data - layout->scan_header);
     } else {

@@ -1,5 +1,5 @@
-// Strips of a picture, each encoded as a JPEG of its own, joined to one JPEG: several processors
-// can encode one picture. Works on bytes; calls no codec.
+// Joins strips of a picture, each encoded as a separate JPEG, to one JPEG. Several processors can
+// thus encode one picture. The code works on bytes and calls no codec.
 #pragma once
 
 #include <string>
@@ -9,11 +9,12 @@
 
 namespace thunderhead::frame {
 
-// The JPEG of height `height_px` whose strips, from top to bottom, are `strips`: baseline JPEGs of
-// one width, sampling and quality and with the same Huffman tables, without restarts. Every strip
-// but the last holds `units` minimum coded units (a whole number of their rows), at most 65535.
-// Markers between the strips' data start the prediction anew (ITU-T T.81, F.1.1.5 and B.2.4.4), so
-// the picture decodes as if it had been encoded whole. INTERNAL for what is no such JPEG.
+// Returns the JPEG of height `height_px` whose strips, from top to bottom, are `strips`. They must
+// be baseline JPEGs without restarts, with one width, sampling and quality and with the same
+// Huffman tables. Every strip except the last holds `units` minimum coded units (a whole number of
+// their rows), at most 65535. Markers between the strips' data reset the prediction (ITU-T T.81,
+// F.1.1.5 and B.2.4.4). The picture therefore decodes as if it had been encoded whole. Returns
+// INTERNAL if a strip is not such a JPEG.
 absl::StatusOr<std::string> JoinJpegStrips(const std::vector<std::string>& strips, int units,
                                            int height_px);
 

@@ -1,4 +1,4 @@
-// Reads finished pictures back.
+// Reads finished pictures back from the device.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace thunderhead::frame {
 
-// From a GPU through a buffer that stays mapped, which takes a third of the time that reading to
-// the program's memory takes (docs/performance.md, "On a GPU"). Used by the thread of its context
-// alone.
+// Reads pixels from a GPU through a persistently mapped buffer. That takes a third of the time of
+// reading to the program's memory (docs/performance.md, "On a GPU"). Only the thread of its context
+// may use it.
 class PixelReader {
  public:
-  // Three bytes a pixel, rows as in `texture`; waits for what draws it. Some rows in each piece.
+  // Returns three bytes a pixel, with rows as in `texture`. It waits for pending drawing to the
+  // texture, and reads some rows in each piece.
   absl::StatusOr<std::vector<std::uint8_t>> Rgb(const gl::Texture2D& texture, gl::Pieces& pieces);
 
  private:

@@ -24,7 +24,7 @@ void AppendNumber(std::uint32_t number, std::string& bytes) {
   }
 }
 
-// By the PNG specification, 11.3.3.4: not compressed, without a language.
+// Appends a text chunk by the PNG specification, 11.3.3.4, not compressed and without a language.
 void AppendChunk(const std::string& keyword, const std::string& text, std::string& bytes) {
   std::string chunk = "iTXt" + keyword;
   chunk.append(5, '\0');
@@ -55,8 +55,8 @@ void Read(png_structp png, png_bytep to, png_size_t count) {
 
 void Warn(png_structp /*png*/, png_const_charp /*message*/) {}
 
-// Reads up to the pixels. False after an error: no object is made here that the jump would leave
-// behind.
+// Reads the header up to the pixels. Returns false after an error. It creates no objects with
+// destructors, because longjmp would skip them.
 bool ReadInfo(png_structp png, png_infop info) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_read_info(png, info);

@@ -1,5 +1,5 @@
-// Texts inside a PNG (iTXt chunks), such as what the picture shows and how it was made. Every
-// viewer of pictures skips them.
+// Texts inside a PNG (iTXt chunks), such as what the picture shows and how it was made. Programs
+// that show the picture skip these chunks.
 #pragma once
 
 #include <map>
@@ -9,17 +9,17 @@
 
 namespace thunderhead::frame {
 
-// By keyword: 1 to 79 ASCII characters. Texts are UTF-8.
+// Texts by keyword. A keyword has 1 to 79 ASCII characters. Texts are UTF-8.
 using PngTexts = std::map<std::string, std::string>;
 
-// The PNG with the texts added, which EncodePng made.
+// Returns a PNG that EncodePng made with the texts added.
 std::string WithTexts(const std::string& png, const PngTexts& texts);
 
-// True for bytes that begin as every PNG does.
+// Returns true for bytes that begin with the PNG signature.
 bool IsPng(const std::string& bytes);
 
-// The texts before the pixels of a PNG of any program. INVALID_ARGUMENT if it is not one, or
-// broken.
+// Returns the texts before the pixels of a PNG from any program. Returns INVALID_ARGUMENT if the
+// bytes are not a valid PNG.
 absl::StatusOr<PngTexts> TextsOf(const std::string& png);
 
 }  // namespace thunderhead::frame

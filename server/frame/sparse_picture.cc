@@ -19,16 +19,16 @@ namespace {
 
 constexpr std::size_t kSparseChannels = 3;
 constexpr int kRowsInShare = 48;
-constexpr int kFineSteps = 257;  // of a FineImage in one of 8 bits
+constexpr int kFineSteps = 257;  // steps of a FineImage in one step of 8 bits
 
 constexpr std::size_t kTaps = 4;
 
-// Where a finer picture's columns or rows are in the one before it.
+// The positions of a finer picture's columns or rows in the previous picture.
 struct Places {
-  std::vector<int> parent;  // in whose place each is
-  // Columns or rows of that picture from which each is interpolated, and their weights: cubic
-  // convolution with a = -1/2 (Keys 1981, "Cubic convolution interpolation for digital image
-  // processing", eq. 15).
+  std::vector<int> parent;  // the column or row that contains each finer one
+  // The columns or rows of the previous picture from which each is interpolated, and their weights.
+  // The interpolation is cubic convolution with a = -1/2 (Keys 1981, "Cubic convolution
+  // interpolation for digital image processing", eq. 15).
   std::vector<std::array<int, kTaps>> taps;
   std::vector<std::array<float, kTaps>> weights;
 
@@ -42,7 +42,7 @@ struct Places {
       std::array<float, kTaps> weight{
           t * (-0.5F + t * (1.0F - 0.5F * t)), 1.0F + t * t * (-2.5F + 1.5F * t),
           t * (0.5F + t * (2.0F - 1.5F * t)), t * t * (0.5F * t - 0.5F)};
-      // Beyond the picture's edges it goes on as a line.
+      // Beyond its edges, the picture is extrapolated linearly.
       if (before == 0) Extend(&weight[0], &weight[1], &weight[2]);
       if (before == parents - 2) Extend(&weight[3], &weight[2], &weight[1]);
       weights.push_back(weight);
@@ -66,7 +66,7 @@ std::size_t Offset(const glm::ivec2& size_px, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
-// Calls `work` with the first row of some and the one after their last.
+// Calls `work` with the first row of a share and the row after its last.
 template <typename Work>
 void ForShares(int rows, const Work& work) {
   tbb::parallel_for(0, (rows + kRowsInShare - 1) / kRowsInShare, [&](int share) {
@@ -85,7 +85,7 @@ const std::uint16_t* RowOf(const FineImage& picture, int y) {
   return picture.rgb.data() + kSparseChannels * Offset({picture.width_px, picture.height_px}, 0, y);
 }
 
-// A row with its first and last pixel twice.
+// Copies a row and repeats its first and last pixel.
 void CopyPadded(const FineImage& picture, int y, std::vector<int>* padded) {
   const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
   const std::uint16_t* const row = RowOf(picture, std::clamp(y, 0, picture.height_px - 1));
@@ -96,7 +96,8 @@ void CopyPadded(const FineImage& picture, int y, std::vector<int>* padded) {
               padded->begin() + static_cast<std::ptrdiff_t>(width + kSparseChannels));
 }
 
-// 1 for each pixel whose place in the next picture needs rays of its own.
+// Returns 1 for each pixel that the next picture cannot interpolate, so that the pixels in its
+// place need rays of their own.
 std::vector<std::uint8_t> Rough(const FineImage& picture, double contrast) {
   const int most = static_cast<int>(std::lround(contrast * kFineSteps));
   const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
@@ -112,7 +113,7 @@ std::vector<std::uint8_t> Rough(const FineImage& picture, double contrast) {
       const int* const here = rows[1].data();
       const int* const below = rows[2].data();
       int* const apart = off.data();
-      // Simple enough for the compiler to do several at once.
+      // The loop is simple enough for the compiler to vectorize it.
       for (std::size_t i = 0; i < width; ++i) {
         const std::size_t middle = i + kSparseChannels;
         const std::size_t right = middle + kSparseChannels;
@@ -137,7 +138,8 @@ std::vector<std::uint8_t> Rough(const FineImage& picture, double contrast) {
   return rough;
 }
 
-// An interpolated value, between those on both sides: beside an edge it would shoot beyond them.
+// Clamps an interpolated value to the range of its two neighbours, because next to an edge
+// interpolation overshoots.
 inline float Limited(float value, float before, float after) {
   const float low = before < after ? before : after;
   const float high = before < after ? after : before;
@@ -145,8 +147,8 @@ inline float Limited(float value, float before, float after) {
   return above < high ? above : high;
 }
 
-// Row `y` of a picture with the columns of a finer one. Pixels are of four values, which the
-// compiler works on at once.
+// Computes row `y` of a picture with the columns of a finer one. Pixels have four values so that
+// the compiler can vectorize the work.
 void Widen(const FineImage& from, int y, const Places& columns, float* out) {
   thread_local std::vector<glm::vec4> pixels;
   pixels.resize(static_cast<std::size_t>(from.width_px));
@@ -166,7 +168,7 @@ void Widen(const FineImage& from, int y, const Places& columns, float* out) {
   }
 }
 
-// Interpolated between the pixels of the picture before.
+// Interpolates a picture between the pixels of the previous one.
 FineImage Spread(const FineImage& from, const Places& columns, const Places& rows) {
   const std::size_t width = kSparseChannels * columns.taps.size();
   FineImage to{static_cast<int>(columns.taps.size()), static_cast<int>(rows.taps.size()), {}};
@@ -198,8 +200,8 @@ FineImage Spread(const FineImage& from, const Places& columns, const Places& row
   return to;
 }
 
-// The pixels in the places of rough ones, so that neighbours in the list are neighbours in the
-// picture: by squares of two by two, and those by squares of four by four.
+// Returns the pixels in the places of rough ones. The order keeps neighbours in the list close in
+// the picture: squares of two by two pixels, within squares of four by four.
 std::vector<glm::ivec2> ChildrenOf(const std::vector<std::uint8_t>& rough,
                                    const glm::ivec2& rough_px, const Places& columns,
                                    const Places& rows) {
@@ -286,7 +288,7 @@ std::vector<std::uint8_t> Dithered(const FineImage& picture) {
     std::uint32_t inner = kByRow * static_cast<std::uint32_t>(y);
     for (int x = 0; x < picture.width_px; ++x, inner += kByColumn) {
       const auto outer = static_cast<std::uint32_t>((inner * kFactor) >> 24U);
-      // From 0 to just below a step of 8 bits.
+      // The noise ranges from 0 to just below a step of 8 bits.
       const std::uint32_t noise = (outer >> 16U) * kFineSteps >> 16U;
       for (std::size_t c = 0; c < kSparseChannels; ++c) {
         *out++ = static_cast<std::uint8_t>((*in++ + noise) / kFineSteps);

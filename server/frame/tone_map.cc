@@ -11,14 +11,15 @@
 namespace thunderhead::frame {
 namespace {
 
-// Automatic exposures lie between these factors of 0 EV: nights stay dark.
+// Automatic exposures lie between these factors of 0 EV, so that nights stay dark.
 constexpr float kMinFactor = 1.0F / 16.0F;
 constexpr float kMaxFactor = 64.0F;
-// And at most this times the exposure of a white card in the sun: a storm in shadow stays dark.
+// Automatic exposures are also at most this times the exposure of a white card in the sun. A storm
+// in shadow therefore stays dark.
 constexpr float kMaxAboveCard = 2.0F;
 
 constexpr gl::PieceCost kPixel{"tone map", 50.0};
-// Of a pixel of several bytes a channel.
+// The cost of a pixel with several bytes a channel.
 constexpr double kFinePixel_ns = 4.0;
 
 struct ToneMapVariant {
@@ -32,7 +33,8 @@ std::size_t PixelCount(const glm::ivec2& size_px) {
   return static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
 }
 
-// Others draw meanwhile where that takes longer than a piece.
+// Allocates the values. For a large size this takes longer than a piece, so other contexts can draw
+// meanwhile.
 template <typename Value>
 absl::Status Allocate(std::size_t count, gl::Pieces& pieces, std::vector<Value>* values) {
   constexpr std::size_t kLarge_bytes = std::size_t{32} << 20;
@@ -44,10 +46,11 @@ absl::Status Allocate(std::size_t count, gl::Pieces& pieces, std::vector<Value>*
 struct PixelFormat {
   GLenum channels;
   GLenum type;
-  std::size_t count;  // of channels
+  std::size_t count;  // number of channels
 };
 
-// The pixels of the texture's lower left part of `size` into `values`, some rows in each piece.
+// Reads the pixels of the texture's lower left part of `size` into `values`, some rows in each
+// piece.
 template <typename Value>
 absl::Status ReadRows(const gl::Texture2D& texture, const glm::ivec2& size,
                       const PixelFormat& format, gl::Pieces& pieces, Value* values) {
@@ -62,7 +65,7 @@ absl::Status ReadRows(const gl::Texture2D& texture, const glm::ivec2& size,
       });
 }
 
-// From rows from bottom to top, four floats a pixel.
+// Converts texels to a picture. The rows are from bottom to top, with four floats a pixel.
 picture::LinearPicture PictureOfTexels(const std::vector<float>& values, const glm::ivec2& size) {
   picture::LinearPicture picture;
   picture.size_px = size;

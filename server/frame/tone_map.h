@@ -1,5 +1,5 @@
 // The last stage on the device: exposure, white balance, tone map and read-back of a linear frame.
-// Owns GL objects: use it on the context's thread.
+// It owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstdint>
@@ -30,13 +30,13 @@ struct ToneMapped {
 
 // Factor of radiance at an exposure of 0 EV.
 inline constexpr float kExposureAtZeroEv = 6.0F;
-// Exposed luminance that the film's curve shows just below white, at 0.9 of it; its contrast leaves
-// it as it is.
+// The exposed luminance that the film curve shows just below white, at 0.9 of white. The curve's
+// contrast does not change this luminance.
 inline constexpr float kJustBelowWhite = 0.935F;
 
 class ToneMapper {
  public:
-  // Programs are linked in `programs`.
+  // `programs` links the programs.
   explicit ToneMapper(
       std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>())
       : programs_(std::move(programs)) {}
@@ -44,16 +44,17 @@ class ToneMapper {
   // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
   absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
-  // Sets the tone of what MapFine maps from now on: the exposure, whose EV it returns, the white
-  // balance and the curve of `linear`, a picture of `scene`, without mapping it. Map does it too.
+  // Sets the tone for later calls of MapFine without mapping a picture. The tone consists of
+  // exposure, white balance and curve of `linear`, a picture of `scene`. Returns the exposure in
+  // EV. Map sets the tone as well.
   absl::StatusOr<double> SetTone(const gl::Texture2D& linear, const scene::Scene& scene);
 
-  // A picture with the tone set last.
+  // Maps a picture with the tone set last.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
-  // Its lower left part of that size.
+  // Maps only the lower left part of the given size.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear, const glm::ivec2& part_px);
 
-  // In which it draws.
+  // Returns the pieces in which it draws.
   gl::Pieces& Pieces() const { return programs_->Pieces(); }
 
  private:
@@ -62,7 +63,7 @@ class ToneMapper {
     glm::vec3 gain{1.0F};
     bool filmic = true;
   };
-  // Where a picture of one depth is drawn to.
+  // The target of a picture of one bit depth.
   struct Display {
     gl::Texture2D texture;
     gl::Framebuffer target;
@@ -70,12 +71,12 @@ class ToneMapper {
     void Resize(GLenum format, const glm::ivec2& size_px);
   };
 
-  // Draws the lower left part of that size there; `display` is at least as large.
+  // Draws the lower left part of the given size to `display`, which must be at least as large.
   absl::Status Draw(const gl::Texture2D& linear, const glm::ivec2& part_px, bool noise,
                     const Display& display);
   absl::StatusOr<FineImage> MapFineTo(const Display& display, const gl::Texture2D& linear,
                                       const glm::ivec2& part_px);
-  // The factor for radiance of the given balance.
+  // Returns the exposure factor for radiance with the given white balance.
   absl::StatusOr<float> ExposureOf(const gl::Texture2D& linear, const scene::Display& display,
                                    const glm::vec3& balance, const WhiteCard& card);
 
@@ -87,16 +88,16 @@ class ToneMapper {
   Tone tone_;
   Display display_;
   Display fine_display_;
-  Display part_display_;  // only grows, as parts are of all sizes
+  Display part_display_;  // never shrinks, because parts have various sizes
 };
 
-// The texture's values, four floats a pixel, rows from bottom to top as GL keeps them; some rows in
-// each piece.
+// Returns the texture's values, four floats a pixel, with rows from bottom to top as in GL. It
+// reads some rows in each piece.
 absl::StatusOr<std::vector<float>> ReadLinear(const gl::Texture2D& linear, gl::Pieces& pieces);
-std::vector<float> ReadLinear(const gl::Texture2D& linear);  // in one piece
+std::vector<float> ReadLinear(const gl::Texture2D& linear);  // reads in one piece
 
-// A linear frame in the renderers' texture format, and back. A picture of unknown opacity counts
-// as all storm.
+// Convert between a linear picture and a texture in the renderers' format. A picture of unknown
+// opacity counts as all storm.
 gl::Texture2D TextureOf(const picture::LinearPicture& picture);
 absl::StatusOr<picture::LinearPicture> PictureOf(const gl::Texture2D& linear, gl::Pieces& pieces);
 picture::LinearPicture PictureOf(const gl::Texture2D& linear);

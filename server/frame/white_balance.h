@@ -1,4 +1,5 @@
-// The colour of a scene's light: what makes a white card look white. Pure values; no GL.
+// The colour of a scene's light, which determines the white balance. The code consists of pure
+// values and does not use GL.
 #pragma once
 
 #include <optional>
@@ -11,9 +12,9 @@ namespace thunderhead::frame {
 
 // A white card (reflectance 1) that faces the sun under the scene's sky.
 struct WhiteCard {
-  glm::vec3 radiance{1.0F};  // that it sends
-  // Factors for each colour that make it neutral and keep its luminance. Those of a sun 10 degrees
-  // high for any lower one, so that sunsets stay warm.
+  glm::vec3 radiance{1.0F};  // of the card
+  // Factors for each colour that make the card neutral and keep its luminance. For a sun below 10
+  // degrees they are those of a sun 10 degrees high, so that sunsets stay warm.
   glm::vec3 balance{1.0F};
 };
 
@@ -21,13 +22,14 @@ struct WhiteCard {
 inline constexpr glm::vec3 kLuminance(0.2126F, 0.7152F, 0.0722F);
 float LuminanceOf(const glm::vec3& rgb);
 
-// Keeps what depends on sun and air until they change.
+// Computes white cards and caches the values that depend only on sun and air.
 class WhiteCards {
  public:
   const WhiteCard& Of(const scene::Scene& scene);
 
  private:
-  // The sun's azimuth turns the light and its irradiance scales it; neither changes the colour.
+  // The inputs of the colour. The sun's azimuth rotates the light and its irradiance scales it, but
+  // neither changes the colour.
   struct Key {
     double elevation_deg = 0.0;
     scene::Sky sky;

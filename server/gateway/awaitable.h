@@ -1,5 +1,5 @@
-// Asio's coroutines. Boost 1.74's awaitable.hpp uses std::exchange without including <utility>, so
-// that must come first.
+// Includes Asio's coroutines. Boost 1.74's awaitable.hpp uses std::exchange without including
+// <utility>, so <utility> must come first.
 #pragma once
 
 #include <utility>

@@ -1,4 +1,4 @@
-// The part of a file that a request asks for (RFC 9110, 14). Knows no socket and no file.
+// The part of a file that a request asks for (RFC 9110, 14). It depends on no socket and no file.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@ struct ByteRange {
   std::uint64_t bytes = 0;
 };
 
-// The part of a file of this size that a Range header asks for. A header that is empty, has several
-// parts or cannot be read asks for all of it, as a server may answer.
+// Returns the part of a file of this size that a Range header asks for. The result is the whole
+// file for a header that is empty, has several parts or is malformed; HTTP permits this.
 ByteRange RangeOf(std::string_view header, std::uint64_t file_bytes);
 
 }  // namespace thunderhead::gateway

@@ -14,7 +14,7 @@
 namespace thunderhead::gateway {
 namespace {
 
-// A longer timeout counts as none; adding it to the clock could overflow.
+// A longer timeout is ignored, because adding it to the clock could overflow.
 constexpr absl::Duration kLongestTimeout = absl::Hours(24 * 365);
 
 }  // namespace
@@ -43,7 +43,7 @@ absl::StatusOr<UpstreamRequest> TranslateHeader(
   upstream.metadata.emplace_back("x-forwarded-for", ClientOf(request, peer, proxies));
   const auto [begin, end] = request.equal_range(boost::beast::http::field::sec_websocket_protocol);
   for (auto field = begin; field != end; ++field) {
-    // Browsers cannot set a WebSocket's other headers.
+    // The subprotocol carries the token, because browsers cannot set other headers of a WebSocket.
     const auto token = OfferedToken(View(field->value()));
     if (token.has_value()) upstream.metadata.emplace_back("authorization", "Bearer " + *token);
   }
@@ -59,7 +59,7 @@ absl::StatusOr<UpstreamRequest> TranslateHeader(
 }
 
 Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata) {
-  // A server may send codes outside the canonical ones.
+  // The cast is unchecked because a server may send codes outside the canonical ones.
   return Trailers(static_cast<absl::StatusCode>(status.error_code()), status.error_message(),
                   metadata);
 }

@@ -1,5 +1,5 @@
-// Shared by gRPC-Web and WebSocket calls: a call's HTTP header as an upstream request, and its
-// outcome as trailers. Knows no socket and no message.
+// Code that gRPC-Web and WebSocket calls share: a call's HTTP header as an upstream request, and
+// its outcome as trailers. It depends on no socket and no message type.
 #pragma once
 
 #include <boost/beast/http/message.hpp>
@@ -14,18 +14,18 @@
 
 namespace thunderhead::gateway {
 
-// For whom `request` is: `peer`, the client's address, or the client that `peer` names by
-// x-forwarded-for if it is one of `proxies`.
+// Returns the address of the client that made `request`. It is `peer`, or the client that `peer`
+// names in x-forwarded-for if `peer` is one of `proxies`.
 std::string ClientOf(const boost::beast::http::request<boost::beast::http::string_body>& request,
                      const std::string& peer, const base::TrustedProxies& proxies);
 
-// Method, metadata and deadline of the call that `request` asks for; no message. The service is
-// told for whom it is by x-forwarded-for.
+// Returns the method, metadata and deadline of the call that `request` asks for, without a message.
+// The service gets the client's address in x-forwarded-for.
 absl::StatusOr<UpstreamRequest> TranslateHeader(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
     const std::string& peer, const base::TrustedProxies& proxies);
 
-// The trailers of a call that ended with `status`, encoded for the wire.
+// Returns the trailers of a call that ended with `status`, encoded for the wire.
 Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata);
 
 }  // namespace thunderhead::gateway

@@ -1,4 +1,5 @@
-// Lets coroutines of one thread wait for a flag that other work on the same thread sets.
+// A signal for coroutines of one thread that wait for a flag. Other work on the same thread sets
+// the flag.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -13,9 +14,9 @@ class ChangeSignal {
   explicit ChangeSignal(const boost::asio::any_io_executor& executor)
       : never_(executor, boost::asio::steady_timer::time_point::max()) {}
 
-  // Call after each change of a flag that may be awaited.
+  // Wakes the waiting coroutines. Call it after each change of an awaited flag.
   void Notify() { never_.cancel(); }
-  // Returns once `condition` holds; both must outlive the wait.
+  // Returns when `condition` is true. The condition and this object must outlive the wait.
   boost::asio::awaitable<void> AwaitTrue(const bool& condition) {
     while (!condition) {
       boost::system::error_code woken;
@@ -24,7 +25,7 @@ class ChangeSignal {
   }
 
  private:
-  boost::asio::steady_timer never_;  // cancelled to wake those that wait
+  boost::asio::steady_timer never_;  // cancelled to wake the waiting coroutines
 };
 
 }  // namespace thunderhead::gateway

@@ -1,6 +1,6 @@
-// The bytes of one client's connection, plain or by TLS, to Asio and Beast a stream like any other:
-// with one deadline for what is begun after it is set, and counts of what went each way. Knows
-// neither HTTP nor gRPC. Runs on one thread.
+// An Asio stream over plain TCP or TLS for one client's connection. Operations share one deadline,
+// which applies to those that begin after it is set. The stream counts the bytes in each direction.
+// It is independent of HTTP and gRPC. Runs on one thread.
 #pragma once
 
 #include <boost/asio/associated_executor.hpp>
@@ -29,8 +29,8 @@
 
 namespace thunderhead::gateway {
 
-// Beast's hook for rate limits, which counts the bytes of a stream and limits nothing. By TLS they
-// are encrypted.
+// A rate policy of Beast that counts the bytes of a stream and limits nothing. With TLS it counts
+// encrypted bytes.
 class ByteCounts {
  public:
   uint64_t Received() const { return received_; }
@@ -60,38 +60,40 @@ namespace thunderhead::gateway {
 
 class ClientStream : public streams::OptionalTls<ByteCounts> {
  public:
-  // `tls` null: plain. The deadlines are by `time`, which must outlive the stream.
+  // If `tls` is null, the stream is plain. `time` measures the deadlines and must outlive the
+  // stream.
   ClientStream(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
                const base::TimeSource& time);
 
-  // Each replaces the deadline of the reads and writes that begin from now on. The socket is closed
-  // at the deadline of a pending one, which then fails.
+  // Each function replaces the deadline of later reads and writes. At the deadline of a pending
+  // operation the socket is closed and the operation fails.
   void expires_after(base::TimeSource::Clock::duration timeout) {
     expires_at(time_.Now() + timeout);
   }
   void expires_at(base::TimeSource::Clock::time_point deadline) { deadlines_->Set(deadline); }
   void expires_never() { expires_at(base::TimeSource::Clock::time_point::max()); }
 
-  // The first of all where there is TLS. False if it fails.
+  // Performs the TLS handshake, which must be the first operation of a TLS stream. Returns false if
+  // it fails.
   boost::asio::awaitable<bool> Handshake();
 
   const ByteCounts& Counts() { return PlainStream().rate_policy(); }
 
   using Take = std::function<bool(std::span<const std::byte>)>;
 
-  // From now on `take` is given what each read brings, decrypted. The read fails if it returns
-  // false. Null ends this.
+  // Passes the decrypted bytes of each later read to `take`. The read fails if `take` returns
+  // false. Null stops this.
   void WatchReads(Take take) { *take_ = std::move(take); }
 
-  // Sends `bytes` after what is being sent, as the last of all: whatever is written later is taken
-  // and not sent. False if the connection has ended.
+  // Sends `bytes` as the stream's last data, after the data that is being sent. Later writes are
+  // accepted but not sent. Returns false if the connection has ended.
   boost::asio::awaitable<bool> WriteLast(std::string bytes);
 
-  // Says to the client that nothing more comes, and drops what it still sends until it ends too,
-  // the timeout is over or the socket is closed; then closes it. A socket that is closed before its
-  // bytes are read resets the connection, and the client may lose what was last sent to it.
+  // Closes the sending side, and drops what the client still sends until it ends too, the timeout
+  // expires or the socket is closed. Then closes the socket. Closing a socket with unread bytes
+  // would reset the connection, and the client could lose the last data sent to it.
   boost::asio::awaitable<void> LingeringClose();
-  // The same; then calls `handler`, without an error.
+  // Does the same, then calls `handler` without an error.
   void LingeringClose(streams::BytesHandler handler);
 
  private:
@@ -102,15 +104,15 @@ class ClientStream : public streams::OptionalTls<ByteCounts> {
 
   const base::TimeSource& time_;
   const std::shared_ptr<StreamDeadlines> deadlines_;
-  // A read may end after the stream.
+  // This is shared because a read may end after the stream.
   const std::shared_ptr<Take> take_ = std::make_shared<Take>();
-  bool between_writes_ = true;  // the last one has ended, and was whole
+  bool between_writes_ = true;  // the last write has ended and was complete
   bool last_begun_ = false;
   ChangeSignal write_ended_;
 };
 
-// Beast's hooks for the end of a WebSocket: that of its TCP connection. Its own for sockets close
-// after the first bytes that they drop.
+// Hooks for Beast's end of a WebSocket, which end its TCP connection. Beast's own functions for
+// sockets close after the first bytes that they drop.
 void beast_close_socket(ClientStream& stream);
 void teardown(boost::beast::role_type role, ClientStream& stream, boost::system::error_code& error);
 template <typename Handler>

@@ -44,7 +44,7 @@ void DescribeKept(const std::string& entity_tag, http::fields& header) {
 
 }  // namespace
 
-// The part of a file that is sent.
+// The part of a file that is to be sent.
 struct FileAnswers::FilePart {
   FileThreads& threads;
   std::string path;
@@ -62,7 +62,7 @@ net::awaitable<absl::StatusOr<PageFile>> FileAnswers::FindPageFile(const Request
   if (site_.files->IsEmpty()) co_return PageFile();
   const auto found = std::make_shared<PageFile>();
   const bool is_read = request.method() != http::verb::post;
-  // Named, as GCC 12 destroys some temporaries of a co_await twice.
+  // The function has a name because GCC 12 destroys some temporaries of a co_await twice.
   std::function<void()> find =
       [found, files = site_.files, path, closer = std::weak_ptr(site_.file_closer),
        accepted = std::string(View(request[http::field::accept_encoding])),
@@ -139,7 +139,8 @@ net::awaitable<bool> FileAnswers::SendKeptPart(const Request& request, const Kep
   http::response<http::empty_body> header(http::status::ok, request.version());
   const std::string entity_tag = absl::StrCat("\"", file.entity_tag, "\"");
   DescribeKept(entity_tag, header);
-  // All is sent if the contents are not those that the client has a part of. Only GET has parts.
+  // The whole file is sent if its contents differ from those that the client has a part of. Only
+  // GET supports parts.
   const std::string_view only_if = View(request[http::field::if_range]);
   const bool may_be_part =
       request.method() == http::verb::get && (only_if.empty() || only_if == entity_tag);
@@ -177,11 +178,11 @@ net::awaitable<bool> FileAnswers::SendPart(const Request& request,
   const auto end = answers_.EndOfSending(part.bytes);
   std::ostringstream text;
   text << header.base();
-  // Goes with the first of the file.
+  // The header is sent together with the first part of the file.
   std::string unsent_header = text.str();
   if (request.method() == http::verb::head) part.bytes = 0;
   sent_whole_ = false;
-  // Owned by the thread that reads, too, as it may hang.
+  // The reading thread owns this too, because it may hang.
   struct Read {
     std::vector<char> into = std::vector<char>(kFilePart);
     std::ptrdiff_t bytes = 0;
@@ -207,7 +208,8 @@ net::awaitable<bool> FileAnswers::SendPart(const Request& request,
       }
     }
     const auto bytes = static_cast<size_t>(read->bytes);
-    // TLS writes the first buffer by itself if all are too many bytes, and nothing if it is empty.
+    // With TLS, the first buffer is written alone if all together are too long, and nothing is
+    // written if it is empty.
     std::vector<net::const_buffer> buffers;
     if (!unsent_header.empty()) buffers.push_back(net::buffer(unsent_header));
     buffers.push_back(net::buffer(read->into.data(), bytes));

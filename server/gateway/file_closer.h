@@ -1,5 +1,5 @@
-// Closes files on threads of its own: closing one may block as reading it does, as on a network
-// file system that does not answer. Knows no HTTP.
+// Closes files on separate threads. Closing a file can block just as reading can, for example on a
+// network file system that does not respond. It is independent of HTTP.
 #pragma once
 
 #include <unistd.h>
@@ -14,13 +14,14 @@ namespace thunderhead::gateway {
 
 class FileCloser {
  public:
-  // `close` closes a descriptor. `time` must outlive the closer and what it closes.
+  // `close` closes a descriptor. `time` must outlive the closer and the files passed to it.
   explicit FileCloser(std::function<void(int)> close = ::close,
                       const base::TimeSource& time = base::SteadyTime());
   FileCloser(const FileCloser&) = delete;
   FileCloser& operator=(const FileCloser&) = delete;
 
-  // On any thread; does not block. A file stays open where too many wait, and when the closer ends.
+  // Closes a file without blocking; it may be called on any thread. A file stays open if too many
+  // are queued, and when the closer ends.
   void Close(base::FileDescriptor file);
 
  private:

@@ -13,14 +13,14 @@ namespace {
 namespace net = boost::asio;
 using std::chrono::milliseconds;
 
-// Beyond this, work on a file counts as hanging, and another thread takes its place.
+// Work on a file counts as hanging after this time, and another thread replaces its thread.
 constexpr milliseconds kHangsAfter{1000};
 
 base::Executor::Limits LimitsFor(milliseconds timeout) {
   base::Executor::Limits limits;
   limits.threads = 4;
   limits.max_waiting = 1024;
-  // One address may be a whole class's; the threads are shared fairly all the same.
+  // One address may stand for a whole class, and the threads are shared fairly anyway.
   limits.max_waiting_each = limits.max_waiting;
   limits.hangs_after = std::min(kHangsAfter, timeout);
   limits.max_hanging = 16;
@@ -30,19 +30,19 @@ base::Executor::Limits LimitsFor(milliseconds timeout) {
 
 }  // namespace
 
-// A coroutine's wait for work that may outlive it, and even the executor.
+// A coroutine's wait for work. The work may outlive the wait, and even the executor.
 struct FileThreads::Wait {
   std::mutex mutex;
-  net::steady_timer* timer = nullptr;  // null: nobody waits any more
+  net::steady_timer* timer = nullptr;  // null when no coroutine waits any longer
   std::optional<absl::Status> outcome;
 
-  // On any thread.
+  // Reports the outcome; it may be called on any thread.
   static void Tell(const std::shared_ptr<Wait>& wait, const absl::Status& status) {
     const std::lock_guard lock(wait->mutex);
     wait->outcome = status;
     if (wait->timer == nullptr) return;
     net::post(wait->timer->get_executor(), [wait] {
-      // Only this thread ends the wait.
+      // Only this thread ends the wait, so the check needs no lock.
       if (wait->timer != nullptr) wait->timer->cancel();
     });
   }
@@ -76,7 +76,7 @@ net::awaitable<absl::Status> FileThreads::Run(const net::any_io_executor& execut
   waits_.insert(wait.get());
   const auto deadline = time_.Now() + timeout_;
   boost::system::error_code woken;
-  // A timer that has fired already cannot be cancelled, so its outcome does not say it all.
+  // A timer that has already fired cannot be cancelled, so its outcome alone is not sufficient.
   while (!wait->HasEnded() && !stopped_ && time_.Now() < deadline) {
     timer.expires_at(time_.LookAgainAt(deadline));
     co_await timer.async_wait(net::redirect_error(net::use_awaitable, woken));

@@ -1,5 +1,5 @@
-// Threads that open and read files for the gateway's own, which only waits for them: a storage that
-// hangs holds up only those who want its files, and them no longer than a timeout. Knows no HTTP.
+// Threads that open and read files for the gateway's thread. A hanging storage delays only the
+// clients that need its files, and each of them for at most a timeout. It is independent of HTTP.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -18,19 +18,19 @@ namespace thunderhead::gateway {
 
 class FileThreads {
  public:
-  // The timeout is by `time`, which must outlive this.
+  // `time` measures the timeout and must outlive this object.
   FileThreads(std::chrono::milliseconds timeout, const base::TimeSource& time);
   FileThreads(const FileThreads&) = delete;
   FileThreads& operator=(const FileThreads&) = delete;
 
-  // Runs `work` on one of the threads for the client `owner`; OK once it has returned.
-  // DEADLINE_EXCEEDED if it does not in time, or RESOURCE_EXHAUSTED if too much waits, of this
-  // client or in all. `work` must own all that it uses, as it may go on after that. Called on the
-  // one thread of `executor`.
+  // Runs `work` on one of the threads for the client `owner`, and returns OK when it has returned.
+  // Returns DEADLINE_EXCEEDED after the timeout. Returns RESOURCE_EXHAUSTED if too much work of
+  // this client, or in total, is queued. `work` must own everything that it uses, because it may
+  // continue after an error. The function must be called on the only thread of `executor`.
   boost::asio::awaitable<absl::Status> Run(const boost::asio::any_io_executor& executor,
                                            const std::string& owner, std::function<void()> work);
 
-  // Ends all waits now, and each later one at once; on the executor's thread.
+  // Ends all waits now, and each later one at once. It must be called on the executor's thread.
   void StopWaiting();
 
  private:

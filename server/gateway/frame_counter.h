@@ -1,6 +1,6 @@
-// Follows the frames of a WebSocket (RFC 6455, 5.2) in the bytes that its client sends, to limit
-// those that carry nothing. Beast skips empty fragments and answers pings by itself, so a client
-// could keep the gateway's thread busy with millions of them without ever sending a message.
+// Parses the frames of a WebSocket (RFC 6455, 5.2) in the bytes that its client sends, to limit
+// frames without data. Beast skips empty fragments and answers pings automatically. So a client
+// could occupy the gateway's thread with millions of them without sending a message.
 #pragma once
 
 #include <array>
@@ -14,18 +14,17 @@ namespace thunderhead::gateway {
 
 class FrameCounter {
  public:
-  // Control frames and empty frames that a client may send a second; twice as many at once after a
-  // rest.
+  // Maximum number of control frames and empty frames per second, with bursts of twice as many.
   static constexpr int kMostEmptyFramesPerSecond = 100;
 
   explicit FrameCounter(base::Allowance::Time now) : allowance_(kMostEmptyFramesPerSecond, now) {}
 
-  // Takes the next bytes of the connection. Returns false once the client has sent too many frames
-  // that carry nothing.
+  // Parses the next bytes of the connection. Returns false once the client has sent too many frames
+  // without data.
   bool Take(std::span<const std::byte> bytes, base::Allowance::Time now);
 
  private:
-  // Bytes of the current frame's header, as far as its first two bytes tell.
+  // Returns the size of the current frame's header, as far as its first two bytes determine it.
   std::size_t HeaderBytes() const;
   std::uint64_t PayloadBytes() const;
 

@@ -71,7 +71,8 @@ absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error
 
 }  // namespace
 
-// Everything but construction and Stop() runs on `thread_`, so nothing here needs a lock.
+// The listener and its connections. Everything except construction and Stop() runs on `thread_`, so
+// no lock is needed.
 class Gateway::Listener {
  public:
   Listener(const GatewayOptions& options, StaticFiles files, HttpPolicy policy,
@@ -114,7 +115,7 @@ class Gateway::Listener {
           co_await acceptor_.async_accept(net::redirect_error(net::use_awaitable, error));
       if (stopping_) break;
       if (!error) {
-        // Without memory for one more connection, the next may have some.
+        // If memory is missing for one connection, there may be enough for the next.
         const absl::Status admitted = base::Guarded([&] {
           Admit(std::move(socket));
           return absl::OkStatus();
@@ -122,7 +123,8 @@ class Gateway::Listener {
         if (!admitted.ok()) LogRefusal(std::string(admitted.message()));
         continue;
       }
-      // Probably out of file descriptors; trying again at once would waste processor time.
+      // The process has probably run out of file descriptors. Retrying at once would waste
+      // processor time.
       LogRefusal(error.message());
       net::steady_timer pause(io_, kAcceptPause);
       co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
@@ -170,10 +172,10 @@ class Gateway::Listener {
   net::io_context io_{1};
   tcp::acceptor acceptor_;
   tcp::endpoint endpoint_;
-  const std::unique_ptr<TlsContexts> tls_;  // null: connections are plain
-  base::Allowances handshakes_;             // by network
+  const std::unique_ptr<TlsContexts> tls_;  // null if connections are plain
+  base::Allowances handshakes_;             // per network
   OpenLinks links_;
-  base::LineLimit accept_errors_{1};  // without descriptors left there are ten a second
+  base::LineLimit accept_errors_{1};  // without free descriptors there are ten errors a second
   bool stopping_ = false;
   std::thread thread_;
 };
@@ -203,7 +205,7 @@ uint16_t Gateway::Port() const { return listener_->Endpoint().port(); }
 std::string Gateway::Url() const {
   const net::ip::address address = listener_->Endpoint().address();
   const char* const scheme = listener_->IsEncrypted() ? "https://" : "http://";
-  // A browser cannot connect to a wildcard address.
+  // A browser cannot connect to a wildcard address, so the URL names localhost.
   if (address.is_unspecified() || address == net::ip::address_v4::loopback()) {
     return absl::StrCat(scheme, "localhost:", Port(), "/");
   }

@@ -1,7 +1,8 @@
-// Thunderhead for browsers: one HTTP/1.1 port with the built page, /healthz, and a bridge to a gRPC
-// channel: gRPC-Web (binary) for unary and server-streaming calls, a WebSocket for calls of any
-// kind, bidirectional ones too (websocket_protocol.h has its wire format). Knows no message type
-// and nothing of storms. Needs no proxy in front of it; deploy/haproxy/ shows how to add one.
+// Thunderhead for browsers. One HTTP/1.1 port serves the built page, /healthz, and a bridge to a
+// gRPC channel. Unary and server-streaming calls use gRPC-Web (binary). Calls of any kind,
+// including bidirectional ones, use a WebSocket (websocket_protocol.h has its wire format). The
+// gateway is independent of message types and storms. It needs no proxy in front; deploy/haproxy/
+// shows how to add one.
 #pragma once
 
 #include <chrono>
@@ -21,87 +22,90 @@
 
 namespace thunderhead::gateway {
 
-// A file that the service keeps under a path which nobody can guess.
+// A file that the service keeps under a path that cannot be guessed.
 struct KeptFile {
   std::string path;
-  std::string entity_tag;  // another one for other contents; without quotes
-  // Called on the gateway's thread when the client has been sent the file to its end; empty: nobody
-  // is told. Must not block.
+  std::string entity_tag;  // without quotes; differs for different contents
+  // Called on the gateway's thread when the client has been sent the complete file; may be empty.
+  // It must not block.
   std::function<void()> on_sent = nullptr;
 };
 
-// A connection or request that broke a rule or a limit of the gateway, and so became no call.
+// A connection or request that violated a rule or limit of the gateway and therefore became no
+// call.
 struct GatewayRefusal {
-  std::string peer;  // for whom it was, with X-Forwarded-For of trusted proxies
+  std::string peer;  // the client's address, from X-Forwarded-For of trusted proxies
   std::string act;   // "Connect", "Request", "Preflight", "WebSocket", "Message" or "Answer"
-  absl::Status why;  // with a reason for programs; repeats nothing that the client sent
+  absl::Status why;  // with a machine-readable reason; contains nothing that the client sent
 };
 
 struct GatewayOptions {
   // An IP address or "localhost".
   std::string address = "127.0.0.1";
-  // 0 chooses a free one; see Gateway::Port().
+  // The port; 0 chooses a free one, see Gateway::Port().
   uint16_t port = 0;
-  // PEM files, loaded again when they change; both empty: no TLS.
+  // PEM files, which are loaded again when they change. If both are empty, TLS is off.
   std::string tls_certificate;
   std::string tls_key;
-  // Names of this server besides its addresses. Requests for others are refused, so that a foreign
-  // web site cannot reach the server by resolving its own name to it (HttpPolicy has the rules).
+  // Names of this server in addition to its addresses. Requests for other hosts are refused, so
+  // that a foreign web site cannot reach the server by resolving its own name to it (HttpPolicy has
+  // the rules).
   std::vector<std::string> allowed_hosts;
-  // The built page; empty: none.
+  // The folder of the built page; empty for none.
   std::string page_directory;
-  // Finds what the page's folder does not have; empty: nothing more. Must not block.
+  // Finds files that the page's folder does not have; may be empty. It must not block.
   std::function<std::optional<KeptFile>(std::string_view path)> find_kept_file;
-  // Told of each refusal, on the gateway's thread; empty: nobody is. Must not block. A path where
-  // there is nothing, a wrong method and a malformed request are mistakes, not refusals.
+  // Called for each refusal on the gateway's thread; may be empty. It must not block. A nonexistent
+  // path, a wrong method and a malformed request are mistakes, not refusals.
   std::function<void(const GatewayRefusal&)> on_refusal;
   // Origins of other pages that may call, for example "http://localhost:5173". The page served here
-  // needs none.
+  // needs no entry.
   std::vector<std::string> allowed_origins;
-  // Proxies that say by X-Forwarded-For for whom they ask; they may have as many connections as
-  // there are in all.
+  // Proxies that give their client's address in X-Forwarded-For. Their connections are limited only
+  // by max_connections.
   base::TrustedProxies trusted_proxies;
-  // Largest request message; larger ones get RESOURCE_EXHAUSTED, or close a WebSocket with 1009.
-  // Responses are limited only by the channel, and by max_unsent_bytes.
+  // Maximum size of a request message. A larger one gets RESOURCE_EXHAUSTED, or closes a WebSocket
+  // with 1009. Responses are limited only by the channel, and by max_unsent_bytes.
   size_t max_message_bytes = 4u << 20;
-  // Messages of calls' answers that wait for their clients to take them, all together. Beyond it,
-  // the clients that take theirs at the lowest rate, and have had five seconds, are cut off; where
-  // that makes no room, the call ends with RESOURCE_EXHAUSTED.
+  // Maximum size of all response messages that wait for their clients to receive them. Above it,
+  // the clients with the lowest rates are disconnected, if they have had five seconds. If that does
+  // not free enough memory, the call ends with RESOURCE_EXHAUSTED.
   size_t max_unsent_bytes = size_t{512} << 20;
-  // Maximum numbers of connections, in all and from one address. At a maximum, a new connection
-  // takes the place of the most expendable one: the longest that has sent no whole request, or a
-  // WebSocket that the service has not answered, else one that takes long to read a file. Where all
-  // are calls, the new connection is refused.
+  // Maximum numbers of connections, in total and from one address. At a maximum, a new connection
+  // replaces the most expendable one. That is first the one that has gone longest without a
+  // complete request, or a WebSocket that the service has not answered. After those it is one that
+  // takes long to receive a file. If all are calls, the new connection is refused.
   size_t max_connections = 768;
   size_t max_connections_per_address = 512;
-  // By TLS a new connection costs the processor a signature. One address may open so many a second,
-  // twice as many at once; further ones are refused. 0: no limit. Trusted proxies have none.
+  // Maximum number of TLS connections that one address may open per second, with bursts of twice as
+  // many. Further ones are refused, because each costs the processor a signature. 0 means no limit,
+  // and trusted proxies have none.
   double max_handshakes_per_address = 256.0;
-  // Closes a connection without a call on which no request begins within this time.
+  // Timeout of a connection without a call on which no request begins.
   std::chrono::milliseconds idle_timeout = std::chrono::seconds(60);
-  // A request's header, and a TLS handshake, must be complete within this time, a WebSocket's first
-  // message must begin within it, and the body after a header within three times as long.
+  // Timeout of a request's header, of a TLS handshake, and of the start of a WebSocket's first
+  // message. The body after a header has three times as long.
   std::chrono::milliseconds header_timeout = std::chrono::seconds(10);
-  // A file must be found and opened within this time, else the answer is 503; each part of it must
-  // be read from its storage within it, else the connection is closed.
+  // Timeout for finding and opening a file, after which the response is 503. It also applies to
+  // reading each part from storage, after which the connection is closed.
   std::chrono::milliseconds file_timeout = std::chrono::seconds(10);
-  // A file, a text and each message of a call's answer must be taken by the client within three
-  // header timeouts and the time that it takes at this rate.
+  // Minimum rate at which a client must receive a file, a text and each message of a call's
+  // response. Its total time is three header timeouts and the time at this rate.
   double min_bytes_per_second = 8192.0;
-  // Closes a connection whose client accepts no bytes for this time, too, and cancels its call.
-  // Small answers reach the limit of min_bytes_per_second before: by default, those below 720 KiB.
+  // Timeout of a connection whose client accepts no bytes. It also cancels the connection's call.
+  // Small responses reach the limit of min_bytes_per_second first: by default, those below 720 KiB.
   std::chrono::milliseconds write_stall_timeout = std::chrono::seconds(120);
-  // Pings the client of a WebSocket that sent nothing for this time, and drops it, cancelling its
-  // call, if nothing comes for this time again. While it is held back, its machine need only
-  // acknowledge the ping, which it may do 200 ms later.
+  // Interval after which the client of a silent WebSocket is pinged. If nothing arrives during
+  // another interval, it is disconnected and its call is cancelled. While the gateway reads nothing
+  // from the client, its machine need only acknowledge the ping, which it may do 200 ms later.
   std::chrono::milliseconds websocket_ping_interval = std::chrono::seconds(15);
 
-  // Every time above is by this source, which must outlive the gateway.
+  // The time source of all times above, which must outlive the gateway.
   const base::TimeSource* time = &base::SteadyTime();
 
-  // Timeout of a body, of a text and of the first bytes of a file, in timeouts of a header.
+  // Timeout of a body, of a text and of the first bytes of a file, as a multiple of header_timeout.
   static constexpr int kHeaderTimeouts = 3;
-  // How long a client may take for so many bytes.
+  // Returns the time that a client has to receive that many bytes.
   std::chrono::milliseconds DeliveryTime(uint64_t bytes) const {
     return kHeaderTimeouts * header_timeout +
            std::chrono::ceil<std::chrono::milliseconds>(
@@ -111,22 +115,22 @@ struct GatewayOptions {
 
 class Gateway {
  public:
-  // Listens and serves on a thread of its own until destroyed. `channel` may be that of any gRPC
+  // Listens and serves on a separate thread until destroyed. `channel` may connect to any gRPC
   // server; it needs SetMaxReceiveMessageSize(-1) if responses may exceed gRPC's 4 MiB. For a
-  // server in the same process use a Unix socket rather than Server::InProcessChannel(): in
-  // gRPC 1.51 the latter crashes on calls made after Server::Shutdown(), and never ends a call
-  // whose handler finishes before its last message was read.
+  // server in the same process use a Unix socket rather than Server::InProcessChannel(). In gRPC
+  // 1.51 the latter crashes on calls made after Server::Shutdown(), and never ends a call whose
+  // handler finishes before its last message was read.
   static absl::StatusOr<std::unique_ptr<Gateway>> Start(const GatewayOptions& options,
                                                         std::shared_ptr<grpc::Channel> channel);
 
-  // Stops listening, closes every connection (WebSockets with 1001, which a client has a second to
-  // answer), cancels the calls on them and waits for their end.
+  // Stops listening and closes every connection. WebSockets are closed with 1001, and their clients
+  // have a second to answer. Cancels the calls on the connections and waits for their end.
   ~Gateway();
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
   uint16_t Port() const;
-  // The page's address, for example "http://localhost:8080/".
+  // Returns the page's address, for example "http://localhost:8080/".
   std::string Url() const;
 
  private:

@@ -102,7 +102,7 @@ net::awaitable<bool> GrpcWebExchange::WriteHeaders(const Metadata& metadata) {
 net::awaitable<bool> GrpcWebExchange::WriteMessage(grpc::ByteBuffer message) {
   const MessageSlices slices(message);
   const auto frame = MessageFrameHeader(static_cast<uint32_t>(slices.SizeBytes()));
-  // The message is a chunk, written from gRPC's own memory.
+  // The message is sent as a chunk, directly from gRPC's memory.
   const std::string chunk = absl::StrFormat("%x\r\n", slices.SizeBytes() + frame.size());
   std::vector<net::const_buffer> buffers = {net::buffer(chunk), net::buffer(frame)};
   slices.AppendTo(buffers);

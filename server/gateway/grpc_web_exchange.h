@@ -1,6 +1,6 @@
-// One gRPC-Web request and its response: headers, messages and trailers in their frames. Reads each
-// message from the server only when the client has accepted the previous one. Errors are trailers
-// with HTTP status 200, as clients expect. Knows no message type.
+// One gRPC-Web request and its response, with headers, messages and trailers in their frames. It
+// reads each message from the server only after the client has accepted the previous one. Errors
+// are trailers with HTTP status 200, as clients expect. It is independent of message types.
 #pragma once
 
 #include <boost/beast/http/message.hpp>
@@ -19,19 +19,19 @@ class GrpcWebExchange {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
 
-  // All three must outlive the exchange.
+  // All three arguments must outlive the exchange.
   GrpcWebExchange(Site& site, ClientLink& link, const Request& request)
       : site_(site), link_(link), request_(request) {}
 
-  // Makes the call of the complete request. False if the connection cannot be used again.
+  // Makes the call of the complete request. Returns false if the connection cannot be used again.
   boost::asio::awaitable<bool> Run();
-  // Responds without a call; `keep_alive`: the connection may be used again.
+  // Responds without a call. If `keep_alive` is true, the connection may be used again.
   boost::asio::awaitable<bool> Refuse(const absl::Status& status, bool keep_alive);
 
  private:
   absl::StatusOr<UpstreamRequest> Translate() const;
   boost::asio::awaitable<bool> Relay(const UpstreamCall::Lease& call);
-  // Ends the answer for which there is no room, after its headers.
+  // Ends a response after its headers because there is no memory for its message.
   boost::asio::awaitable<bool> RefuseAnswer();
   boost::asio::awaitable<bool> WriteHeaders(const Metadata& metadata);
   boost::asio::awaitable<bool> WriteMessage(grpc::ByteBuffer message);

@@ -1,5 +1,5 @@
-// The wire format of gRPC-Web: frames, trailers, metadata as HTTP headers, timeouts. Pure functions
-// that know no socket, no call and no message type.
+// The wire format of gRPC-Web: frames, trailers, metadata as HTTP headers, and timeouts. The
+// functions are pure, and independent of sockets, calls and message types.
 // https://github.com/grpc/grpc/blob/master/doc/PROTOCOL-WEB.md and PROTOCOL-HTTP2.md
 #pragma once
 
@@ -19,33 +19,33 @@ namespace thunderhead::gateway {
 
 inline constexpr size_t kFrameHeaderBytes = 5;
 
-// Names are lower case; values of names that end in "-bin" are raw bytes here and base64 on the
-// wire.
+// Pairs of name and value. Names are in lower case. Values of names that end in "-bin" are raw
+// bytes here and base64 on the wire.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-// True for application/grpc-web and application/grpc-web+proto, the binary kinds.
+// Returns true for application/grpc-web and application/grpc-web+proto, the binary kinds.
 bool IsBinaryGrpcWeb(std::string_view content_type);
 
-// True for "/package.Service/Method".
+// Returns true for "/package.Service/Method".
 bool IsMethodPath(std::string_view path);
 
-// The one message of a request body.
+// Returns the only message of a request body.
 absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body);
 
-// The header of the frame of a message of `size` bytes.
+// Returns the frame header of a message of `size` bytes.
 std::array<uint8_t, kFrameHeaderBytes> MessageFrameHeader(uint32_t size);
 
-// Encoded trailers as text: a line of "name:value" for each.
+// Returns encoded trailers as text, with one line "name:value" each.
 std::string TrailerBlock(const Metadata& trailers);
 
-// The last frame of a response body.
+// Returns the last frame of a response body.
 std::string TrailerFrame(const Metadata& trailers);
 
-// The trailers of a call: grpc-status, grpc-message unless empty, then `metadata`, encoded for the
-// wire.
+// Returns the trailers of a call, encoded for the wire: grpc-status, grpc-message unless empty, and
+// `metadata`.
 Metadata Trailers(absl::StatusCode code, std::string_view message, const Metadata& metadata);
 
-// `message` in the encoding of grpc-message.
+// Returns `message` in the encoding of grpc-message.
 std::string PercentEncode(std::string_view message);
 
 // Parses a grpc-timeout such as "250m".
@@ -54,10 +54,10 @@ absl::StatusOr<absl::Duration> ParseTimeout(std::string_view text);
 // Adds a request's header to `metadata` unless it belongs to HTTP, the browser or gRPC itself.
 absl::Status AddRequestHeader(std::string_view name, std::string_view value, Metadata& metadata);
 
-// True for response metadata that is forwarded to the browser.
+// Returns true for response metadata that is forwarded to the browser.
 bool IsForwardedToBrowser(std::string_view name);
 
-// `value` of metadata `name` in the encoding of an HTTP header.
+// Returns `value` of the metadata `name` in the encoding of an HTTP header.
 std::string EncodeValue(std::string_view name, std::string_view value);
 
 }  // namespace thunderhead::gateway

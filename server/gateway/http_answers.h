@@ -1,5 +1,5 @@
-// Sends the responses of one HTTP/1.1 connection: their headers as the gateway's policy has them,
-// and within the time that a client has to take them.
+// Sends the responses of one HTTP/1.1 connection. It adds the headers that the gateway's policy
+// requires, and applies the client's time limit.
 #pragma once
 
 #include <boost/beast/http/empty_body.hpp>
@@ -25,21 +25,22 @@ class HttpAnswers {
 
   HttpAnswers(ClientLink& link, Site& site) : link_(link), site_(site) {}
 
-  // True while the client may still be sending its request: the response is the connection's last.
+  // Sets whether the client may still be sending its request. The response is then the connection's
+  // last.
   void SetUnreadInput(bool unread) { unread_input_ = unread; }
   bool HasUnreadInput() const { return unread_input_; }
 
-  // Both return true if the connection may be used again.
+  // Sends a response. Both functions return true if the connection may be used again.
   Awaitable<bool> SendText(const Request& request, boost::beast::http::status status,
                            const std::string& text, std::string_view allowed_methods = {});
   Awaitable<bool> Send(const Request& request, Header& header);
-  // Completes a header whose body the caller sends; true if the connection may be used again
-  // afterwards.
+  // Completes a header whose body the caller sends. Returns true if the connection may be used
+  // again afterwards.
   bool Complete(const Request& request, Header& header);
-  // The end of the time that the client has for this many bytes from now on.
+  // Returns the time by which the client must have received this many bytes.
   ClientLink::Clock::time_point EndOfSending(std::uint64_t bytes) const;
 
-  // The client's address, with its port where that is known.
+  // Returns the client's address, with its port if it is known.
   std::string OwnerOf(const Request& request) const;
   void Tell(const Request& request, const char* act, const absl::Status& refusal) const;
 

@@ -1,4 +1,4 @@
-// Serves one HTTP/1.1 connection: reads requests within their limits and dispatches each to the
+// Serves one HTTP/1.1 connection. It reads requests within their limits and dispatches each to the
 // page, the health check, the cross-origin preflight, the gRPC-Web bridge or a WebSocket.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace thunderhead::gateway {
 
-// At the end `link` is closed. Throws nothing. `site` must outlive it.
+// Serves the connection and closes `link` at the end. It throws nothing. `site` must outlive it.
 boost::asio::awaitable<void> ServeConnection(std::shared_ptr<ClientLink> link, Site& site);
 
 }  // namespace thunderhead::gateway

@@ -16,14 +16,14 @@ namespace {
 
 namespace http = boost::beast::http;
 
-// Pictures are blobs, decoding may run in a worker created from a blob, and sliders have inline
+// Pictures are blobs, a worker for decoding may be created from a blob, and sliders have inline
 // styles.
 constexpr char kContentSecurityPolicy[] =
     "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
     "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'self'; frame-ancestors 'self'";
 
-// Returns "localhost" of "LocalHost:8080" and "[::1]" of "[::1]:8080". Returns nothing if what
-// follows the name is no port.
+// Returns "localhost" for "LocalHost:8080" and "[::1]" for "[::1]:8080". Returns nothing if the
+// name is not followed by a valid port.
 std::optional<std::string> NameOfHost(std::string_view host) {
   const size_t bracket = host.find(']');
   const size_t colon = host.find(':', bracket == std::string_view::npos ? 0 : bracket);
@@ -38,14 +38,14 @@ std::optional<std::string> NameOfHost(std::string_view host) {
   return absl::AsciiStrToLower(std::string(host.substr(0, colon)));
 }
 
-// Returns whether the request has exactly one Transfer-Encoding, which is `chunked` alone, or none.
+// Returns whether the request has no Transfer-Encoding, or exactly one that is only `chunked`.
 bool HasPlainEncoding(const http::request_header<>& request) {
   const auto count = request.count(http::field::transfer_encoding);
   return count == 0 ||
          (count == 1 && boost::beast::iequals(request[http::field::transfer_encoding], "chunked"));
 }
 
-// True for "192.0.2.7" and "[2001:db8::7]".
+// Returns true for addresses such as "192.0.2.7" and "[2001:db8::7]".
 bool IsAddress(const std::string& name) {
   const bool bracketed = name.size() > 2 && name.front() == '[' && name.back() == ']';
   boost::system::error_code error;
@@ -113,7 +113,7 @@ bool HttpPolicy::MayCall(std::string_view origin, std::string_view host) const {
 }
 
 bool HttpPolicy::IsOwnOrigin(std::string_view origin, std::string_view host) const {
-  // A proxy in front may serve the page by https.
+  // Both schemes are accepted, because a proxy in front may serve the page by https.
   for (const std::string_view scheme : {"http://", "https://"}) {
     if (origin.starts_with(scheme)) {
       return boost::beast::iequals(BeastView(origin.substr(scheme.size())), BeastView(host));
@@ -131,7 +131,7 @@ void HttpPolicy::Decorate(std::string_view origin, http::fields& response) const
   response.set(http::field::vary, varies.empty() ? "Origin" : varies + ", Origin");
   if (!AllowsOrigin(origin)) return;
   response.set(http::field::access_control_allow_origin, BeastView(origin));
-  // Metadata may have any name; without credentials the asterisk matches all.
+  // The asterisk matches all names in requests without credentials. Metadata may have any name.
   response.set(http::field::access_control_expose_headers, "*");
 }
 

@@ -1,4 +1,4 @@
-// A message in gRPC's own memory, as buffers to write it from without a copy.
+// A message in gRPC's memory, as buffers for writing it without a copy.
 #pragma once
 
 #include <boost/asio/buffer.hpp>
@@ -19,7 +19,7 @@ class MessageSlices {
   }
 
   size_t SizeBytes() const { return size_bytes_; }
-  // The buffers are valid as long as this object.
+  // Appends the message's buffers, which are valid during the lifetime of this object.
   void AppendTo(std::vector<boost::asio::const_buffer>& buffers) const {
     for (const grpc::Slice& slice : slices_) buffers.emplace_back(slice.begin(), slice.size());
   }

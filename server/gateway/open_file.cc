@@ -13,7 +13,7 @@
 namespace thunderhead::gateway {
 namespace {
 
-// Calls again what a signal has ended.
+// Retries a system call that a signal has interrupted.
 template <typename SystemCall>
 auto Uninterrupted(const SystemCall& call) {
   auto result = call();

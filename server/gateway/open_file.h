@@ -1,5 +1,5 @@
 // A regular file that is open for reading. Its functions may block as long as the storage does, so
-// the gateway calls them by FileThreads; whoever lets it go does not wait for its end.
+// the gateway calls them on FileThreads. Releasing the file does not block.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,17 @@ namespace thunderhead::gateway {
 
 class OpenFile {
  public:
-  // `closer` closes it; after the closer's end it is left open.
+  // Opens a file. `closer` closes it; after the closer's end it is left open.
   static absl::StatusOr<std::shared_ptr<const OpenFile>> Open(const std::string& path,
                                                               std::weak_ptr<FileCloser> closer);
   ~OpenFile();
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
-  // When it was opened.
+  // Returns the file's size when it was opened.
   std::uint64_t Bytes() const { return bytes_; }
-  // Reads at most `most` bytes from `offset` on; none at the file's end, fewer than 0 after an
-  // error.
+  // Reads at most `most` bytes from `offset`. Returns 0 at the end of the file, and a negative
+  // number after an error.
   std::ptrdiff_t Read(std::uint64_t offset, char* into, std::size_t most) const;
 
  private:

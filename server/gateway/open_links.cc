@@ -9,9 +9,9 @@
 namespace thunderhead::gateway {
 namespace {
 
-// A file that is being read for less than this is not cut off for a newcomer.
+// A connection that has been receiving a file for less than this is not closed for a new one.
 constexpr std::chrono::seconds kFairReading{5};
-// Between two lines of the log about refusals: a flood must not fill the disk.
+// Minimum time between two log lines about refusals, so that a flood cannot fill the disk.
 constexpr std::chrono::seconds kTellingPause{10};
 
 bool CanBeSpared(const ClientLink& link, ClientLink::Clock::time_point now) {
@@ -27,8 +27,9 @@ bool CanBeSpared(const ClientLink& link, ClientLink::Clock::time_point now) {
   return false;
 }
 
-// The order in which connections are closed: those that wait for a request or receive one before
-// those that are sent a file, and of each kind the one that has taken longest first.
+// Ranks connections in the order of closing. Connections that wait for a request or receive one
+// come before those that are sent a file. Within each kind, the one that has taken longest comes
+// first.
 auto Rank(const ClientLink& link) {
   return std::tuple(link.Use() == LinkUse::kSending, link.UsedSince());
 }
@@ -56,7 +57,8 @@ bool OpenLinks::CloseLeastNeeded(const std::string* network) {
   }
   if (least == nullptr) return false;
   least->Close();
-  // At once, though its coroutine ends a little later, so that no newcomer finds it again.
+  // The link is removed at once, so that no other new connection finds it again. Its coroutine ends
+  // a little later.
   links_.erase(least);
   return true;
 }

@@ -1,4 +1,4 @@
-// The connections that are open, and which of them makes room for another. Runs on one thread.
+// The open connections, and the choice of the one that is closed for a new one. Runs on one thread.
 #pragma once
 
 #include <chrono>
@@ -17,7 +17,7 @@ namespace thunderhead::gateway {
 
 class OpenLinks {
  public:
-  // Those of `proxies` may have as many as there may be in all. `time` must outlive this.
+  // Addresses in `proxies` are limited only by `most`. `time` must outlive this object.
   OpenLinks(size_t most, size_t most_per_address, base::TrustedProxies proxies,
             const base::TimeSource& time)
       : most_(most),
@@ -25,15 +25,15 @@ class OpenLinks {
         proxies_(std::move(proxies)),
         time_(time) {}
 
-  // Closes a connection for `newcomer` where there are as many as there may be. False if none can
-  // be closed.
+  // Closes a connection for `newcomer` if there is the maximum number. Returns false if none can be
+  // closed.
   bool MakeRoom(const ClientLink& newcomer);
   void Add(const std::shared_ptr<ClientLink>& link) { links_.insert(link); }
   void Remove(const std::shared_ptr<ClientLink>& link) { links_.erase(link); }
   void StopAll();
 
  private:
-  // Closes one, of that network or of any if it is null.
+  // Closes one connection of that network, or of any network if it is null.
   bool CloseLeastNeeded(const std::string* network);
   void TellOfRefusal(const ClientLink& newcomer);
 

@@ -17,7 +17,7 @@ PeerLiveness::Verdict PeerLiveness::Judge(const Observation& seen, Clock::time_p
   const bool is_sending = seen.is_writing || seen.is_pinging;
   if (is_sending && now - last_sent_ >= limits_.write_stall_timeout) return Verdict::kDrop;
   if (seen.is_closing) {
-    // Data sent before the close frame may still be on its way over a slow link.
+    // Data sent before the close frame may still be in flight on a slow link.
     const Clock::time_point since = std::max(closing_since_, last_delivered_);
     return now - since >= limits_.close_timeout ? Verdict::kDrop : Verdict::kFine;
   }
@@ -41,7 +41,7 @@ void PeerLiveness::Note(const Observation& seen, Clock::time_point now) {
 }
 
 void PeerLiveness::NotePing(const Observation& seen, Clock::time_point now) {
-  // The ping queues behind earlier data. A peer that still reads that data is alive.
+  // The ping is queued behind earlier data. A peer that still reads that data is alive.
   const bool was_delivered = !ping_unsent_ && last_.delivered_bytes >= ping_end_bytes_;
   if (seen.delivered_bytes != last_.delivered_bytes && !was_delivered) ping_progress_ = now;
   if (ping_unsent_ && !seen.is_pinging) {

@@ -1,4 +1,5 @@
-// Refusals by the gateway's own rules and limits, as the audit and the metrics have them.
+// Returns and reports refusals by the gateway's own rules and limits, for the audit log and the
+// metrics.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Shared by all connections of a gateway.
+// The state that all connections of a gateway share.
 #pragma once
 
 #include <memory>
@@ -19,13 +19,14 @@ struct Site {
   base::TimeSource::Clock::time_point Now() const { return options.time->Now(); }
 
   GatewayOptions options;
-  std::shared_ptr<const StaticFiles> files;  // their threads may outlive the site
+  // The files are shared, because threads for files may outlive the site.
+  std::shared_ptr<const StaticFiles> files;
   HttpPolicy policy;
   grpc::GenericStub stub;
-  // Apart, so that a storage of results that hangs leaves the page alone.
+  // The threads are separate, so that a hanging storage of results does not affect the page.
   FileThreads page_threads{options.file_timeout, *options.time};
   FileThreads kept_threads{options.file_timeout, *options.time};
-  base::LineLimit failed_reads{1};  // lines of the log about them
+  base::LineLimit failed_reads{1};  // limits the log lines about them
   std::shared_ptr<FileCloser> file_closer = std::make_shared<FileCloser>(::close, *options.time);
   UnsentAnswers unsent_answers{options.max_unsent_bytes, *options.time};
 };

@@ -1,4 +1,5 @@
-// Deadlines of a socket's reads and writes, by the gateway's time source. Runs on one thread.
+// Deadlines of a socket's reads and writes, measured by the gateway's time source. Runs on one
+// thread.
 #pragma once
 
 #include <array>
@@ -11,21 +12,22 @@
 
 namespace thunderhead::gateway {
 
-// Beast's own streams have such deadlines too, but only by the real clock.
+// The deadlines of one socket. Beast's own streams have such deadlines too, but only with the real
+// clock.
 class StreamDeadlines : public std::enable_shared_from_this<StreamDeadlines> {
  public:
   using TimePoint = base::TimeSource::Clock::time_point;
   enum class Way { kRead, kWrite };
 
-  // Both must outlive every Begin().
+  // Both arguments must outlive every Begin().
   StreamDeadlines(boost::asio::ip::tcp::socket& socket, const base::TimeSource& time)
       : socket_(socket), time_(time), timer_(socket.get_executor()) {}
 
-  // Sets the deadline of the operations that begin from now on. Pending ones keep theirs.
+  // Sets the deadline of later operations. Pending operations keep theirs.
   void Set(TimePoint deadline) { next_ = deadline; }
 
-  // At most one operation each way is pending at a time. The socket is closed if the operation has
-  // not ended by its deadline.
+  // Starts the deadline of an operation. At most one operation per direction may be pending. The
+  // socket is closed if the operation has not ended by its deadline.
   void Begin(Way way);
   void End(Way way) { Pending(way) = kNever; }
 

@@ -26,7 +26,7 @@ absl::Status CannotLoad(const std::string& what, const std::string& path, const 
 
 }  // namespace
 
-// Used by the thread that looks alone, but for the newest context.
+// The state of the contexts. Only the checking thread uses it, except for the newest context.
 struct TlsContexts::State {
   using Stamps = std::pair<std::optional<base::FileStamp>, std::optional<base::FileStamp>>;
 
@@ -64,7 +64,7 @@ absl::Status TlsContexts::State::Load() {
                        error);
   context->use_certificate_chain_file(certificate, error);
   if (error) return CannotLoad("certificate", certificate, error);
-  // Fails for the key of another certificate.
+  // This fails if the key belongs to a different certificate.
   context->use_private_key_file(key, ssl::context::pem, error);
   if (error) return CannotLoad("key", key, error);
   const std::lock_guard lock(mutex);
@@ -73,7 +73,7 @@ absl::Status TlsContexts::State::Load() {
 }
 
 void TlsContexts::State::Look() {
-  // One of the two files is replaced before the other: until they match, the old ones are used.
+  // The two files are replaced one after the other. Until they match, the old ones stay in use.
   const Stamps now = StampsNow();
   if (now == stamps) return;
   stamps = now;

@@ -1,6 +1,6 @@
-// The certificate and key of connections by TLS, loaded again when their files change: connections
-// that are open keep what they began with. The files are looked at every second, by a thread of its
-// own: a storage that hangs holds up nobody.
+// The certificate and key of TLS connections, which are loaded again when their files change. Open
+// connections keep those that they began with. A separate thread checks the files every second, so
+// that a hanging storage delays no connection.
 #pragma once
 
 #include <boost/asio/ssl/context.hpp>
@@ -15,12 +15,12 @@ namespace thunderhead::gateway {
 
 class TlsContexts {
  public:
-  // PEM files: the chain, the server's own certificate first, and its key. INVALID_ARGUMENT if they
-  // cannot be read or do not belong together. `time` must outlive it.
+  // Opens PEM files: the chain, with the server's own certificate first, and its key. Returns
+  // INVALID_ARGUMENT if they cannot be read or do not match. `time` must outlive this object.
   static absl::StatusOr<std::unique_ptr<TlsContexts>> Open(
       std::string certificate, std::string key, const base::TimeSource& time = base::SteadyTime());
 
-  // The context of the newest files that could be loaded.
+  // Returns the context of the newest files that could be loaded.
   std::shared_ptr<boost::asio::ssl::context> Current();
 
  private:

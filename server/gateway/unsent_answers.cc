@@ -9,7 +9,7 @@ namespace {
 
 using Clock = ClientLink::Clock;
 
-// Who has had less than this is not cut off for others.
+// A client that has had less than this is not disconnected for others.
 constexpr std::chrono::seconds kFairTime{5};
 
 }  // namespace
@@ -43,7 +43,7 @@ bool UnsentAnswers::MakeRoom(size_t bytes) {
   const auto now = time_.Now();
   size_t spared = 0;
   for (const Answer* answer : answers_) spared += answer->CanBeSpared(now) ? answer->bytes : 0;
-  // Nobody is cut off in vain.
+  // No client is disconnected if that would not free enough memory.
   if (bytes > max_bytes_ - bytes_ + spared) return false;
   while (bytes > max_bytes_ - bytes_) {
     Answer* slowest = nullptr;

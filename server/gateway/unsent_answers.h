@@ -1,5 +1,5 @@
-// The messages of calls' answers that wait for their clients to take them: how much memory they
-// hold in all, and which of them makes room for others. Runs on one thread.
+// The response messages that wait for their clients to receive them: how much memory they use in
+// total, and which clients are disconnected to free memory. Runs on one thread.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@ namespace thunderhead::gateway {
 
 class UnsentAnswers {
  public:
-  // `time` must outlive this.
+  // `time` must outlive this object.
   UnsentAnswers(size_t max_bytes, const base::TimeSource& time)
       : max_bytes_(max_bytes), time_(time) {}
   UnsentAnswers(const UnsentAnswers&) = delete;
   UnsentAnswers& operator=(const UnsentAnswers&) = delete;
 
-  // The place of a message to `link`'s client, given back with the last copy; null if there is
-  // none. To make room, it closes the links whose clients take theirs at the lowest rate, of those
-  // that have had some seconds. The place must outlive neither this nor the link.
+  // Reserves memory for a message to `link`'s client; the last copy of the result releases it.
+  // Returns null if there is not enough memory. To free memory, it closes the links of the slowest
+  // clients, if they have had some seconds. The result must not outlive this object or the link.
   std::shared_ptr<const void> Take(ClientLink& link, size_t bytes);
 
  private:

@@ -36,15 +36,15 @@ UpstreamCall::Lease UpstreamCall::Start(grpc::GenericStub& stub,
   for (const auto& [name, value] : request.metadata) call->context_.AddMetadata(name, value);
   if (request.deadline.has_value()) call->context_.set_deadline(*request.deadline);
 
-  // On the wire every call is a bidirectional one; a unary or server-streaming one writes a single
+  // Every call is bidirectional on the wire. A unary or server-streaming call writes a single
   // message.
   stub.PrepareBidiStreamingCall(&call->context_, request.method, {}, call.get());
   call->self_ = call;
-  // Reads start outside gRPC's callbacks, which requires a hold until the last of them.
+  // Reads start outside gRPC's callbacks, which requires a hold until the last read.
   call->AddHold();
-  // gRPC 1.51's in-process transport never ends the server's side of a call whose handler sends a
-  // message together with its status, as unary ones do, while no read is pending. So the first read
-  // starts before the call.
+  // In gRPC 1.51's in-process transport, a handler may send a message together with its status, as
+  // unary ones do. The server's side of such a call never ends while no read is pending. So the
+  // first read starts before the call.
   call->StartRead(&call->message_);
   if (request.only_message.has_value()) call->WriteOnly(*request.only_message);
   call->StartCall();
@@ -102,7 +102,7 @@ net::awaitable<bool> UpstreamCall::AwaitWritten() {
 }
 
 net::awaitable<grpc::Status> UpstreamCall::Finish() {
-  // Trailers alone leave nothing to read, and cancelling might hide their status.
+  // After trailers alone there is nothing to read, and cancelling might hide their status.
   if (at_end_ || !has_headers_) {
     if (!released_) {
       released_ = true;
@@ -158,7 +158,7 @@ void UpstreamCall::OnDone(const grpc::Status& status) {
   });
 }
 
-// gRPC calls back on threads of its own.
+// gRPC calls back on its own threads, so the change is posted to the executor.
 template <typename Change>
 void UpstreamCall::PostChange(Change change) {
   net::post(executor_, [self = self_, change = std::move(change)] {

@@ -1,6 +1,6 @@
-// One call to the gRPC server, used from the thread of an executor: start it, write messages, read
-// messages one at a time, and await its end. Messages are bytes; knows neither their types nor
-// HTTP.
+// One call to the gRPC server, used from the thread of an executor. A user starts it, writes
+// messages, reads messages one at a time, and awaits its end. Messages are bytes; the call is
+// independent of their types and of HTTP.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -26,14 +26,14 @@ struct UpstreamRequest {
   std::string method;  // "/package.Service/Method"
   Metadata metadata;
   std::optional<std::chrono::system_clock::time_point> deadline;
-  // The message of a unary or server-streaming call. Without it the call's messages follow by
+  // The message of a unary or server-streaming call. Without it, the call's messages follow by
   // BeginWrite(), until BeginHalfClose().
   std::optional<std::string_view> only_message;
 };
 
 class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
-  // Ends its call when destroyed, so that no call outlives its connection.
+  // A lease that ends its call when destroyed, so that no call outlives its connection.
   class Lease {
    public:
     explicit Lease(std::shared_ptr<UpstreamCall> call) : call_(std::move(call)) {}
@@ -41,34 +41,34 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
     Lease& operator=(const Lease&) = delete;
     ~Lease() { call_->Release(); }
     UpstreamCall* operator->() const { return call_.get(); }
-    // For a caller that may still cancel the call after the lease.
+    // Returns the call, for a caller that may still cancel it after the lease.
     std::shared_ptr<UpstreamCall> Share() const { return call_; }
 
    private:
     std::shared_ptr<UpstreamCall> call_;
   };
 
-  // A call whose methods all run on `executor`, which must be one thread.
+  // Starts a call whose methods all run on `executor`, which must have only one thread.
   static Lease Start(grpc::GenericStub& stub, const boost::asio::any_io_executor& executor,
                      const UpstreamRequest& request);
 
-  // False if the server sent only trailers.
+  // Waits for the server's headers. Returns false if the server sent only trailers.
   boost::asio::awaitable<bool> AwaitHeaders();
-  // Reads the server's next message; none after the last.
+  // Reads the server's next message; returns nothing after the last.
   boost::asio::awaitable<std::optional<grpc::ByteBuffer>> ReadMessage();
 
-  // Writes a message, or ends the writing, without waiting: AwaitWritten() must have returned since
-  // the last of these.
+  // Writes a message, or ends the writing, without waiting. AwaitWritten() must have returned since
+  // the last call of either function.
   void BeginWrite(grpc::ByteBuffer message);
   void BeginHalfClose();
-  // Waits until gRPC has taken the last write, which flow control delays while the server does not
-  // read. False if the call accepts no more.
+  // Waits until gRPC has accepted the last write, which flow control delays while the server does
+  // not read. Returns false if the call accepts no further writes.
   boost::asio::awaitable<bool> AwaitWritten();
 
-  // The call's outcome; cancels the call if not all messages were read.
+  // Returns the call's outcome. Cancels the call if not all messages were read.
   boost::asio::awaitable<grpc::Status> Finish();
 
-  // Valid after AwaitHeaders() and Finish(); encoded for the wire.
+  // Returns metadata encoded for the wire. It is valid after AwaitHeaders() and Finish().
   Metadata InitialMetadata() const;
   Metadata TrailingMetadata() const;
 
@@ -92,19 +92,19 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   // Keeps the executor running until gRPC has released the call.
   boost::asio::executor_work_guard<boost::asio::any_io_executor> work_;
   ChangeSignal changed_;
-  std::shared_ptr<UpstreamCall> self_;  // held until gRPC is done with it
+  std::shared_ptr<UpstreamCall> self_;  // held until gRPC has released the call
   grpc::ClientContext context_;
   grpc::ByteBuffer request_;
   grpc::ByteBuffer message_;
 
-  // Written and read on the executor only.
+  // These are written and read only on the executor.
   bool headers_known_ = false;
   bool has_headers_ = false;
   bool is_first_read_ = true;
   bool read_known_ = false;
   bool has_message_ = false;
   bool at_end_ = false;
-  bool written_ = true;  // no write is pending
+  bool written_ = true;  // true while no write is pending
   bool accepts_writes_ = true;
   bool done_ = false;
   bool released_ = false;

@@ -26,7 +26,7 @@ using boost::system::error_code;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kCloseTimeout{5000};
-// For the close frame when the gateway goes away, which waits for its connections.
+// Timeout of the close frame when the gateway shuts down, which waits for its connections.
 constexpr milliseconds kLeaveTimeout{1000};
 constexpr milliseconds kSlowestWatch{500};
 constexpr milliseconds kFastestWatch{5};
@@ -62,8 +62,8 @@ net::awaitable<void> WebSocketExchange::Run(const Request& request,
 }
 
 net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
-  // The stream and the watch limit the time, not the WebSocket's own timeouts: they would drop a
-  // client that is held back, or that is slow to take in a large message.
+  // The stream and the watch limit the time instead of the WebSocket's own timeouts. Those would
+  // drop a client that is held back by flow control, or that is slow to receive a large message.
   socket_.set_option(websocket::stream_base::timeout{websocket::stream_base::none(),
                                                      websocket::stream_base::none(), false});
   link_->Stream().expires_after(site_.options.idle_timeout);
@@ -76,7 +76,7 @@ net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
   link_->Stream().expires_never();
   reader_.Limit(site_.options.max_message_bytes);
   socket_.binary(true);
-  // Otherwise each message would be sent in frames of 4 KiB.
+  // With fragmentation, each message would be sent in frames of 4 KiB.
   socket_.auto_fragment(false);
   accepted_at_ = site_.Now();
   link_->Stream().WatchReads(
@@ -117,7 +117,7 @@ net::awaitable<void> WebSocketExchange::ForwardResponses() {
     const std::optional<grpc::ByteBuffer> message = co_await call_->ReadMessage();
     if (is_closing_) co_return;
     if (!message.has_value()) break;
-    // Only now has the service let it in: until then it makes room for others.
+    // The service has now admitted the call. Until then, the connection can be closed for others.
     if (link_->Use() != LinkUse::kCalling) link_->Begin(LinkUse::kCalling);
     const std::shared_ptr<const void> place = site_.unsent_answers.Take(*link_, message->Length());
     if (place == nullptr) {
@@ -166,7 +166,7 @@ net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffe
 net::awaitable<void> WebSocketExchange::Close() {
   BeginClosing();
   if (is_flooded_) {
-    // Beast takes the failed read for the end of the connection, so the close frame is written
+    // Beast treats the failed read as the end of the connection, so the close frame is written
     // here.
     link_->Stream().expires_after(kLeaveTimeout);
     co_await link_->Stream().WriteLast(CloseFrame(*close_reason_));
@@ -179,9 +179,9 @@ net::awaitable<void> WebSocketExchange::Close() {
     error_code ignored;
     co_await socket_.async_close(*close_reason_, net::redirect_error(net::use_awaitable, ignored));
   } else {
-    // Beside a reader, Beast's closing could wait for it, and it for the closing, for ever: where
-    // it finds a broken frame while the close frame is on its way. So the reader ends alone: by the
-    // client's close frame, its broken one, or a message that the call does not take any more.
+    // Beast's closing and a pending reader could wait for each other forever, if the reader finds a
+    // broken frame while the close frame is in flight. So the reader ends on its own: by the
+    // client's close frame, by a broken frame, or by a message that the call no longer accepts.
     co_await link_->Stream().WriteLast(CloseFrame(*close_reason_));
     co_await changed_.AwaitTrue(reader_ended_);
     if (socket_.is_open()) co_await link_->Stream().LingeringClose();
@@ -244,7 +244,7 @@ net::awaitable<void> WebSocketExchange::Watch() {
 void WebSocketExchange::Judge(PeerLiveness& liveness) {
   const auto now = site_.Now();
   // Beast itself answers a close frame, and closes a connection that breaks the protocol. Its
-  // reader returns only when the TCP connection has ended too.
+  // reader returns only after the TCP connection has ended too.
   if (!socket_.is_open()) BeginClosing();
   const PeerLiveness::Verdict verdict =
       liveness.Judge({link_->ReceivedBytes(), link_->SentBytes(), link_->DeliveredBytes(),

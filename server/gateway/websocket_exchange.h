@@ -1,9 +1,10 @@
-// One call of any kind over a WebSocket, in the format of websocket_protocol.h. Reads each message
-// from the server only when the client has accepted the previous one, and each from the client only
-// when the server's flow control has; both at the same time. Knows no message type.
+// One call of any kind over a WebSocket, in the format of websocket_protocol.h. It reads each
+// message from the server only after the client has accepted the previous one. It reads each
+// message from the client only when the server's flow control allows it. Both directions run
+// concurrently. It is independent of message types.
 //
-// Two coroutines and a timer work on one connection: Run() is the only one that sends messages and
-// closes, ForwardRequests() the only one that receives, Watch() cuts a client that is gone.
+// Two coroutines and a timer use one connection. Only Run() sends messages and closes, only
+// ForwardRequests() receives, and Watch() disconnects a client that no longer responds.
 #pragma once
 
 #include <boost/asio/steady_timer.hpp>
@@ -34,7 +35,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   // `site` must outlive the exchange.
   WebSocketExchange(Site& site, std::shared_ptr<ClientLink> link);
 
-  // Answers the upgrade `request` and makes the call. At the end the link is closed.
+  // Answers the upgrade `request` and makes the call. It closes the link at the end.
   boost::asio::awaitable<void> Run(const Request& request, const UpstreamRequest& upstream);
 
  private:
@@ -54,7 +55,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   boost::asio::awaitable<void> Close();
 
   boost::asio::awaitable<void> ForwardRequests();
-  // The rest of the message that has begun. An error if the connection has ended.
+  // Forwards the rest of the message that has begun. Returns an error if the connection has ended.
   boost::asio::awaitable<boost::system::error_code> ForwardMessage();
 
   boost::asio::awaitable<void> Watch();
@@ -64,7 +65,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   // Ends the call and closes with `reason`, unless it is ending already.
   void EndWith(const CloseReason& reason);
   void GoAway();
-  // Ends the call; what remains is the closing handshake, whose time the watch limits.
+  // Ends the call. Only the closing handshake remains, whose time the watch limits.
   void BeginClosing();
   // Ends the call and the connection at once.
   void Abandon();
@@ -78,13 +79,14 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   std::string client_;
 
   PeerLiveness::Clock::time_point accepted_at_{};
-  bool has_begun_ = false;  // the client's first message has come, or it has ended
+  bool has_begun_ = false;  // true after the client's first message, or if it has ended
   bool is_writing_ = false;
-  PeerLiveness::Clock::time_point write_end_{};  // the client must have taken it by then
+  // The time by which the client must have received the message being written.
+  PeerLiveness::Clock::time_point write_end_{};
   bool is_pinging_ = false;
   bool is_held_back_ = false;
   bool is_closing_ = false;
-  bool is_flooded_ = false;  // with frames that carry nothing
+  bool is_flooded_ = false;  // true after too many frames without data
   std::optional<CloseReason> close_reason_;
   std::optional<std::chrono::steady_clock::time_point> leave_by_;
 

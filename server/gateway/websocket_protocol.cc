@@ -29,7 +29,7 @@ std::optional<std::string> OfferedToken(std::string_view offered) {
     if (!absl::ConsumePrefix(&name, kTokenPrefix) || !absl::WebSafeBase64Unescape(name, &token)) {
       continue;
     }
-    // gRPC aborts the process on metadata with other bytes.
+    // gRPC aborts the process on metadata with other bytes, so they are rejected.
     const bool printable =
         std::ranges::all_of(token, [](unsigned char c) { return absl::ascii_isgraph(c); });
     if (printable && !token.empty()) return token;

@@ -1,5 +1,6 @@
-// A client's messages over a WebSocket, in the format of websocket_protocol.h: the kind of each
-// first, its payload when the call can take it. Knows no call; of any stream of bytes.
+// Reads a client's messages from a WebSocket, in the format of websocket_protocol.h. It reads the
+// kind of each message first, and its payload when the call can accept it. It is independent of
+// calls and works on any byte stream.
 #pragma once
 
 #include <boost/asio/buffer.hpp>
@@ -14,27 +15,27 @@
 
 namespace thunderhead::gateway {
 
-// `Socket` is a boost::beast::websocket::stream, which must outlive the reader.
+// A reader of a `Socket`, which is a boost::beast::websocket::stream and must outlive the reader.
 template <typename Socket>
 class WebSocketReader {
  public:
   explicit WebSocketReader(Socket& socket) : socket_(socket) {}
 
-  // Of the payload. Beast closes a connection whose client sends more.
+  // Limits the size of the payload. Beast closes a connection whose client sends more.
   void Limit(std::size_t max_message_bytes) {
     socket_.read_message_max(max_message_bytes + sizeof(kind_));
   }
 
-  // Waits for the next message, and reads its kind alone: only this byte is read ahead of flow
-  // control. An error if the connection has ended.
+  // Waits for the next message and reads only its kind. Only this byte is read ahead of flow
+  // control. Returns an error if the connection has ended.
   boost::asio::awaitable<boost::system::error_code> ReadStart();
-  // The message that has begun.
+  // Describes the start of the current message.
   MessageStart Start() const {
     return {socket_.got_text(), has_kind_ ? std::optional<uint8_t>(kind_) : std::nullopt,
             !socket_.is_message_done(), half_closed_};
   }
   bool IsHalfClose() const { return has_kind_ && kind_ == kHalfCloseKind; }
-  // Reads the rest of the message that has begun.
+  // Reads the rest of the current message.
   boost::asio::awaitable<boost::system::error_code> ReadPayload(boost::beast::flat_buffer& payload);
 
  private:

@@ -13,7 +13,8 @@ namespace http = boost::beast::http;
 
 std::optional<UpgradeRefusal> FindUpgradeRefusal(const http::request<http::string_body>& request,
                                                  const HttpPolicy& policy) {
-  // Browsers let any page open a WebSocket to any server, and leave it to the server to refuse.
+  // Browsers let any page open a WebSocket to any server, so the server must refuse foreign
+  // origins.
   const std::string_view origin = View(request[http::field::origin]);
   if (!policy.MayCall(origin, View(request[http::field::host]))) {
     return UpgradeRefusal{

@@ -1,4 +1,4 @@
-// Which requests become WebSockets, and why others do not. Knows no socket.
+// Decides which requests become WebSockets, and why others do not. It is independent of sockets.
 #pragma once
 
 #include <boost/beast/http/message.hpp>
@@ -16,7 +16,7 @@ struct UpgradeRefusal {
   std::string text;
 };
 
-// None if `request`, an upgrade to a gRPC method's path, may become a WebSocket.
+// Returns nothing if `request`, an upgrade to a gRPC method's path, may become a WebSocket.
 std::optional<UpgradeRefusal> FindUpgradeRefusal(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
     const HttpPolicy& policy);

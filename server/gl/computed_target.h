@@ -1,16 +1,19 @@
-// Some GPUs compute far faster than they rasterize: of an H100's 132 multiprocessors only a few run
-// fragment shaders. So a fragment shader that draws a whole target can run as a compute shader in
-// its place. Works on texts; knows no GL.
+// Converts fragment shaders to compute shaders. Some GPUs compute far faster than they rasterize:
+// only a few of an H100's 132 multiprocessors run fragment shaders. A fragment shader that draws a
+// whole target can therefore run as a compute shader instead. The code works on texts and does not
+// use GL.
 #pragma once
 
 #include <string>
 
 namespace thunderhead::gl {
 
-// `fragment`, without a `#version`, as the part of a compute shader that draws one pixel;
-// common/whole_target.glsl is the rest. Outputs are declared one a line, `out TYPE NAME;` or
-// `layout(location = N) out TYPE NAME;`, float or vec4, under no condition; the only input is
-// `position`; nothing is discarded and no derivatives are taken.
+// Returns `fragment`, without a `#version`, as the part of a compute shader that draws one pixel.
+// The rest of the shader is common/whole_target.glsl.
+//
+// Outputs must be declared one a line, as `out TYPE NAME;` or `layout(location = N) out TYPE
+// NAME;`, with type float or vec4, and under no preprocessor condition. The only input is
+// `position`. The shader must not discard fragments or take derivatives.
 std::string AsComputedPixel(const std::string& fragment);
 
 }  // namespace thunderhead::gl

@@ -27,7 +27,8 @@ std::string GlString(GLenum name) {
   return text == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(text));
 }
 
-// EGL gives every context of a device the same display, and ends it for all of them.
+// EGL returns one display to all contexts of a device, and eglTerminate ends it for all of them.
+// This class therefore counts the users of a display.
 class SharedDisplay {
  public:
   explicit SharedDisplay(EGLDisplay display) : display_(display) {
@@ -82,7 +83,7 @@ class EglContext final : public Context {
     EGLint count = 0;
     if (eglChooseConfig(display_.Get(), config_attributes, &config, 1, &count) == EGL_FALSE ||
         count == 0) {
-      config = nullptr;  // EGL_KHR_no_config_context
+      config = nullptr;  // allowed by EGL_KHR_no_config_context
     }
     Make(config);
     if (context_ == EGL_NO_CONTEXT) {
@@ -101,8 +102,8 @@ class EglContext final : public Context {
   const ContextInfo& Info() const override { return info_; }
 
  private:
-  // Robust if the driver offers that: a context that tells when the device was reset. Else one that
-  // does not.
+  // Makes a robust context if the driver offers one, because such a context reports when the device
+  // was reset. Otherwise it makes a plain context.
   void Make(EGLConfig config) {
     const std::vector<EGLint> plain = {
         EGL_CONTEXT_MAJOR_VERSION,       4,
@@ -133,13 +134,13 @@ class EglContext final : public Context {
   ContextInfo info_;
 };
 
-// libepoxy cannot resolve the core eglGetPlatformDisplay before a display exists; the EXT entry
-// point it can.
+// libepoxy cannot resolve the core function eglGetPlatformDisplay before a display exists. It can
+// resolve the EXT entry point.
 EGLDisplay PlatformDisplay(EGLenum platform, void* native) {
   return eglGetPlatformDisplayEXT(platform, native, nullptr);
 }
 
-// GPUs only: Mesa also lists its software renderer as a device.
+// Returns only GPUs, because Mesa also lists its software renderer as a device.
 std::vector<EGLDeviceEXT> GpuDevices() {
   std::vector<EGLDeviceEXT> gpus;
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base") &&
@@ -168,8 +169,8 @@ absl::StatusOr<std::unique_ptr<Context>> OpenGpu(EGLDeviceEXT device, std::size_
 }
 
 absl::StatusOr<std::unique_ptr<Context>> OpenSoftware() {
-  // Mesa's surfaceless platform would pick a GPU that Mesa drives; this keeps the word "software"
-  // true.
+  // Without this variable, Mesa's surfaceless platform would choose a GPU that Mesa drives,
+  // although "software" was requested.
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
   EGLDisplay display =
       PlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY));
@@ -178,7 +179,7 @@ absl::StatusOr<std::unique_ptr<Context>> OpenSoftware() {
     auto context = std::make_unique<EglContext>(display);
     status = context->Open("software");
     if (status.ok() && DrawsInSoftware()) return context;
-    // Another driver may offer this platform too.
+    // Another driver may also offer this platform.
     if (status.ok()) {
       status = absl::UnavailableError(
           absl::StrCat("the surfaceless EGL platform draws on ", context->Info().renderer));

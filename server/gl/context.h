@@ -1,5 +1,5 @@
-// A headless OpenGL 4.5 core context through EGL: on a GPU by the device platform, else on Mesa's
-// software renderer by the surfaceless platform. Knows no physics and no scene.
+// A headless OpenGL 4.5 core context through EGL. It runs on a GPU by the device platform, or on
+// Mesa's software renderer by the surfaceless platform. This code does not use physics or scenes.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,16 @@ struct ContextInfo {
   std::string device;          // "software" or "gpu 0"
   std::string renderer;        // GL_RENDERER
   std::string version;         // GL_VERSION
-  bool tells_of_loss = false;  // gl/device_faults.h
+  bool tells_of_loss = false;  // reports loss of the device: gl/device_faults.h
 };
 
-// Owns an EGL display and context. Make it, use it and destroy it on one thread; it is current from
-// Create to its end.
+// Owns an EGL display and context. Create, use and destroy it on one thread. It is current from
+// Create until its destruction.
 class Context {
  public:
-  // `device` is "auto" (the first GPU whose driver works, else software), "software", or a number
-  // N: the Nth GPU, and an error if there is no such GPU or its driver does not work.
+  // Creates a context. `device` is "auto" (the first GPU with a working driver, otherwise
+  // software), "software", or a number N for the Nth GPU. Fails if there is no Nth GPU or its
+  // driver does not work.
   static absl::StatusOr<std::unique_ptr<Context>> Create(std::string_view device);
 
   virtual ~Context() = default;

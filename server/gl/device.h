@@ -3,7 +3,7 @@
 
 namespace thunderhead::gl {
 
-// Mesa's software renderer.
+// Returns true for Mesa's software renderer.
 bool DrawsInSoftware();
 
 }  // namespace thunderhead::gl

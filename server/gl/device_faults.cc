@@ -11,10 +11,11 @@ namespace {
 
 constexpr char kLostReason[] = "DEVICE_LOST";
 constexpr char kOutOfMemoryReason[] = "OUT_OF_DEVICE_MEMORY";
-// Retry delays: until there is a device again, and until other programs need less memory of it.
+// Retry delays: until the device is available again, and until other programs need less of its
+// memory.
 constexpr std::chrono::seconds kLostFor{5};
 constexpr std::chrono::seconds kFullFor{10};
-// A lost context may report errors for ever.
+// A lost context may report errors without end.
 constexpr int kMaxErrors = 16;
 
 class GlWatch final : public DeviceWatch {

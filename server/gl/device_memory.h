@@ -1,5 +1,5 @@
-// The memory of a thread's GL objects: counted in a budget, and refused before it is allocated.
-// Knows no scene.
+// Memory accounting of a thread's GL objects. Their memory counts in a budget, and is refused
+// before it is allocated. This code does not use scenes.
 #pragma once
 
 #include <cstddef>
@@ -10,22 +10,22 @@
 
 namespace thunderhead::gl {
 
-// While it lives, the GL objects that its thread makes are counted in the budget. Without one they
-// are not counted.
+// While an object of this class lives, the GL objects that its thread creates count in the budget.
+// Without one they are not counted.
 class DeviceMemory {
  public:
-  // `drop_unused` deletes something that only this thread keeps and does not draw with now; false
-  // if there is nothing.
+  // `drop_unused` deletes an object that only this thread keeps and does not currently draw with.
+  // It returns false if there is none.
   DeviceMemory(std::shared_ptr<base::MemoryBudget> budget, std::function<bool()> drop_unused);
   ~DeviceMemory();
   DeviceMemory(const DeviceMemory&) = delete;
   DeviceMemory& operator=(const DeviceMemory&) = delete;
 
-  // For an object that this thread is about to make. Throws base::FailedAllocation if there is no
-  // room, also after what is unused has gone.
+  // Reserves memory for an object that this thread is about to create. Throws
+  // base::FailedAllocation if there is not enough memory even after unused objects were dropped.
   static base::MemoryReservation Reserve(std::size_t bytes);
-  // The same for what drawing keeps beside its GL objects, where both lie in one memory: where
-  // processors draw. Elsewhere nothing is counted.
+  // Reserves memory that drawing needs in addition to its GL objects, if both are in main memory,
+  // as with software rendering. On other devices nothing is counted.
   static base::MemoryReservation ReserveBeside(std::size_t bytes);
 
  private:

@@ -1,4 +1,5 @@
-// Every shader file of server/shaders, by its path below that folder; generated at build time.
+// Every shader file of server/shaders, by its path below that folder. The map is generated at build
+// time.
 #pragma once
 
 #include <map>

@@ -23,7 +23,7 @@ struct Declaration {
   std::string size;  // "[SIZE]" of an array
 };
 
-// The uniform that `row` declares, if it can be passed on as a flat input.
+// Returns the uniform that `row` declares, if it can be passed on as a flat input.
 std::optional<Declaration> UniformIn(absl::string_view row) {
   constexpr std::array<std::string_view, 10> kTypes = {"float", "vec2",  "vec3",  "vec4", "int",
                                                        "ivec2", "ivec3", "ivec4", "mat3", "mat4"};
@@ -53,7 +53,8 @@ StageTexts WithFlatUniforms(const StageTexts& texts) {
     if (const std::optional<Declaration> found = UniformIn(row)) in_vertex.insert(found->name);
   }
   StageTexts flat;
-  std::string declarations;  // of the vertex shader, under the fragment shader's conditions
+  // Declarations of the vertex shader, under the fragment shader's conditions.
+  std::string declarations;
   std::string assignments;
   for (const absl::string_view row : absl::StrSplit(texts.fragment, '\n')) {
     const std::optional<Declaration> uniform = UniformIn(row);

@@ -1,7 +1,7 @@
-// Mesa's software renderer reads a uniform in a fragment shader once for every pixel (gallivm 22.3:
-// a shader may start with some pixels off), in a vertex shader once for all. So a fragment shader's
-// uniforms can be handed to it by the vertex shader, as inputs that do not vary. Works on texts;
-// knows no GL.
+// Moves uniforms from fragment shaders to vertex shaders. In a fragment shader, Mesa's software
+// renderer reads a uniform once for every pixel, because some pixels can be inactive (gallivm
+// 22.3). In a vertex shader it reads a uniform once. The vertex shader therefore passes the
+// fragment shader's uniforms on as flat inputs. The code works on texts and does not use GL.
 #pragma once
 
 #include <string>
@@ -13,10 +13,10 @@ struct StageTexts {
   std::string fragment;
 };
 
-// Both texts with that done. Uniforms are declared one a line, `uniform TYPE NAME;` or `uniform
-// TYPE NAME[SIZE];`, arrays by literals and macros; samplers stay as they are. The uniforms keep
-// their names for who sets them. What comes out may have more inputs than a device allows: then the
-// program does not link.
+// Returns both texts with the uniforms moved. Uniforms must be declared one a line, as `uniform
+// TYPE NAME;` or `uniform TYPE NAME[SIZE];`. Array sizes are literals and macros. Samplers stay
+// unchanged. The uniforms keep their names for the code that sets them. The result may have more
+// inputs than a device allows, and then the program does not link.
 StageTexts WithFlatUniforms(const StageTexts& texts);
 
 }  // namespace thunderhead::gl

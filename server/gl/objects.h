@@ -1,7 +1,7 @@
-// Owned OpenGL objects: textures, framebuffers, buffers. Each is freed by its destructor on the
-// thread of the context that made it. Textures and buffers count in gl/device_memory.h before they
-// are made, and throw where there is no room. Uses direct state access (OpenGL 4.5). Knows no
-// physics.
+// Owned OpenGL objects: textures, framebuffers and buffers. Each is freed by its destructor, on the
+// thread of the context that created it. Textures and buffers reserve memory (gl/device_memory.h)
+// before they are created, and throw if there is not enough. The code uses direct state access
+// (OpenGL 4.5) and does not use physics.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -17,7 +17,7 @@
 
 namespace thunderhead::gl {
 
-// Owns one GL name; `Delete` frees it.
+// Owns one GL name, which `Delete` frees.
 template <void (*Delete)(GLuint)>
 class Name {
  public:
@@ -44,9 +44,9 @@ void DeleteBuffer(GLuint name);
 void DeleteVertexArray(GLuint name);
 }  // namespace internal
 
-enum class Edge { kClamp, kZero, kRepeat };  // what a fetch beyond the edge gives
+enum class Edge { kClamp, kZero, kRepeat };  // the result of a fetch beyond the edge
 
-// Bytes of one texel of a sized internal format that this project uses.
+// Returns the bytes of one texel of a sized internal format that this project uses.
 std::size_t BytesPerTexel(GLenum internal_format);
 
 // An immutable two-dimensional texture with linear filtering.
@@ -55,12 +55,12 @@ class Texture2D {
   Texture2D() = default;
   Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge = Edge::kClamp);
 
-  // With all levels down to one texel, for textureLod.
+  // Creates a texture with all levels down to one texel, for textureLod.
   static Texture2D WithMips(GLenum internal_format, glm::ivec2 size, Edge edge);
 
-  // Fills the whole texture, as Texture3D::Upload, and its other levels from it.
+  // Fills the whole texture, like Texture3D::Upload, and generates its other levels.
   void Upload(GLenum format, GLenum type, const void* texels);
-  // Fills the lowest rows of a texture of one level.
+  // Fills the lowest rows of a texture that has one level.
   void UploadRows(int rows, GLenum format, GLenum type, const void* texels);
 
   GLuint Get() const { return name_.Get(); }
@@ -68,9 +68,9 @@ class Texture2D {
   glm::ivec2 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
-  // Fills it with zeros.
+  // Fills the texture with zeros.
   void Clear();
-  // For imageLoad and imageStore.
+  // Binds the texture for imageLoad and imageStore.
   void BindImage(GLuint unit, GLenum access) const;
 
  private:
@@ -93,8 +93,8 @@ class Texture3D {
   Texture3D(GLenum internal_format, glm::ivec3 size, Filter filter = Filter::kLinear,
             Edge edge = Edge::kClamp);
 
-  // Fills the whole texture; `format` and `type` as glTextureSubImage3D takes them, rows tightly
-  // packed.
+  // Fills the whole texture. `format` and `type` are those of glTextureSubImage3D, with tightly
+  // packed rows.
   void Upload(GLenum format, GLenum type, const void* texels);
 
   GLuint Get() const { return name_.Get(); }
@@ -102,11 +102,12 @@ class Texture3D {
   glm::ivec3 Size() const { return size_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
-  // Fills it with zeros.
+  // Fills the texture with zeros.
   void Clear();
-  // The whole texture; waits for what draws it. `texels` has room for it, rows tightly packed.
+  // Reads the whole texture after pending drawing to it. `texels` must have room for it, with
+  // tightly packed rows.
   void Download(GLenum format, GLenum type, std::size_t bytes, void* texels) const;
-  // For imageLoad and imageStore, all layers.
+  // Binds all layers for imageLoad and imageStore.
   void BindImage(GLuint unit, GLenum access) const;
 
  private:
@@ -127,11 +128,11 @@ class Texture2DArray {
   int Layers() const { return layers_; }
   std::size_t Bytes() const { return bytes_; }
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
-  // For imageLoad and imageStore, all layers.
+  // Binds all layers for imageLoad and imageStore.
   void BindImage(GLuint unit, GLenum access) const;
   // Sets the texels of all layers from `low` to before `high`.
   void Fill(const glm::ivec2& low, const glm::ivec2& high, float red, float green) const;
-  // One layer, as four floats a texel; waits for what draws it.
+  // Reads one layer as four floats a texel, after pending drawing to it.
   std::vector<float> Download(int layer) const;
 
  private:
@@ -143,21 +144,22 @@ class Texture2DArray {
   GLenum internal_format_ = 0;
 };
 
-// A framebuffer with colour attachments, a depth attachment (GL_DEPTH_COMPONENT32F), or both, which
-// it does not own.
+// A framebuffer with colour attachments, a depth attachment (GL_DEPTH_COMPONENT32F), or both. It
+// does not own the attachments.
 class Framebuffer {
  public:
   Framebuffer() = default;
   explicit Framebuffer(const Texture2D& color);
-  // All textures have one size; drawn to in this order.
+  // Creates a framebuffer with the colour attachments in this order. All textures must have one
+  // size.
   explicit Framebuffer(std::initializer_list<const Texture2D*> colors,
                        const Texture2D* depth = nullptr);
 
-  // Binds it for drawing and sets the viewport to the whole texture.
+  // Binds the framebuffer for drawing and sets the viewport to the whole texture.
   void Bind() const;
   void Clear(float red, float green, float blue, float alpha, int attachment = 0) const;
   void ClearDepth(float depth) const;
-  // The colour attachments for imageStore, from `unit` on.
+  // Binds the colour attachments for imageStore, beginning with `unit`.
   void BindImages(GLuint unit) const;
   GLuint Get() const { return name_.Get(); }
   glm::ivec2 Size() const { return size_; }
@@ -183,7 +185,7 @@ class Buffer {
 
   GLuint Get() const { return name_.Get(); }
   std::size_t Bytes() const { return bytes_; }
-  // As shader storage.
+  // Binds the buffer as shader storage.
   void BindStorage(GLuint binding) const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, name_.Get());
   }
@@ -194,12 +196,13 @@ class Buffer {
   Name<internal::DeleteBuffer> name_;
 };
 
-// A vertex array; with no attributes it serves shaders that make their vertices from gl_VertexID.
+// A vertex array. Without attributes it serves shaders that compute their vertices from
+// gl_VertexID.
 class VertexArray {
  public:
-  // An array without attributes.
+  // Creates an array without attributes.
   static VertexArray Empty();
-  // Attribute 0 is a vec3 read tightly packed from `buffer`.
+  // Creates an array whose attribute 0 is a vec3, read tightly packed from `buffer`.
   static VertexArray OfPositions(const Buffer& buffer);
 
   void Bind() const { glBindVertexArray(name_.Get()); }

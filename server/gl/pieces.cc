@@ -10,23 +10,24 @@
 namespace thunderhead::gl {
 namespace {
 
-// Target duration of a piece. Where its content costs more than the measured one, it may take twice
-// as long.
+// Target duration of a piece. If its content costs more than the measured one, a piece may take
+// twice as long.
 constexpr double kPiece_ms = 15.0;
-// Minimum time left in a piece that is worth starting another pass in.
+// Minimum time left in a piece for starting another pass in it.
 constexpr double kLeast_ms = 4.0;
-// Safety factor on the guessed cost of an item while nothing has been measured; each measured piece
+// Safety factor on the guessed cost of an item before anything was measured. Each measured piece
 // halves it.
 constexpr double kCaution = 2.0;
 // Safety factor on the cost of an item in the last piece.
 constexpr double kAbove = 1.25;
-// Weight of the costliest item so far, whose cost is forgotten slowly: by half in 35 pieces.
+// Weight of the costliest item so far. Its cost is forgotten slowly, by half in 35 pieces.
 constexpr double kOfWorst = 0.5;
 constexpr double kForgetting = 0.98;
-// Tiles are whole blocks of this size, whose pixels GPUs and software renderers draw together.
+// Tiles are multiples of blocks of this size, because GPUs and software renderers draw the pixels
+// of a block together.
 constexpr int kBlock_px = 8;
-// Height of tiles where a row of the picture is too much for a piece: such tiles stay wide, and
-// their parts are drawn at the same time.
+// Minimum height of tiles if a row of the picture is too much for a piece. Such tiles stay wide, so
+// that their parts are drawn in parallel.
 constexpr int kMinRows = 8;
 
 }  // namespace

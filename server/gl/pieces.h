@@ -1,7 +1,7 @@
-// Cuts drawing into pieces of some 30 ms, so that contexts that share a device can draw in turn,
-// and drawing that nobody wants any more ends soon. What is drawn does not depend on where it is
-// cut. Each context has its own: state that stays bound between two pieces is its own, too. Use it
-// on the context's thread. Knows no physics.
+// Cuts drawing into pieces of about 30 ms. Contexts that share a device can then draw in turn, and
+// cancelled drawing ends soon. The result does not depend on where the work is cut. Each context
+// has its own Pieces, and so its own GL state, which stays bound between two pieces. Use it on the
+// context's thread. This code does not use physics.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,8 @@
 
 namespace thunderhead::gl {
 
-// The guessed cost of an item (a pixel, a row, a cell) of one kind of work, until one has been
-// measured. Costs are learnt by name.
+// The guessed cost of an item (a pixel, a row, a cell) of one kind of work, used until one has been
+// measured. Costs are measured by name.
 struct PieceCost {
   std::string_view name;
   double guess_ns = 1.0;
@@ -26,25 +26,26 @@ struct PieceCost {
 
 class Pieces {
  public:
-  // Everything in one piece.
+  // Draws everything in one piece.
   Pieces() = default;
-  // In pieces for which `turn` is taken; it must outlive this.
+  // Takes `turn` for each piece. It must outlive this object.
   explicit Pieces(base::DeviceTurn* turn) : turn_(turn) {}
   Pieces(const Pieces&) = delete;
   Pieces& operator=(const Pieces&) = delete;
 
-  // Draws by `draw`, which begins and ends without the turn and has it in between.
+  // Draws with `draw`. The turn is taken before the call and given back after it.
   template <typename Draw>
   auto During(const Draw& draw) -> decltype(draw()) {
     if (absl::Status taken = Take(); !taken.ok()) return taken;
-    const Held held(*this);  // allocations may fail
+    const Held held(*this);  // gives the turn back even if an allocation throws
     return draw();
   }
 
-  // Marks a place between two pieces: lets others draw if this piece has lasted long enough.
+  // Marks a place where drawing may be interrupted. Lets other contexts draw if this piece has
+  // lasted long enough.
   absl::Status Between();
 
-  // Runs `work`, which uses little of the device but much of this thread, without the turn.
+  // Runs `work` without the turn. `work` uses little of the device but much time of this thread.
   template <typename Work>
   absl::Status OffTurn(const Work& work) {
     if (turn_ == nullptr) {
@@ -60,18 +61,19 @@ class Pieces {
   // Runs the items from 0 to before `count`, some in each piece.
   absl::Status Steps(const PieceCost& cost, int count,
                      const std::function<void(int begin, int end)>& run);
-  // Draws `whole` in tiles; `draw` is called with the scissor test set to one.
+  // Draws `whole` in tiles. `draw` is called with the scissor test set to one tile.
   absl::Status Tiles(const PieceCost& cost, const PixelRect& whole,
                      const std::function<void()>& draw);
 
-  // True the first time for a program, which must be compiled off turn before its first piece.
+  // Returns true for the first call with a program, which must be compiled off turn before its
+  // first piece.
   bool IsNew(unsigned int program);
 
-  // Why work without the turn, which takes long, must end; OK while it may go on. Safe from any
-  // thread.
+  // Returns why long work without the turn must end, or OK while it may continue. It is safe to
+  // call from any thread.
   absl::Status Wanted() const { return turn_ == nullptr ? absl::OkStatus() : turn_->Wanted(); }
 
-  // How long drawing has waited for turns in all.
+  // Returns the total time for which drawing has waited for turns.
   double WaitedMs() const { return waited_ms_; }
 
  private:
@@ -79,7 +81,7 @@ class Pieces {
   struct Pace {
     double worst = 0.0;
     double last = 0.0;
-    double unmeasured;  // what it may cost where nothing was measured
+    double unmeasured;  // possible cost of an unmeasured item
   };
 
   struct Held {

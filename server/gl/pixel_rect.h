@@ -1,4 +1,4 @@
-// A rectangle of pixels.
+// A rectangle of pixels and its operations.
 #pragma once
 
 #include "glm/common.hpp"
@@ -6,7 +6,7 @@
 
 namespace thunderhead::gl {
 
-// Rows are counted from the bottom; `high` is not included.
+// A rectangle whose rows are counted from the bottom. `high` is not included.
 struct PixelRect {
   glm::ivec2 low{0};
   glm::ivec2 high{0};
@@ -16,7 +16,7 @@ struct PixelRect {
   bool operator==(const PixelRect&) const = default;
 };
 
-// The rectangle around both; an empty one counts for nothing.
+// Returns the bounding rectangle of both. An empty rectangle is ignored.
 inline PixelRect Around(const PixelRect& a, const PixelRect& b) {
   if (a.Empty()) return b;
   if (b.Empty()) return a;

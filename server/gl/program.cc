@@ -58,7 +58,7 @@ absl::StatusOr<std::string> TextOf(const std::string& path) {
   return text;
 }
 
-// The text of a compute shader that draws each pixel of a whole target as `fragment` does.
+// Returns the text of a compute shader that draws each pixel of a whole target as `fragment` does.
 absl::StatusOr<std::string> ComputedTextOf(const std::string& fragment) {
   std::string text;
   std::set<std::string> included;
@@ -94,12 +94,12 @@ absl::StatusOr<Shader> Compile(GLenum type, const std::string& path, const std::
   return shader;
 }
 
-// The program of `texts`, one a stage; `paths` are for messages.
+// Links the program of `texts`, one for each stage. `paths` are for messages.
 absl::StatusOr<Name<internal::DeleteProgram>> LinkTexts(
     const std::vector<std::pair<GLenum, std::string>>& texts,
     const std::vector<std::string>& paths) {
   Name<internal::DeleteProgram> program(glCreateProgram());
-  std::vector<Shader> shaders;  // stay until the program is linked
+  std::vector<Shader> shaders;  // must live until the program is linked
   for (std::size_t i = 0; i < texts.size(); ++i) {
     THUNDERHEAD_ASSIGN_OR_RETURN(Shader shader, Compile(texts[i].first, paths[i], texts[i].second));
     glAttachShader(program.Get(), shader.Get());
@@ -122,7 +122,7 @@ std::vector<std::string> PathsOf(const ProgramSource& source) {
   return {source.vertex, source.fragment};
 }
 
-// `texts` are those of PathsOf(source).
+// Links the stages of `source`. `texts` are those of PathsOf(source).
 absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& source,
                                                          const std::vector<std::string>& texts) {
   if (!source.compute.empty()) {
@@ -135,7 +135,7 @@ absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& so
                      PathsOf(source));
   };
   if (DrawsInSoftware()) {
-    // More of them than there may be inputs stay uniforms.
+    // If there are more uniforms than possible inputs, linking fails and they stay uniforms.
     auto program = link(WithFlatUniforms(stages));
     if (program.ok()) return program;
   }

@@ -1,5 +1,5 @@
-// Shader programs and their variants. Sources come from the embedded shader files; `#include
-// "path"` is resolved among them. Knows no physics.
+// Shader programs and their variants. Sources come from the embedded shader files, among which
+// `#include "path"` is resolved. This code does not use physics.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -27,7 +27,7 @@ namespace internal {
 void DeleteProgram(GLuint name);
 }  // namespace internal
 
-// A name and value that the preprocessor sees.
+// A name and value for the preprocessor.
 struct Define {
   std::string name;
   int value = 0;
@@ -39,8 +39,8 @@ using Defines = std::vector<Define>;
 
 Defines Joined(Defines first, const Defines& more);
 
-// The value of a macro in a struct that describes a shader's variant. It has no default, so that a
-// variant that leaves one out does not compile.
+// The value of a macro in a struct that describes a shader's variant. It has no default, so a
+// variant that omits a macro does not compile.
 class DefineValue {
  public:
   DefineValue(int value) : value_(value) {}  // NOLINT(google-explicit-constructor)
@@ -50,7 +50,7 @@ class DefineValue {
   int value_;
 };
 
-// The files and the variant of a program: vertex and fragment, or compute alone.
+// The files and the variant of a program: vertex and fragment shader, or only a compute shader.
 struct ProgramSource {
   std::string vertex;    // e.g. "cumulus/bubble.vert"
   std::string fragment;  // e.g. "half_angle/eye.frag"
@@ -59,7 +59,7 @@ struct ProgramSource {
   bool whole_target = false;  // may run as a compute shader instead: gl/computed_target.h
 
   static ProgramSource Of(std::string vertex, std::string fragment, Defines defines = {});
-  // For gl::WholeTarget; where it blends, the second.
+  // Create sources for gl::WholeTarget. Use the second if drawing blends.
   static ProgramSource WholeTarget(std::string fragment, Defines defines = {});
   static ProgramSource BlendedWholeTarget(std::string fragment, Defines defines = {});
   static ProgramSource Compute(std::string compute, Defines defines = {});
@@ -67,23 +67,23 @@ struct ProgramSource {
   auto operator<=>(const ProgramSource&) const = default;
 };
 
-// The name of a uniform that takes a T, or an array of them. Those of the shaders are generated:
-// shaders/uniforms.h.
+// The name of a uniform with a value of type T, or an array of them. The shaders' uniforms are
+// generated: shaders/uniforms.h.
 template <typename T>
 struct Uniform {
   std::string_view name;
 };
 
-// A linked program. Setting a uniform that the variant does not have does nothing; one that no
-// variant has fails where programs are strict (gl/strict_programs.h).
+// A linked program. Setting a uniform that the variant does not have does nothing. If programs are
+// strict (gl/strict_programs.h), setting a uniform that no variant has fails.
 class Program {
  public:
   static absl::StatusOr<Program> Link(const ProgramSource& source);
-  // `source` is a whole target.
+  // Links a whole-target program. `source` must be a whole target.
   static absl::StatusOr<Program> LinkWholeTarget(const ProgramSource& source, bool computes);
 
   void Use() const { glUseProgram(name_.Get()); }
-  // A whole target that is computed.
+  // Returns true for a whole target that runs as a compute shader.
   bool Computes() const { return computes_; }
   GLuint Get() const { return name_.Get(); }
   template <typename T>
@@ -96,7 +96,7 @@ class Program {
   }
 
  private:
-  // For checks by name.
+  // Data for checks of uniforms by name.
   struct Strict {
     std::string paths;
     std::set<std::string, std::less<>> uniforms;
@@ -127,17 +127,17 @@ class Program {
   std::optional<Strict> strict_;
 };
 
-// A context's programs linked so far, by source, and the pieces that they draw in; links on first
-// use.
+// A context's linked programs by source, and the pieces that they draw in. Programs are linked on
+// first use.
 class ProgramCache {
  public:
   ProgramCache() = default;
-  // Draws in pieces, for which `turn` is taken; it must outlive this.
+  // Takes `turn` for each piece of drawing. It must outlive this object.
   explicit ProgramCache(base::DeviceTurn* turn) : pieces_(turn) {}
 
   gl::Pieces& Pieces() { return pieces_; }
 
-  // The pointer stays valid as long as the cache.
+  // Returns a program. The pointer stays valid as long as the cache.
   absl::StatusOr<const Program*> Get(const ProgramSource& source);
 
  private:

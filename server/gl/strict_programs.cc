@@ -37,7 +37,7 @@ std::vector<std::string> WordsOf(absl::string_view row) {
   return words;
 }
 
-// Bindings that one kind of resource has taken, and by which.
+// Bindings of one kind of resource, with the name that uses each.
 class Bindings {
  public:
   explicit Bindings(std::string kind) : kind_(std::move(kind)) {}

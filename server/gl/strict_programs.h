@@ -1,5 +1,5 @@
-// Checks of a program against the text of its shaders, which tests switch on: GL ignores a uniform
-// or a macro whose name is misspelt, and lets two textures share a unit. Knows no physics.
+// Checks of a program against the text of its shaders, which tests enable. GL ignores a uniform or
+// a macro with a misspelt name, and lets two textures use one unit. This code does not use physics.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -13,18 +13,20 @@
 
 namespace thunderhead::gl {
 
-// True where the environment has THUNDERHEAD_STRICT_PROGRAMS=1 when it is first asked.
+// Returns true if the environment had THUNDERHEAD_STRICT_PROGRAMS=1 at the first call.
 bool StrictPrograms();
 
-// Uniforms that `text` declares in any variant, one a line; samplers and images among them.
+// Returns the uniforms that `text` declares in any variant, one a line, including samplers and
+// images.
 std::set<std::string, std::less<>> DeclaredUniforms(const std::string& text);
 
-// INTERNAL names a define that no text mentions, or a macro in a condition that is defined neither
-// by a define nor in its text. `texts` are those of a program's stages, without the defines.
+// Checks the defines. INTERNAL names a define that no text mentions, or a macro in a condition
+// without a definition. The definition may be a define or in its text. `texts` are those of a
+// program's stages, without the defines.
 absl::Status CheckDefines(const std::vector<std::string>& texts, const Defines& defines);
 
-// INTERNAL names two samplers, two images or two storage buffers of a linked program with the same
-// binding.
+// Checks a linked program. INTERNAL names two samplers, two images or two storage buffers with the
+// same binding.
 absl::Status CheckBindings(GLuint program);
 
 }  // namespace thunderhead::gl

@@ -23,10 +23,11 @@ namespace {
 
 constexpr int kTrials = 3;
 constexpr int kTrialSide_px = 512;
-// Only a clear gain: both ways draw the same picture but for rounding.
+// Compute shaders are used only for a clear gain, because both ways draw the same picture except
+// for rounding.
 constexpr double kClearlyFaster = 1.5;
 
-// The least of some times that the device takes for a target of arithmetic.
+// Returns the shortest of several times that the device needs for a target of arithmetic.
 double TrialMs(const WholeTarget& whole_target, bool computes) {
   const auto program =
       Program::LinkWholeTarget(ProgramSource::WholeTarget("common/arithmetic.frag"), computes);
@@ -86,7 +87,8 @@ absl::Status WholeTarget::Draw(Pieces& pieces, const PieceCost& pixel, const Pro
     }
   };
   if (pieces.IsNew(program.Get())) {
-    // Drivers compile a program for the state that it is drawn with when it first is.
+    // Drivers compile a program for the current GL state when it is first drawn with. An empty
+    // scissor rectangle makes this draw compile without drawing.
     THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
       glEnable(GL_SCISSOR_TEST);
       glScissor(0, 0, 0, 0);

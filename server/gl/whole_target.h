@@ -8,15 +8,15 @@
 
 namespace thunderhead::gl {
 
-// True if the thread's device draws whole targets faster by compute shaders; measured once a
-// process. Software GL always rasterizes. THUNDERHEAD_WHOLE_TARGETS=raster or compute in the
-// environment decides instead.
+// Returns true if the thread's device draws whole targets faster by compute shaders. It is measured
+// once a process. Software GL always rasterizes. THUNDERHEAD_WHOLE_TARGETS=raster or compute in the
+// environment overrides the measurement.
 bool ComputesWholeTargets();
 
 class WholeTarget {
  public:
-  // Draws the whole target, in tiles. The caller sets textures, uniforms and, to draw only a part
-  // of the pixels, a test of the target's depth against 0.5 (GL_DEPTH_TEST with GL_LESS or
+  // Draws the whole target in tiles. The caller sets textures and uniforms. To draw only some
+  // pixels, the caller sets a test of the target's depth against 0.5 (GL_DEPTH_TEST with GL_LESS or
   // GL_GREATER).
   absl::Status Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
                     const Framebuffer& target) const {

@@ -19,13 +19,13 @@ namespace {
 
 using Fields = std::shared_ptr<const volume::HydrometeorFields>;
 
-// One field's extinction (1/m) at cells, and between them.
+// The extinction (1/m) of one field at the grid's cells.
 class FieldExtinction {
  public:
   FieldExtinction(Fields fields, const scene::DrawnField& drawn)
       : fields_(std::move(fields)), drawn_(drawn) {}
 
-  // Of `count` cells of a row from cell `first` on.
+  // Computes the extinction of `count` cells of a row, beginning at cell `first`.
   void Row(const glm::ivec3& first, int count, float* values) const {
     std::fill_n(values, count, 0.0F);
     volume::AddExtinction(fields_->fields[drawn_.index], drawn_.mass_extinction,
@@ -52,7 +52,7 @@ class FieldExtinction {
   scene::DrawnField drawn_;
 };
 
-// The cells of a block of voxels.
+// Fills a block of voxels with the cells' values. Returns false if all are zero.
 bool FillFromCells(const FieldExtinction& extinction, const glm::ivec3& first, VdbBlock& values) {
   const glm::ivec3 count = glm::min(extinction.Grid().cells - first, glm::ivec3(kVdbBlockCells));
   for (int z = 0; z < count.z; ++z) {
@@ -151,7 +151,7 @@ double Number(const VdbGrid& grid, const std::string& name) {
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, const Fields& fields,
                                  const storm_store::StormInfo& storm,
                                  const ExportOptions& options) {
-  // The fields as a technique shows them that leaves nothing out.
+  // The fields are exported as a technique shows them that leaves nothing out.
   scene::Scene shown = scene;
   shown.rendering.technique = scene::LightVolume{};
   VdbFile file;

@@ -1,7 +1,7 @@
 #include "interchange/vdb_file.h"
 
-// The parts of OpenVDB that a file of float grids needs; openvdb/openvdb.h would take twice as
-// long.
+// These are the parts of OpenVDB that a file of float grids needs. openvdb/openvdb.h would take
+// twice as long to compile.
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
@@ -27,7 +27,7 @@ using openvdb::FloatGrid;
 using Leaf = FloatGrid::TreeType::LeafNodeType;
 static_assert(Leaf::DIM == kVdbBlockCells);
 
-// Share of the work that is filling blocks; the rest compresses and writes them.
+// Share of the work that fills blocks; the rest compresses and writes them.
 constexpr double kShareOfFilling = 0.8;
 
 openvdb::Metadata::Ptr ToVdb(const std::variant<std::string, double, std::int64_t>& value) {
@@ -44,7 +44,7 @@ void SetMetadata(const VdbMetadata& metadata, openvdb::MetaMap* map) {
   for (const auto& [name, value] : metadata) map->insertMeta(name, *ToVdb(value));
 }
 
-// World metres of the centre of voxel (x, y, z).
+// Returns the transform from voxel (x, y, z) to the world metres of its centre.
 openvdb::math::Transform::Ptr WorldFromVoxel(const volume::RegularGrid& grid) {
   const glm::dvec3 first_m = grid.low_corner_m + 0.5 * grid.spacing_m;
   return std::make_shared<openvdb::math::Transform>(
@@ -53,7 +53,7 @@ openvdb::math::Transform::Ptr WorldFromVoxel(const volume::RegularGrid& grid) {
           openvdb::Vec3d(first_m.x, first_m.y, first_m.z)));
 }
 
-// The block at `first`; null if all of it is empty.
+// Returns the block at `first`; null if all of it is empty.
 std::unique_ptr<Leaf> FilledLeaf(const VdbGrid& source, const glm::ivec3& first) {
   VdbBlock values{};
   if (!source.fill(first, values)) return nullptr;
@@ -140,7 +140,7 @@ absl::Status WriteVdb(const VdbFile& file, const std::string& path,
                       const std::function<void(double share)>& progress,
                       const std::stop_token& stop) {
   const std::string partial = base::PartialPath(path);
-  // Before the work, which may take a minute.
+  // Checks the folder before the work, which may take a minute.
   if (!std::ofstream(partial, std::ios::binary))
     return absl::FailedPreconditionError(absl::StrCat(
         path, " cannot be written; check that its folder exists and may be written to"));

@@ -210,7 +210,7 @@ std::optional<PicturePlace> JobBoard::Begin(Time now) {
   if (owners.empty()) return std::nullopt;
   const std::string owner = owners_.Next(owners);
   const std::string id = shares_[owner].Next(waiting[owner]);
-  // Until it is known.
+  // The typical time is charged until the actual time is known.
   owners_.Used(owner, typical_ms_);
   shares_[owner].Used(id, typical_ms_);
   PicturePlace picture{id, places[id]};
@@ -261,7 +261,7 @@ void JobBoard::EndIfDone(Entry& entry, Time now) {
   entry.record.ended_at = now;
   ++entry.version;
   unsaved_jobs_.insert(entry.record.id);
-  // Nobody needs them any more.
+  // The requests are no longer needed.
   for (PictureRecord& picture : entry.record.pictures) picture.order.request = {};
 }
 

@@ -1,5 +1,6 @@
-// All jobs as they stand: which pictures wait, are drawn, or came to what end; who is next; what
-// must make room. A plain value that is told the time: knows no threads, files or clocks.
+// The state of all jobs: which pictures wait, are being drawn, or have ended and how; which picture
+// is next; and which results must be evicted. A plain value; the time is an argument. Knows no
+// threads, files or clocks.
 #pragma once
 
 #include <array>
@@ -27,16 +28,16 @@ struct NewJob {
   std::vector<PictureOrder> pictures;
 };
 
-// The person or program that asks about a job.
+// The person or program that makes a request about a job.
 struct Asker {
   std::string name;
-  bool is_operator = false;  // who may ask about everybody's
+  bool is_operator = false;  // may access all owners' jobs
 };
 
 using PictureCounts = std::array<std::size_t, kPictureStates>;
 inline std::size_t IndexOf(PictureState state) { return static_cast<std::size_t>(state); }
 
-// A job without its pictures.
+// The state of a job without its pictures.
 struct JobView {
   std::string id;
   std::string result_key;
@@ -48,7 +49,7 @@ struct JobView {
   bool cancelled = false;
   PictureCounts counts{};
   std::uint64_t result_bytes = 0;
-  // Why none of its pictures is begun now: results must be fetched first.
+  // Set if no picture may be begun because results must be fetched first.
   std::optional<Problem> paused;
 };
 
@@ -62,14 +63,14 @@ struct PictureView {
   double milliseconds = 0.0;
 };
 
-// A job, and those of its pictures that have changed since a version of it.
+// A job, and its pictures that changed after a given version.
 struct JobNews {
   JobView job;
   std::vector<PictureView> pictures;
   std::uint64_t version = 0;
 };
 
-// A picture of a job by its place.
+// Identifies a picture by its job and its place in it.
 struct PicturePlace {
   std::string job_id;
   std::size_t place = 0;
@@ -92,51 +93,53 @@ class JobBoard {
 
   explicit JobBoard(const JobLimits& limits) : limits_(limits) {}
 
-  // A job of a store.
+  // Adds a job from a store.
   void Restore(JobRecord record, Time now);
 
-  // Adds a job under that id, and forgets jobs that have ended where there are too many, the
-  // owner's own first; not those with results that nobody has fetched. RESOURCE_EXHAUSTED, and none
-  // is forgotten, if that does not help.
+  // Adds a job under that id. If there are too many jobs, forgets ended jobs first, the owner's own
+  // before others. Jobs with unfetched results are not forgotten. RESOURCE_EXHAUSTED if that does
+  // not suffice; then no job is forgotten.
   absl::Status Add(const std::string& id, const std::string& result_key, NewJob job, Time now);
-  // The job as a store is to have it; it must be there.
+  // Returns the job's record to store. The job must exist.
   const JobRecord& Record(const std::string& id) const { return jobs_.at(id).record; }
-  // From now on its pictures may be begun. No error if it is not there.
+  // Allows the job's pictures to be begun. Does nothing if the job does not exist.
   void SetSaved(const std::string& id);
 
-  // NOT_FOUND, or PERMISSION_DENIED if it is another's.
+  // NOT_FOUND if the job does not exist; PERMISSION_DENIED if it belongs to another owner.
   absl::Status Check(const std::string& id, const Asker& asker) const;
-  // Changes after `version`; of 0 everything. Nothing for a job that is not there.
+  // Returns the changes after `version`; for version 0, everything. None if the job does not exist.
   std::optional<JobNews> NewsOf(const std::string& id, std::uint64_t version) const;
-  // In the order in which they were created.
+  // Returns all jobs in the order of their creation.
   std::vector<JobView> All() const;
-  // NOT_FOUND for a picture without a file, FAILED_PRECONDITION for one that has not ended.
+  // NOT_FOUND if the picture has no file; FAILED_PRECONDITION if it has not ended.
   absl::StatusOr<ResultFile> ResultOf(const PicturePlace& picture) const;
-  // The id of the job with that key for its results; empty if there is none.
+  // Returns the id of the job with that result key; empty if there is none.
   std::string IdOfKey(const std::string& result_key) const;
 
-  // Marks the picture that is next as being drawn; nothing if none may be begun now, as where the
-  // results that nobody has fetched leave no room.
+  // Marks the next picture as being drawn and returns it. None if no picture may be begun now, for
+  // example because unfetched results use up the quota.
   std::optional<PicturePlace> Begin(Time now);
   const PictureOrder& OrderOf(const PicturePlace& picture) const;
-  // When the next of those that were put back may be begun again; nothing if there is none.
+  // Returns when the next picture that was put back may be begun again; none if there is none.
   std::optional<Time> NextRetry(Time now) const;
 
-  // The ends of a picture that was begun. False if it is not being drawn any more, as its job was
-  // cancelled.
+  // Record the end of a picture that was begun. They return false if it is no longer being drawn
+  // because its job was cancelled.
   bool Drawn(const PicturePlace& picture, const ResultFile& file, double milliseconds,
              double draw_ms, Time now);
   bool Fail(const PicturePlace& picture, const Problem& problem, Time now);
-  // It will be begun again, not before that time. `counts` if it was its own fault.
+  // Puts the picture back, to be begun again at `not_before` or later. `counts` says whether the
+  // attempt counts against the picture.
   bool PutBack(const PicturePlace& picture, bool counts, Time not_before);
   bool IsDrawing(const PicturePlace& picture) const;
-  // False for one that Begin has just taken once too often.
+  // Returns false if Begin has just taken the picture once too often.
   bool MayBegin(const PicturePlace& picture) const { return Attempts(picture) <= kMaxAttempts; }
-  // How often it was begun, but for tries that did not count; above kMaxAttempts if it is gone.
+  // Returns how often the picture was begun, without attempts that did not count. Above
+  // kMaxAttempts if the picture no longer exists.
   int Attempts(const PicturePlace& picture) const;
 
   void Fetched(const PicturePlace& picture, Time now);
-  // Cancels what has not ended.
+  // Cancels the job's pictures that have not ended.
   void Cancel(const std::string& id, Time now);
   void Forget(const std::string& id);
   // The outcome of Expire. The files of dropped results are to be removed.
@@ -144,31 +147,33 @@ class JobBoard {
     std::vector<ResultFile> dropped;
     std::size_t failed = 0;  // pictures that will not be drawn
   };
-  // Forgets what was kept long enough. Ends jobs that nobody has fetched anything of for as long
-  // while they were paused for that, and drops their results: else they would stop everybody's
-  // drawing for ever.
+  // Forgets jobs that have ended and were kept long enough. Also ends jobs whose results were not
+  // fetched for as long while they paused the drawing, and drops their results. Otherwise such jobs
+  // would stop all drawing indefinitely.
   Expired Expire(Time now);
-  // When it next has something to do; nothing if never by itself.
+  // Returns when Expire has something to do next; none if it never has without other changes.
   std::optional<Time> NextExpiry() const;
-  // The jobs whose drawing was paused, or goes on, since the last call: news for who watches them.
+  // Returns the jobs whose drawing was paused or resumed since the last call, for their watchers.
   std::vector<std::string> TakePauses();
-  // Drops results that were fetched, where there are too many: those of jobs that have ended first,
-  // then the oldest. Returns them.
+  // Drops fetched results if the results exceed their limit, and returns them. Results of ended
+  // jobs go first, then the oldest.
   std::vector<ResultFile> MakeRoom();
 
-  // Changes that no store has yet; they are taken to be saved.
+  // Returns the changes that are not stored yet, and marks them as saved.
   std::vector<JobChange> TakeChanges();
-  // The changes could not be saved.
+  // Takes changes back that could not be saved.
   void GiveBack(const std::vector<JobChange>& changes);
-  // The jobs that were forgotten since the last call; they are taken to be removed from the store.
+  // Returns the jobs that were forgotten since the last call, and assumes that the store removes
+  // them.
   std::vector<std::string> TakeForgotten() { return std::exchange(forgotten_, {}); }
-  // They could not be removed.
+  // Takes ids back that could not be removed.
   void GiveBackForgotten(const std::vector<std::string>& ids);
 
-  // Of all jobs.
+  // Returns the counts over all jobs.
   PictureCounts Counts() const;
   std::size_t Running() const;
-  // Pictures that wait and may not be begun, as results must be fetched first.
+  // Returns the number of waiting pictures that may not be begun because results must be fetched
+  // first.
   std::size_t Paused() const;
   std::uint64_t ResultBytes() const { return result_bytes_; }
   std::set<std::string> Ids() const;
@@ -176,23 +181,23 @@ class JobBoard {
  private:
   struct Entry {
     JobRecord record;
-    std::uint64_t order = 0;  // of creation
+    std::uint64_t order = 0;  // order of creation
     std::uint64_t version = 0;
-    std::vector<std::uint64_t> versions;  // of pictures, when they changed last
-    std::vector<Time> not_before;         // of pictures
+    std::vector<std::uint64_t> versions;  // versions at which pictures last changed
+    std::vector<Time> not_before;         // earliest starts of pictures
     PictureCounts counts{};
     std::uint64_t result_bytes = 0;
-    std::uint64_t unfetched_bytes = 0;  // of them, those that nobody has fetched
-    std::size_t unfetched = 0;          // such results
-    std::size_t first_waiting = 0;      // none before it waits
-    // When a result was drawn or fetched last; not kept over a restart if it was fetched.
+    std::uint64_t unfetched_bytes = 0;  // the part of result_bytes that was not fetched
+    std::size_t unfetched = 0;          // number of unfetched results
+    std::size_t first_waiting = 0;      // no picture before this one is waiting
+    // When a result was last drawn or fetched. A restart loses the time of fetching.
     Time last_used = {};
     bool saved = false;
-    bool was_paused = false;  // as TakePauses saw it last
+    bool was_paused = false;  // as the last TakePauses saw it
   };
   using Jobs = std::map<std::string, Entry>;
 
-  // Bytes of results that nobody has fetched.
+  // Bytes of unfetched results.
   struct Unfetched {
     std::uint64_t all = 0;
     std::map<std::string, std::uint64_t> by_owner;
@@ -202,24 +207,26 @@ class JobBoard {
   void Erase(Jobs::iterator job);
   JobView ViewOf(const Entry& entry, const Unfetched& unfetched) const;
   Unfetched UnfetchedBytes() const;
-  // Why no picture of that owner may be begun; nothing if one may.
+  // Returns why no picture of that owner may be begun; none if one may.
   std::optional<Problem> PausedBecause(const std::string& owner, const Unfetched& unfetched) const;
-  // Adds a drawn picture to the entry's sums, or takes it from them.
+  // Adds a drawn picture to the entry's sums, or subtracts it.
   void AddResult(Entry& entry, const PictureRecord& picture);
   void RemoveResult(Entry& entry, const PictureRecord& picture);
   std::size_t Unended(const Entry& entry) const;
   absl::Status CheckPictures(const NewJob& job) const;
   absl::Status MakeRoomForJob(const NewJob& job);
-  // Jobs and their pictures, of that owner; null: of everybody.
+  // Returns the numbers of kept jobs and their pictures, of that owner or, if null, of all owners.
   std::pair<std::size_t, std::size_t> Kept(const std::string* owner) const;
-  // Those that have ended and whose results were all fetched: of that owner first, then the oldest.
+  // Returns the jobs that have ended and whose results were all fetched: first those of that owner,
+  // then the oldest.
   std::vector<Jobs::iterator> Forgettable(const std::string& first_of);
-  // When that job ends as nobody fetches; nothing if it goes on, or waits for other jobs alone.
+  // Returns when the job ends because its results are not fetched. None if the job continues, or
+  // only waits for other jobs.
   std::optional<Time> AbandonedAt(const Entry& entry, const Unfetched& unfetched) const;
   void EndAbandoned(Entry& entry, Time now, Expired& expired);
   void SetState(Entry& entry, std::size_t place, PictureState state);
   void EndIfDone(Entry& entry, Time now);
-  // The first that may be begun; nothing if there is none.
+  // Returns the first picture that may be begun; none if there is none.
   std::optional<std::size_t> Waiting(Entry& entry, Time now) const;
   PictureRecord* Drawing(const PicturePlace& picture, Entry** entry);
 
@@ -232,8 +239,8 @@ class JobBoard {
   std::set<std::string> unsaved_jobs_;
   std::vector<std::string> forgotten_;
   base::FairShare owners_;
-  std::map<std::string, base::FairShare> shares_;  // of an owner's jobs
-  std::map<PicturePlace, double> charged_ms_;      // of those being drawn
+  std::map<std::string, base::FairShare> shares_;  // shares of each owner's jobs
+  std::map<PicturePlace, double> charged_ms_;      // of pictures being drawn
   double typical_ms_ = 1.0;
 };
 

@@ -1,6 +1,6 @@
-// How much render jobs may take. What is beyond is refused with RESOURCE_EXHAUSTED and a time after
-// which to try again. Results that were fetched make room for others; while those that nobody has
-// fetched take all that they may, no further picture is begun.
+// Limits of render jobs. Requests beyond them are refused with RESOURCE_EXHAUSTED and a time to
+// retry after. Fetched results are evicted for new ones. While unfetched results use up the quota,
+// no further picture is begun.
 #pragma once
 
 #include <chrono>
@@ -10,23 +10,23 @@
 namespace thunderhead::jobs {
 
 struct JobLimits {
-  // Kept at a time. Jobs that have ended and whose results were fetched make room, the oldest
-  // first.
+  // Kept jobs. Ended jobs with fetched results are forgotten first, the oldest before others.
   std::size_t max_jobs = 1000;
   std::size_t max_jobs_per_owner = 200;
-  // That are to be drawn.
+  // Pictures that are still to be drawn.
   std::size_t max_pictures = 20'000;
   std::size_t max_pictures_per_owner = 5'000;
-  // Of the kept jobs, in whatever state: a picture's record takes up to a kilobyte of memory.
+  // Pictures of kept jobs, in any state. The record of a picture takes up to a kilobyte of memory.
   std::size_t max_kept_pictures = 200'000;
   std::size_t max_kept_pictures_per_owner = 50'000;
-  // Of results, in all and of one owner's that nobody has fetched. Pictures in hand may exceed it.
+  // Bytes of all results, and of one owner's unfetched results. Pictures that are being drawn may
+  // exceed the limit.
   std::uint64_t max_result_bytes = std::uint64_t{10} << 30;
   std::uint64_t max_result_bytes_per_owner = std::uint64_t{5} << 30;
-  // How long a job that has ended is kept, with its results; and one that is paused, as nobody
-  // fetches them.
+  // How long an ended job is kept with its results, and how long a job that is paused by unfetched
+  // results.
   std::chrono::seconds keep = std::chrono::hours(24);
-  // Begun at a time. Two are read, drawn or encoded by the render loop, one may wait for it.
+  // Pictures begun at a time. The render loop reads, draws or encodes two; one may wait for it.
   std::size_t max_in_hand = 3;
 };
 

@@ -1,4 +1,4 @@
-// Results that nobody fetches: when they pause drawing, and when jobs end for them or for their
+// Unfetched results: when they pause drawing, and when jobs end because of them or because of their
 // age.
 #include <chrono>
 #include <cstddef>
@@ -48,7 +48,7 @@ std::vector<std::string> JobBoard::TakePauses() {
   for (auto& [id, entry] : jobs_) {
     const bool waits = entry.counts[IndexOf(PictureState::kWaiting)] > 0;
     const bool is_paused = waits && PausedBecause(entry.record.owner, unfetched).has_value();
-    // One of which nothing waits any more has said so already.
+    // A job whose last waiting picture is gone has reported the end of its pause already.
     if (std::exchange(entry.was_paused, is_paused) == is_paused || !waits) continue;
     ++entry.version;
     changed.push_back(id);
@@ -69,7 +69,7 @@ std::size_t JobBoard::Paused() const {
 std::optional<Time> JobBoard::AbandonedAt(const Entry& entry, const Unfetched& unfetched) const {
   if (entry.record.ended_at.has_value() || entry.unfetched == 0) return std::nullopt;
   if (entry.counts[IndexOf(PictureState::kWaiting)] == 0) return std::nullopt;
-  // Those in hand come to their end first.
+  // Pictures that are being drawn must end first.
   if (entry.counts[IndexOf(PictureState::kDrawing)] > 0) return std::nullopt;
   if (!PausedBecause(entry.record.owner, unfetched).has_value()) return std::nullopt;
   return entry.last_used + limits_.keep;
@@ -103,7 +103,8 @@ JobBoard::Expired JobBoard::Expire(Time now) {
     if (ended_at.has_value() && *ended_at + limits_.keep <= now) Erase(here);
   }
   Expired expired;
-  // One by one, the oldest first: without its results others may go on.
+  // Ends the jobs one by one, the oldest first, because other jobs may continue without its
+  // results.
   while (true) {
     const Unfetched unfetched = UnfetchedBytes();
     std::optional<Time> first;

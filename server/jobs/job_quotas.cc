@@ -1,5 +1,5 @@
-// Room on the board: how many jobs and pictures it takes, and which of those that have ended make
-// way.
+// The capacity of the board: how many jobs and pictures it accepts, and which ended jobs are
+// forgotten for new ones.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -15,7 +15,7 @@
 namespace thunderhead::jobs {
 namespace {
 
-// Time to draw a few pictures; others' jobs end sooner or later.
+// The time to draw a few pictures. Other owners' jobs end sooner or later.
 constexpr std::chrono::seconds kRetryAfter{30};
 
 absl::Status TooMany(const std::string& what, std::size_t maximum, const char* unit,
@@ -73,7 +73,7 @@ std::vector<JobBoard::Jobs::iterator> JobBoard::Forgettable(const std::string& f
 
 absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
   struct Share {
-    const std::string* owner;  // null: everybody's
+    const std::string* owner;  // null: all owners
     const char* who;
     std::size_t max_jobs;
     std::size_t max_pictures;
@@ -109,7 +109,7 @@ absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
                      share.max_pictures, "pictures", "TOO_MANY_JOB_PICTURES");
     }
   }
-  // Not before it is known that it suffices.
+  // Jobs are forgotten only after it is clear that this suffices.
   for (const Jobs::iterator& one : to_forget) Erase(one);
   return absl::OkStatus();
 }
@@ -117,7 +117,7 @@ absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
 std::vector<ResultFile> JobBoard::MakeRoom() {
   std::vector<ResultFile> dropped;
   if (result_bytes_ <= limits_.max_result_bytes) return dropped;
-  // Of a running job last; the oldest first.
+  // Sorts results of running jobs last and older ones first.
   std::vector<std::tuple<bool, Time, PicturePlace>> order;
   for (const auto& [id, entry] : jobs_) {
     for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {

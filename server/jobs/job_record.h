@@ -1,5 +1,5 @@
-// The kept state of a job of pictures. Plain values; what a picture shows, and what is told of a
-// drawn one, are bytes that the service makes and reads.
+// The stored state of a job. Plain values. A picture's request and the description of its result
+// are bytes that the service makes and reads.
 #pragma once
 
 #include <chrono>
@@ -15,33 +15,34 @@ namespace thunderhead::jobs {
 
 using Time = std::chrono::system_clock::time_point;
 
-// Of a job's id.
+// Length of a job's id.
 inline constexpr std::size_t kIdDigits = 32;
 
 enum class PictureState {
   kWaiting,
-  kDrawing,  // never saved: the server that drew is gone when it is read
+  kDrawing,  // never saved, because the server that drew it no longer runs when the record is read
   kDrawn,
   kFailed,
   kCancelled,
-  kDropped,  // its result made room for others
+  kDropped,  // its result was evicted
 };
 inline constexpr std::size_t kPictureStates = 6;
 
-// Why there is no picture, as a client is told.
+// The reason for a missing picture, as clients are told.
 struct Problem {
   absl::StatusCode code = absl::StatusCode::kOk;
-  std::string reason = {};  // as base::ErrorDetails
+  std::string reason = {};  // as in base::ErrorDetails
   std::string message = {};
 
   bool operator==(const Problem&) const = default;
 };
 
-// The request.
+// The request for a picture.
 struct PictureOrder {
-  std::string name;  // the client's
+  std::string name;  // given by the client
   std::string request;
-  // That the request's time had then, to find it again if others come before it; empty: unknown.
+  // The valid time of the request's time index, to find it again if earlier times are added; empty:
+  // unknown.
   std::string valid_time;
 
   bool operator==(const PictureOrder&) const = default;
@@ -50,12 +51,12 @@ struct PictureOrder {
 struct PictureRecord {
   PictureOrder order;
   PictureState state = PictureState::kWaiting;
-  int attempts = 0;  // begun, and not put back by a server that ended in order
-  Problem problem;   // of those that failed or were dropped
-  // Of those that are drawn.
+  int attempts = 0;  // starts, except those that an orderly shutdown put back
+  Problem problem;   // set for failed and dropped pictures
+  // The following are set for drawn pictures.
   std::uint64_t bytes = 0;
   std::string sha256;
-  std::string extension;  // of the file, such as "png"
+  std::string extension;  // extension of the file, such as "png"
   double milliseconds = 0.0;
   Time drawn_at = {};
   bool fetched = false;
@@ -64,10 +65,10 @@ struct PictureRecord {
 };
 
 struct JobRecord {
-  std::string id;          // unguessable, as is
-  std::string result_key;  // which neither tells the other
+  std::string id;          // unguessable
+  std::string result_key;  // also unguessable, and not derivable from the id
   std::string owner;
-  std::string label;  // the client's
+  std::string label;  // given by the client
   Time created_at = {};
   std::optional<Time> ended_at = {};
   bool cancelled = false;

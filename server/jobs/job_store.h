@@ -1,5 +1,5 @@
-// Keeps jobs' records while the server is down. Used by one thread at a time; every call may block,
-// and what it has done when it returns outlives also a loss of power.
+// Keeps jobs' records while the server is down. Used by one thread at a time; each call may block.
+// A finished call is durable, even after a loss of power.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace thunderhead::jobs {
 
-// Changes of a job since it was saved.
+// The changes of a job since it was saved.
 struct JobChange {
   struct Picture {
     std::size_t place = 0;
@@ -30,13 +30,13 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // Stores a job with all of its pictures or, on an error, nothing of it.
+  // Stores a job with all its pictures. On an error, nothing of it is stored.
   virtual absl::Status Add(const JobRecord& job) = 0;
-  // All of the changes or, on an error, none. Jobs that are not there are no error.
+  // Saves all changes. On an error, none is saved. Missing jobs are not an error.
   virtual absl::Status Save(const std::vector<JobChange>& changes) = 0;
-  // Ids that are not there are no error.
+  // Removes the jobs with those ids; missing ids are not an error.
   virtual absl::Status Remove(const std::vector<std::string>& ids) = 0;
-  // In the order in which they were created. What cannot be read is logged and left out.
+  // Returns the jobs in the order of their creation. Unreadable parts are logged and left out.
   virtual absl::StatusOr<std::vector<JobRecord>> Load() = 0;
 };
 

@@ -18,11 +18,11 @@ namespace thunderhead::jobs {
 namespace {
 
 constexpr int kIdWords = kIdDigits / 8;
-// Until results are written again where one could not be, such as on a full disk.
+// Pause before results are written again after a write has failed, for example on a full disk.
 constexpr std::chrono::seconds kUnwrittenPause{5};
-// Until one is drawn again whose folder may not be written to.
+// Pause before a picture is drawn again if its job's folder is not writable.
 constexpr std::chrono::seconds kUnwritablePause{60};
-// The clock may be set in between.
+// The system clock may be set while the thread sleeps.
 constexpr std::chrono::seconds kLongestSleep{60};
 
 void Count(const char* outcome, std::size_t pictures = 1) {
@@ -102,7 +102,7 @@ void Jobs::Create(NewJob job, const Done& done) {
 
 void Jobs::SaveNew(const std::string& id, const Done& done) {
   Lock lock(mutex_);
-  // Somebody who guessed its id may have cancelled and forgotten it by now.
+  // A client that guessed the id may have cancelled and forgotten the job by now.
   std::optional<JobNews> news = board_.NewsOf(id, 0);
   if (!news.has_value()) {
     lock.unlock();
@@ -216,7 +216,8 @@ void Jobs::Fetched(const PicturePlace& picture) {
     const std::lock_guard lock(mutex_);
     board_.Fetched(picture, Now());
   }
-  // There may be room now. A task, as the thread may be saving and not hear a mere notification.
+  // There may be free quota now. This posts a task because the thread may be saving and would miss
+  // a notification.
   Post([] {});
 }
 
@@ -275,7 +276,7 @@ base::TimeSource::Clock::time_point Jobs::WakeTime() const {
   for (const std::optional<Time>& at : {board_.NextRetry(now), board_.NextExpiry()}) {
     if (at.has_value()) wake = std::min(wake, *at);
   }
-  // Those that wait to be written are due when the pause is over, which it may be by now.
+  // Unwritten pictures are due when the pause is over, which may be now.
   if (paused_until_ > now || !unwritten_.empty()) wake = std::min(wake, paused_until_);
   return time_.Now() + (wake - now);
 }
@@ -327,8 +328,8 @@ void Jobs::RemoveDropped(const std::vector<ResultFile>& dropped) {
 }
 
 void Jobs::BeginPictures(Lock& lock) {
-  // Pictures that wait to be written count even when the pause is over: writing may take longer
-  // than the pause, and each turn would begin more of them.
+  // No picture is begun while some wait to be written, even after the pause. Writing may take
+  // longer than the pause, and each turn would begin more pictures.
   while (started_ && !draining_ && in_hand_.size() < limits_.max_in_hand && unwritten_.empty() &&
          paused_until_ <= Now()) {
     const std::optional<PicturePlace> picture = board_.Begin(Now());
@@ -343,7 +344,8 @@ void Jobs::BeginOne(const PicturePlace& picture, Lock& lock) {
     Count("failed");
     return;
   }
-  // Recorded before it is begun, so that one which ends the server does not do so for ever.
+  // The attempt is recorded before the picture is begun. So a picture that crashes the server is
+  // not tried forever.
   if (!Save(lock).ok()) {
     board_.PutBack(picture, false, Now());
     return;
@@ -375,7 +377,7 @@ void Jobs::BeginOne(const PicturePlace& picture, Lock& lock) {
 void Jobs::EndPicture(const PicturePlace& picture) {
   Lock lock(mutex_);
   const std::shared_ptr<InHand> hand = in_hand_.extract(picture).mapped();
-  // The next is drawn while this one is written.
+  // The next picture is drawn while this one is written.
   BeginPictures(lock);
   lock.unlock();
   const absl::Status kept = base::Guarded([&]() -> absl::Status {
@@ -423,7 +425,8 @@ void Jobs::Keep(Unwritten picture) {
     base::LogError(
         base::Annotate(written, "pictures of render jobs wait until they can be written"));
   }
-  // It may be the job's folder alone, as where that was made somebody else's: others go on.
+  // Perhaps only this job's folder is affected, for example because it was given to another user.
+  // Other jobs continue.
   if (absl::IsFailedPrecondition(written)) {
     board_.PutBack(picture.place, false, Now() + kUnwritablePause);
     return;
@@ -466,13 +469,13 @@ absl::Status Jobs::Save(Lock& lock) {
     if (!changes.empty()) saved = store_->Save(changes);
     if (!forgotten.empty()) removed = store_->Remove(forgotten);
   }
-  // Not before the records: those that stay must have their files.
+  // Files are removed after the records because every remaining record must have its files.
   if (removed.ok()) {
     for (const std::string& id : forgotten) results_.Remove(id);
   }
   lock.lock();
   if (!saved.ok()) board_.GiveBack(changes);
-  // Else a cancelled job would be drawn again by the next server.
+  // Otherwise the next server would draw a cancelled job again.
   if (!removed.ok()) board_.GiveBackForgotten(forgotten);
   saved.Update(removed);
   if (saved.ok()) {

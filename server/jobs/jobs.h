@@ -1,8 +1,7 @@
-// Jobs of pictures that nobody waits for: takes them in within quotas, has them drawn a few at a
-// time, fairly among owners and their jobs, keeps the results, and goes on after a restart where it
-// was. A picture is written first, then recorded; while one cannot be written, as on a full disk,
-// none is begun. Knows no messages and no GL; safe from any
-// thread.
+// Background jobs of pictures. Accepts jobs within quotas, has their pictures drawn a few at a
+// time, fairly among owners and their jobs, and keeps the results. Continues after a restart where
+// it stopped. A picture is written before it is recorded. While a picture cannot be written, for
+// example on a full disk, no picture is begun. Knows no messages and no GL. Safe from any thread.
 #pragma once
 
 #include <chrono>
@@ -34,28 +33,27 @@
 namespace thunderhead::jobs {
 
 struct JobsOptions {
-  std::shared_ptr<JobStore> store;  // null: jobs end with the server
-  std::string folder;               // of results; empty: there are no jobs
-  // How long a call to that folder may take; then its storage hangs.
+  std::shared_ptr<JobStore> store;  // null: jobs are lost when the server ends
+  std::string folder;               // folder of results; empty: jobs are disabled
+  // Timeout of a call to that folder. A longer call means that its storage hangs.
   std::chrono::milliseconds patience = std::chrono::seconds(10);
   JobLimits limits;
-  // The time that pauses, retries and calls to the folder are measured by; it must outlive the
-  // jobs.
+  // The time source for pauses, retries and calls to the folder. It must outlive the jobs.
   const base::TimeSource* time = &base::SteadyTime();
 };
 
-// Told that a job has changed or is gone, or that the server stops.
+// A listener that is notified when a job has changed or is gone, or when the server stops.
 class JobWatcher {
  public:
   virtual ~JobWatcher() = default;
-  // On any thread; must not block.
+  // Called on any thread; must not block.
   virtual void OnJobChanged() = 0;
 };
 
-// Where a drawn picture is.
+// The files of a drawn picture.
 struct ResultPlace {
   std::string path;
-  std::string about_path;  // what is told of it
+  std::string about_path;  // description of the picture
   std::string sha256;
   std::uint64_t bytes = 0;
 };
@@ -63,59 +61,61 @@ struct ResultPlace {
 struct JobsLoad {
   std::size_t running = 0;  // jobs that have not ended
   std::size_t waiting = 0;  // pictures
-  std::size_t paused = 0;   // of those that wait, as results must be fetched first
+  std::size_t paused = 0;   // waiting pictures that may not start until results are fetched
   std::size_t drawing = 0;
   std::uint64_t result_bytes = 0;
-  // For how long its thread has been at one thing, or the folder of results has hung; else 0.
+  // How long the thread has been busy with one task, or the folder of results has hung; else 0.
   double stalled_s = 0.0;
   std::size_t watchers = 0;
 };
 
 class Jobs {
  public:
-  // On a thread of the jobs' own, or on the caller's if the server stops.
+  // Called on the jobs' own thread, or on the caller's if the server stops.
   using Done = std::function<void(const absl::StatusOr<JobView>&)>;
 
-  // Reads what the store has, and removes results that belong to nothing. Begins no picture.
+  // Reads the store and removes results that belong to no job. Begins no picture.
   static absl::StatusOr<std::unique_ptr<Jobs>> Open(const JobsOptions& options);
   ~Jobs();
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  // Begins pictures from now on.
+  // Allows pictures to be begun.
   void Start(BeginPicture begin);
 
-  // RESOURCE_EXHAUSTED beyond the limits; UNAVAILABLE while the server drains, or if the job cannot
-  // be saved.
+  // Creates a job. RESOURCE_EXHAUSTED beyond the limits; UNAVAILABLE while the server drains or if
+  // the job cannot be saved.
   void Create(NewJob job, const Done& done);
   absl::StatusOr<JobNews> Get(const std::string& id, const Asker& asker) const;
-  // The asker's, or everybody's; of that label unless it is empty.
+  // Returns the owner's jobs, or all jobs if `everybodys`. If `label` is not empty, only jobs with
+  // that label.
   std::vector<JobView> List(const std::string& owner, bool everybodys,
                             const std::string& label) const;
-  // Ends the pictures at once; `done` follows when that outlives the server.
+  // Ends the pictures at once. `done` is called when the cancellation is durable.
   void Cancel(const std::string& id, const Asker& asker, bool forget, const Done& done);
 
-  // `watcher` is told of changes until it is gone.
+  // Notifies `watcher` of changes until it is destroyed.
   absl::Status Watch(const std::string& id, const Asker& asker, std::weak_ptr<JobWatcher> watcher);
-  // As JobBoard::NewsOf; SHUTTING_DOWN when the server has stopped.
+  // Works like JobBoard::NewsOf. SHUTTING_DOWN when the server has stopped.
   absl::StatusOr<std::optional<JobNews>> NewsOf(const std::string& id, std::uint64_t version) const;
 
   absl::StatusOr<ResultPlace> Result(const PicturePlace& picture, const Asker& asker) const;
-  // By the job's key for results, for whoever has it; NOT_FOUND for any other.
+  // Returns a result by the job's result key, for anyone who has the key. NOT_FOUND for an unknown
+  // key.
   absl::StatusOr<ResultPlace> ResultOfKey(const std::string& result_key, std::size_t place) const;
-  // Somebody has the whole file.
+  // Records that a client has received the whole file.
   void Fetched(const PicturePlace& picture);
   void FetchedByKey(const std::string& result_key, std::size_t place);
 
   JobsLoad Load() const;
 
-  // Takes no more jobs and begins no more pictures; those that were begun go on.
+  // Refuses new jobs and begins no further pictures. Pictures that were begun continue.
   void Drain();
-  // Ends those too; they will be begun again.
+  // Ends the pictures that were begun, too. They will be begun again after a restart.
   void CancelPictures();
-  // Waits for the pictures, which whoever draws them must have ended, saves, and tells watchers.
-  // Pictures that still cannot be written then are drawn again after the next start.
-  // The destructor does it too.
+  // Waits for the pictures, saves, and notifies watchers. The caller must have ended the drawing
+  // before. Pictures that still cannot be written are drawn again after the next start. The
+  // destructor calls it, too.
   void Stop();
 
  private:
@@ -126,7 +126,7 @@ class Jobs {
   struct InHand {
     base::TimeSource::Clock::time_point begun_at;
     std::unique_ptr<PictureInHand> picture;  // null until it has been begun
-    absl::Status begun;                      // or why it could not be
+    absl::Status begun;                      // error if it could not be begun
     bool cancelled = false;
   };
 
@@ -134,18 +134,20 @@ class Jobs {
   struct Unwritten {
     PicturePlace place;
     std::shared_ptr<const DrawnPicture> drawn;
-    double milliseconds = 0.0;  // since it was begun
+    double milliseconds = 0.0;  // time since it was begun
   };
 
   Jobs(const JobsOptions& options, ResultFolder results);
   absl::Status Restore();
   void Run();
   void Post(Task task);
-  // The wall clock. It is ahead by as much as time_ is ahead of the real steady clock.
+  // Returns the wall-clock time. It is shifted by the difference between time_ and the real steady
+  // clock.
   Time Now() const;
   base::TimeSource::Clock::time_point WakeTime() const;
 
-  // On the thread of its own. Those that take the lock hold it when called and when they return.
+  // The following functions run on the jobs' own thread. Those with a Lock parameter hold it on
+  // entry and on return.
   void Expire(Lock& lock);
   void BeginPictures(Lock& lock);
   void BeginOne(const PicturePlace& picture, Lock& lock);
@@ -176,11 +178,11 @@ class Jobs {
   std::map<PicturePlace, std::shared_ptr<InHand>> in_hand_;
   std::multimap<std::string, std::weak_ptr<JobWatcher>> watchers_;
   std::deque<Task> tasks_;
-  // While the thread works.
+  // Set while the thread works on a task.
   std::optional<base::TimeSource::Clock::time_point> busy_since_;
-  Time paused_until_ = {};            // as nothing can be written
-  bool cannot_write_ = false;         // the last of them
-  std::vector<Unwritten> unwritten_;  // at most one more than may be in hand
+  Time paused_until_ = {};            // nothing can be written until then
+  bool cannot_write_ = false;         // the last write of a picture failed
+  std::vector<Unwritten> unwritten_;  // at most one more than the pictures in hand
   bool started_ = false;
   bool draining_ = false;
   bool stopping_ = false;

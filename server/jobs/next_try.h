@@ -1,4 +1,4 @@
-// The policy by which a picture that could not be drawn is tried again.
+// The retry policy for a picture that could not be drawn.
 #pragma once
 
 #include <chrono>
@@ -9,15 +9,15 @@
 namespace thunderhead::jobs {
 
 struct NextTry {
-  bool counts = false;  // as one of the picture's own attempts
+  bool counts = false;  // counts as one of the picture's own attempts
   std::chrono::milliseconds pause{0};
 };
 
-// After the failure `why` of a picture begun `attempts` times, this one included. Failures of the
-// server and a storage that hangs do not count, however long they last: a night's job waits for
-// them. Others that say when to try again may be the picture's own, such as one that loses the
-// device, and count; their pauses double up to five minutes. Nothing where another try does not
-// help, or the last one was made.
+// Returns how to retry a picture after the failure `why`. It was begun `attempts` times, including
+// this one. Failures of the server and of hanging storage do not count, however long they last,
+// because jobs that run overnight wait for them. Other failures with a retry time may be the
+// picture's own fault, such as losing the device. They count, and their pauses double up to five
+// minutes. None if a retry would not help or the last attempt was made.
 std::optional<NextTry> NextTryAfter(const absl::Status& why, int attempts, bool draining);
 
 }  // namespace thunderhead::jobs

@@ -1,4 +1,4 @@
-// The source of jobs' pictures, as jobs see it.
+// The source of jobs' pictures: an interface to whatever draws them.
 #pragma once
 
 #include <functional>
@@ -11,10 +11,10 @@
 namespace thunderhead::jobs {
 
 struct DrawnPicture {
-  std::string bytes;      // of the file
+  std::string bytes;      // content of the file
   std::string extension;  // such as "png"
-  std::string about;      // what clients are told of it, as the service serialized it
-  double draw_ms = 0.0;   // time that it took from others
+  std::string about;      // description for clients, as the service serialized it
+  double draw_ms = 0.0;   // time that it took from other work
 };
 
 // A picture that was begun.
@@ -22,14 +22,14 @@ class PictureInHand {
  public:
   virtual ~PictureInHand() = default;
 
-  // Ends it at its next piece. Safe from any thread; does not block.
+  // Ends the picture at its next piece. Safe from any thread; does not block.
   virtual void Cancel() = 0;
-  // Called once, after it has said that it is done: the picture, or why there is none. May block.
+  // Returns the picture or its error. Called once, after the picture has called `done`. May block.
   virtual absl::StatusOr<DrawnPicture> Take() = 0;
 };
 
-// Begins a picture, which calls `done` once, on any thread, perhaps before this returns. It may be
-// destroyed after that only.
+// Begins a picture, which calls `done` once, on any thread, possibly before this function returns.
+// The result may be destroyed only after that call.
 using BeginPicture = std::function<std::unique_ptr<PictureInHand>(const PictureOrder& order,
                                                                   std::function<void()> done)>;
 

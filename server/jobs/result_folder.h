@@ -1,6 +1,6 @@
-// The folder in which drawn pictures wait to be fetched: a folder a job, in it a picture's file
-// and, beside it, what is told of it. Each file appears whole or not at all. Open and Clean may
-// block; of the others none does so for longer than its patience, also where the storage hangs.
+// The folder in which drawn pictures wait to be fetched. Each job has a subfolder, with one file
+// per picture and a description of it. Each file appears completely or not at all. Open and Clean
+// may block. The other functions block for `patience` at most, even if the storage hangs.
 #pragma once
 
 #include <chrono>
@@ -21,13 +21,13 @@ namespace thunderhead::jobs {
 
 class ResultFolder {
  public:
-  // Creates the folder, for this user only. INVALID_ARGUMENT if that cannot be.
+  // Creates the folder, accessible only to this user. INVALID_ARGUMENT if that fails.
   static absl::StatusOr<ResultFolder> Open(const std::string& path,
                                            std::chrono::milliseconds patience,
                                            const base::TimeSource& time);
 
-  // The picture at `place` of a job, and what is told of it. Errors as base::WriteWholeFile; and
-  // DEADLINE_EXCEEDED while the storage hangs, after which it may have been written all the same.
+  // Writes the picture at `place` of a job and its description. Errors as in base::WriteWholeFile.
+  // DEADLINE_EXCEEDED while the storage hangs; the files may still be written afterwards.
   absl::Status Write(const std::string& job_id, std::size_t place,
                      std::shared_ptr<const DrawnPicture> picture) const;
 
@@ -35,16 +35,16 @@ class ResultFolder {
                      const std::string& extension) const;
   std::string AboutPathOf(const std::string& job_id, std::size_t place) const;
 
-  // Removes the files of a picture or of a job; files that do not exist are no error. What cannot
-  // be removed as the storage hangs is removed with the next.
+  // Removes the files of a picture or of a job. Missing files are not an error. Files that cannot
+  // be removed because the storage hangs are removed with the next call.
   void Remove(const std::string& job_id, std::size_t place, const std::string& extension);
   void Remove(const std::string& job_id);
 
-  // For how long the storage has hung; 0 if it does not.
+  // Returns how long the storage has hung; 0 if it does not hang.
   double HangingSeconds() const { return calls_->HangingSeconds(); }
 
-  // Removes what a server left that was killed: files half written, and the folders of jobs other
-  // than `known`.
+  // Removes what a killed server left: partially written files, and the folders of jobs that are
+  // not in `known`.
   void Clean(const std::set<std::string>& known) const;
 
  private:
@@ -54,7 +54,7 @@ class ResultFolder {
 
   std::string path_;
   std::unique_ptr<base::PatientCalls> calls_;
-  std::vector<std::string> removed_;  // but for the storage
+  std::vector<std::string> removed_;  // paths that hanging storage has kept from being removed
 };
 
 }  // namespace thunderhead::jobs

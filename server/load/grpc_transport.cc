@@ -46,13 +46,14 @@ void ShowToken(const Access& access, grpc::ClientContext& context) {
 std::shared_ptr<grpc::Channel> Connect(const std::string& address, const Access& access) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  // A connection a channel, as separate clients have.
+  // Each channel gets its own connection, as separate clients would have.
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   return grpc::CreateCustomChannel(address, CredentialsOf(access), arguments);
 }
 
-// There is at most one pending read and one pending write. A hold keeps the call until reading has
-// ended, as reads and writes are started outside of reactions too.
+// One call of Interact by gRPC. There is at most one pending read and one pending write. A hold
+// keeps the call alive until reading has ended, because reads and writes are also started outside
+// of gRPC's callbacks.
 class GrpcLink final : public Link,
                        private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
@@ -146,7 +147,7 @@ class GrpcLink final : public Link,
     changed_.notify_all();
   }
 
-  // Needs mutex_.
+  // Writes the next message. The caller must hold mutex_.
   void WriteNext() {
     if (writing_ || released_) return;
     if (unsent_.empty()) {
@@ -159,7 +160,7 @@ class GrpcLink final : public Link,
     StartWrite(&sent_);
   }
 
-  // Needs mutex_.
+  // Releases the hold. The caller must hold mutex_.
   void Release() {
     if (!std::exchange(released_, true)) RemoveHold();
   }
@@ -171,7 +172,7 @@ class GrpcLink final : public Link,
   const bool reads_;
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sent_;
-  const std::shared_ptr<net::steady_timer> delay_;  // used by its own thread alone
+  const std::shared_ptr<net::steady_timer> delay_;  // used only by its own thread
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -180,7 +181,7 @@ class GrpcLink final : public Link,
   bool half_closing_ = false;
   bool half_closed_ = false;
   bool cancelled_ = false;
-  bool released_ = false;  // starts no more reads and writes
+  bool released_ = false;  // true when no further reads and writes may start
   bool done_ = false;
 };
 

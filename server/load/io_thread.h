@@ -9,7 +9,7 @@ namespace thunderhead::load {
 
 class IoThread {
  public:
-  // Handlers that have not run are dropped.
+  // Stops the thread and drops handlers that have not run.
   ~IoThread() {
     io_.stop();
     thread_.join();

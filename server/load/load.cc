@@ -134,7 +134,7 @@ class RunningLoad {
                      static_cast<int>(options_.times.join_patience_s), " seconds"));
   }
 
-  // Turns the camera for the warming up and the period.
+  // Turns the camera during the warm-up and the period.
   void Steer() {
     period_.begin_s = Now_s() + options_.times.warm_up_s;
     period_.end_s = period_.begin_s + options_.seconds;
@@ -148,11 +148,12 @@ class RunningLoad {
       const double now_s = Now_s();
       if (now_s >= next_update_s) {
         presenter_.Turn(kTurnSpeed_deg_per_s * step_s);
-        // The other way than the session's.
+        // Own views turn in the opposite direction to the session's.
         for (const auto& viewer : viewers_) {
           if (viewer->kind() == ViewerKind::kLooking) viewer->Turn(-kTurnSpeed_deg_per_s * step_s);
         }
-        // After a pause of this program: no burst.
+        // After a pause of this program, missed updates are skipped instead of being sent in a
+        // burst.
         next_update_s = std::max(next_update_s + step_s, now_s);
       }
       if (now_s >= next_sample_s) {
@@ -173,11 +174,11 @@ class RunningLoad {
     own_cpu_s_ = OwnCpu_s() - own_cpu_s;
   }
 
-  // Lets passing viewers leave and come again, one after another, each after its visit. One without
-  // a frame stays for longer, unless its patience is over.
+  // Lets passing viewers leave and return, one after another, each after its visit. A viewer
+  // without a frame stays until its timeout.
   void LetPass(double now_s) {
     if (options_.passing == 0 || now_s < next_visit_s_) return;
-    // They are the last of the viewers.
+    // The passing viewers are the last of the viewers.
     const auto passing = static_cast<std::size_t>(options_.passing);
     Viewer& next = *viewers_[viewers_.size() - passing + visits_ % passing];
     if (next.WaitsForFirstFrame() && now_s < next.joined_at_s() + options_.times.join_patience_s) {
@@ -193,7 +194,7 @@ class RunningLoad {
     if (const auto sample = server_->Sample(); sample.has_value()) samples_.push_back(*sample);
   }
 
-  // The viewers of Progress::frames_per_s.
+  // Returns the kind of viewers that Progress::frames_per_s counts.
   ViewerKind MainKind() const {
     if (options_.viewers > options_.looking) return ViewerKind::kHealthy;
     return options_.looking > 0 ? ViewerKind::kLooking : ViewerKind::kThrottled;
@@ -274,7 +275,7 @@ class RunningLoad {
   Period period_;
   std::vector<ProcessSample> samples_;
   double own_cpu_s_ = 0.0;
-  std::size_t visits_ = 0;  // of passing viewers, that have ended
+  std::size_t visits_ = 0;  // completed visits of passing viewers
   double next_visit_s_ = 0.0;
   std::uint64_t told_frames_ = 0;
   double told_s_ = Now_s();

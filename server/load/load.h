@@ -1,4 +1,4 @@
-// A load on a server: one session, a presenter who turns its camera, and many viewers.
+// A load on a server: one session with a presenter who turns its camera, and many viewers.
 #pragma once
 
 #include <cstddef>
@@ -16,56 +16,57 @@
 
 namespace thunderhead::load {
 
-// The moving pictures that viewers ask for.
+// The encodings of frames that viewers ask for.
 enum class LoadCodec { kJpeg, kVp9 };
 
-// The times of a load that do not depend on what is asked for.
+// The times of a load that do not depend on the measured scenario.
 struct LoadTimes {
-  double warm_up_s = 1.0;         // before the period, so that it holds no first times
-  double sampling_s = 1.0;        // from one progress report, and sample of the server, to the next
-  double visit_s = 2.0;           // of a passing viewer
-  double join_patience_s = 60.0;  // with first frames, as the storm may have to be read
-  double leave_patience_s = 5.0;  // with calls whose viewers leave
-  double call_patience_s = 60.0;  // with other calls
+  double warm_up_s = 1.0;         // before the period, so that first frames are excluded
+  double sampling_s = 1.0;        // between two progress reports, and two samples of the server
+  double visit_s = 2.0;           // of one visit of a passing viewer
+  double join_patience_s = 60.0;  // timeout of first frames, as the storm may have to be read
+  double leave_patience_s = 5.0;  // timeout of calls whose viewers leave
+  double call_patience_s = 60.0;  // timeout of other calls
 };
 
 struct LoadOptions {
-  int viewers = 10;   // that read all that comes; 0 where all are throttled
-  int looking = 0;    // of these, those who look around
-  int throttled = 0;  // besides them
-  int stalled = 0;    // besides them
-  int passing = 0;    // besides them
+  int viewers = 10;   // that read everything; 0 if all are throttled
+  int looking = 0;    // those of the viewers who look around
+  int throttled = 0;  // in addition to the viewers
+  int stalled = 0;    // in addition to the viewers
+  int passing = 0;    // in addition to the viewers
   LoadCodec codec = LoadCodec::kJpeg;
-  double kbit_per_s = 1000.0;  // that a throttled viewer reads
+  double kbit_per_s = 1000.0;  // read rate of a throttled viewer
   double seconds = 10.0;
   int width_px = 640;
   int height_px = 360;
-  double steer_hz = 30.0;  // updates a second, and motions of each who looks around; 0: none
-  StillOptions stills;     // asked for when the measured time begins
+  // Updates per second, and motions of each viewer who looks around; 0 for none.
+  double steer_hz = 30.0;
+  StillOptions stills;  // requested when the measured time begins
   LoadTimes times;
 };
 
-// Makes viewers read at a limited rate: `throttled` besides the others, or all of them where no
-// number is given.
+// Makes viewers read at a limited rate: `throttled` additional ones, or all of them if no number is
+// given.
 void Throttle(double kbit_per_s, std::optional<int> throttled, LoadOptions& options);
 
-// Of a load that runs.
+// The progress of a running load.
 struct Progress {
-  double share = 0.0;  // of the time
-  int joined = 0;      // viewers that have had a frame
-  // The mean of healthy viewers since the last call; if there are none, of those who look around,
-  // or of throttled ones.
+  double share = 0.0;  // share of the time that has passed
+  int joined = 0;      // viewers that have received a frame
+  // The mean rate of healthy viewers since the last report. Without healthy viewers it is that of
+  // viewers who look around, or of throttled ones.
   double frames_per_s = 0.0;
-  // The fewest frames that any of those viewers, or of those who look around, has had within the
-  // measured time.
+  // The lowest number of frames that any of those viewers, or of the viewers who look around,
+  // received within the measured time.
   std::uint64_t least_frames = 0;
-  std::size_t visits = 0;  // of passing viewers, that have ended
+  std::size_t visits = 0;  // completed visits of passing viewers
   int errors = 0;
 };
 
-// Runs until the time is over and every still has come, every viewer's call has ended, or a stop is
-// requested, which gives the figures so far; an error if there are none. Streams that end with an
-// error are counted in the report.
+// Runs until the time has passed and every still has arrived. It ends early when every viewer's
+// call has ended. A requested stop ends it with the figures so far, or with an error if there are
+// none. Streams that end with an error are counted in the report.
 absl::StatusOr<Report> Run(const LoadOptions& options, Transport& transport,
                            const std::optional<ServerProcess>& server, const std::stop_token& stop,
                            const std::function<void(const Progress&)>& progress);

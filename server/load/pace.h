@@ -1,4 +1,4 @@
-// The delays of a link of limited rate: as if each message took its time on the wire.
+// The delays of a link with a limited rate, as if each message took time for its transmission.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@ class Pace {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // 0: no limit.
+  // A rate of 0 means no limit.
   explicit Pace(double kbit_per_s) : kbit_per_s_(kbit_per_s) {}
 
   bool IsLimited() const { return kbit_per_s_ > 0.0; }
-  // How long from `now` until a message that was read now has arrived.
+  // Returns the time from `now` until a message that was read now has arrived.
   Clock::duration DelayOf(std::size_t bytes, Clock::time_point now) {
     const std::chrono::duration<double, std::milli> took(8.0 * static_cast<double>(bytes) /
                                                          kbit_per_s_);
@@ -25,7 +25,7 @@ class Pace {
 
  private:
   double kbit_per_s_;
-  Clock::time_point free_at_;  // when the message before has arrived
+  Clock::time_point free_at_;  // when the previous message has arrived
 };
 
 }  // namespace thunderhead::load

@@ -1,5 +1,5 @@
 // The presenter of a session under load, who turns the camera. Its window is hidden, so that the
-// server has no frames to send but the viewers'.
+// server sends frames only to the viewers.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@ namespace thunderhead::load {
 
 class Presenter final : public Listener {
  public:
-  // `camera` is the session's; an orbit.
+  // `camera` is the session's orbit camera.
   Presenter(v1::Camera camera, Errors& errors);
 
   void Join(Transport& transport, const std::string& key);
@@ -28,7 +28,8 @@ class Presenter final : public Listener {
   void Stop() { link_->Close(); }
 
   bool HasEnded() const { return ended_; }
-  // The updates that the server took, in the order of their revisions; once stopped.
+  // Returns the updates that the server accepted, in the order of their revisions. It must be
+  // called after Stop.
   std::vector<Update> Updates() const;
 
   void OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::size_t bytes) override;

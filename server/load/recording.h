@@ -1,4 +1,4 @@
-// The record of a running load; its report is made of it.
+// The record of a running load, from which its report is made.
 #pragma once
 
 #include <chrono>
@@ -13,30 +13,30 @@
 
 namespace thunderhead::load {
 
-// Seconds on the clock of all recorded times.
+// Returns the time in seconds, on the clock of all recorded times.
 inline double Now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 enum class ViewerKind {
   kHealthy,
-  kLooking,    // reads all that comes, of a view of its own that it turns
+  kLooking,    // reads everything from its own view, which it turns
   kThrottled,  // reads at a limited rate
   kStalled,    // joins and never reads
-  kPassing,    // leaves without a word and comes again, over and over
+  kPassing,    // leaves without notice and returns, repeatedly
 };
 
 struct ViewerRecord {
   ViewerKind kind = ViewerKind::kHealthy;
-  std::vector<double> first_frames_ms;  // from connecting to the first frame, each time it came
+  std::vector<double> first_frames_ms;  // from connecting to the first frame, for each visit
   std::vector<Arrival> frames;
-  // Within the period.
+  // Totals within the period.
   std::uint64_t bytes = 0;
   std::uint64_t frame_count = 0;
   std::uint64_t frame_bytes = 0;
 };
 
-// Errors by message. Safe from any thread.
+// Counts errors by message. Safe to call from any thread.
 class Errors {
  public:
   void Add(const std::string& message) {
@@ -53,10 +53,10 @@ class Errors {
   std::map<std::string, int> counts_;
 };
 
-// Of single pictures.
+// The record of single pictures.
 struct StillRecord {
   int asked = 0;
-  std::vector<double> came_ms;  // from asking to each that came
+  std::vector<double> came_ms;  // from the request to each picture that arrived
 };
 
 struct Recording {
@@ -64,8 +64,8 @@ struct Recording {
   std::vector<Update> updates;  // in the order of their revisions
   std::vector<const ViewerRecord*> viewers;
   StillRecord stills;
-  std::vector<ProcessSample> server;  // none if the server is not on this machine
-  double own_cpu_s = 0.0;             // of this program, within the period
+  std::vector<ProcessSample> server;  // empty if the server is not on this machine
+  double own_cpu_s = 0.0;             // processor time of this program within the period
   std::map<std::string, int> errors;
 };
 

@@ -12,19 +12,19 @@
 
 namespace thunderhead::load {
 
-// Of the viewers of one kind.
+// The figures of all viewers of one kind.
 struct ViewerFigures {
   int viewers = 0;
   double fps_min = 0.0;
   double fps_median = 0.0;
-  std::optional<Percentiles> latency_ms;  // none if nothing was steered
-  std::optional<Percentiles> spread_ms;   // from the first viewer who shows an update to the last
+  std::optional<Percentiles> latency_ms;  // absent if the presenter did not steer
+  std::optional<Percentiles> spread_ms;   // from the first viewer that shows an update to the last
   Growth latency_growth;
-  double kbit_per_viewer = 0.0;  // a second
+  double kbit_per_viewer = 0.0;  // per second
   double bytes_per_frame = 0.0;
 };
 
-// From connecting to the first frame, of each time that viewers came.
+// Times from connecting to the first frame, for each visit of a viewer.
 struct FirstFrames {
   std::size_t count = 0;
   std::optional<double> median_ms;
@@ -36,13 +36,13 @@ struct ServerFigures {
   double rss_last_mb = 0.0;
   double rss_most_mb = 0.0;
   std::vector<std::pair<double, double>> rss_over_time_mb;  // seconds and memory, at most 20
-  double cpu = 0.0;                                         // processors busy
+  double cpu = 0.0;                                         // number of busy processors
 };
 
 struct StillFigures {
   int asked = 0;
   int came = 0;
-  std::optional<double> median_ms;  // from asking to the picture
+  std::optional<double> median_ms;  // from the request to the picture
   std::optional<double> most_ms;
 };
 
@@ -54,7 +54,7 @@ struct Report {
   double steer_hz = 0.0;
   double throttle_kbit_per_s = 0.0;
   ViewerFigures healthy;
-  ViewerFigures looking;  // without latencies, as own views count revisions of their own
+  ViewerFigures looking;  // without latencies, because own views count their own revisions
   ViewerFigures throttled;
   int stalled = 0;
   FirstFrames healthy_first;
@@ -63,13 +63,13 @@ struct Report {
   int passing = 0;
   FirstFrames passing_first;
   StillFigures stills;
-  std::optional<ServerFigures> server;  // none if the server is not on this machine
-  double own_cpu = 0.0;                 // processors that this program kept busy
+  std::optional<ServerFigures> server;  // absent if the server is not on this machine
+  double own_cpu = 0.0;                 // number of processors that this program kept busy
   std::map<std::string, int> errors;    // counts by message
 
   int ErrorCount() const;
-  // The viewers that the figures of the whole load are of: those that read all they get, or if
-  // there are none those who look around, or throttled ones.
+  // Returns the viewers that represent the whole load: the healthy ones, or without them the ones
+  // who look around, or the throttled ones.
   const ViewerFigures& Main() const {
     if (healthy.viewers > 0) return healthy;
     return looking.viewers > 0 ? looking : throttled;

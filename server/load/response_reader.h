@@ -1,5 +1,5 @@
-// Reads the few fields of an InteractResponse that a load needs, without copying or parsing the
-// frame: the client shares its processor with the server that it measures.
+// Reads only the fields of an InteractResponse that a load needs, without copying or parsing the
+// frame. This matters because the client shares its processor with the server that it measures.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ struct Response {
   enum class Part { kFrame, kSceneTaken, kRefused, kOther };
 
   Part part = Part::kOther;
-  std::uint64_t sequence = 0;        // of a frame
-  bool own_view = false;             // of a frame
-  std::uint64_t scene_revision = 0;  // of a frame or a SceneTaken
-  std::uint64_t request_id = 0;      // of a SceneTaken or a refusal
-  std::string refusal;               // why
+  std::uint64_t sequence = 0;        // set for a frame
+  bool own_view = false;             // set for a frame
+  std::uint64_t scene_revision = 0;  // set for a frame or a SceneTaken
+  std::uint64_t request_id = 0;      // set for a SceneTaken or a refusal
+  std::string refusal;               // the reason of a refusal
 };
 
-// None if the message is malformed.
+// Returns nothing if the message is malformed.
 std::optional<Response> ReadResponse(google::protobuf::io::ZeroCopyInputStream& message);
 
 }  // namespace thunderhead::load

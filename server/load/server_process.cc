@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// True if the address is one of this machine's: only such can be bound.
+// Returns true if the address is one of this machine's, since only such addresses can be bound.
 bool IsThisMachine(const std::string& host) {
   addrinfo* found = nullptr;
   addrinfo wanted{};
@@ -37,8 +37,8 @@ bool IsThisMachine(const std::string& host) {
   return bound;
 }
 
-// The inode of the socket that listens on the port, in /proc/net/tcp or tcp6: columns 2 (address
-// and port in hexadecimal), 4 (state) and 10 (inode).
+// Returns the inode of the socket that listens on the port, from /proc/net/tcp or tcp6. The columns
+// are 2 (address and port in hexadecimal), 4 (state) and 10 (inode).
 std::optional<std::string> ListeningInode(int port) {
   for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
     std::ifstream lines(table);
@@ -86,7 +86,8 @@ std::optional<ProcessSample> ServerProcess::Sample() const {
   const std::string process = absl::StrCat("/proc/", pid_);
   std::string stat;
   std::getline(std::ifstream(process + "/stat"), stat);
-  // The name, in parentheses, may hold anything; after it come the state and numbers.
+  // The process name, in parentheses, may contain any characters. The state and the numbers follow
+  // it.
   const std::size_t name_end = stat.rfind(')');
   if (name_end == std::string::npos) return std::nullopt;
   const std::vector<std::string> columns =

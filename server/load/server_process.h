@@ -1,5 +1,5 @@
-// The processor time and the memory of a server on this machine, found by the port it listens on.
-// Linux only: reads /proc.
+// The processor time and the memory of a server on this machine, which is found by its listening
+// port. It reads /proc, so it works only on Linux.
 #pragma once
 
 #include <optional>
@@ -15,10 +15,11 @@ struct ProcessSample {
 
 class ServerProcess {
  public:
-  // None if `host` is not this machine, or no process that may be looked at listens there.
+  // Returns nothing if `host` is not this machine, or if no process that may be inspected listens
+  // there.
   static std::optional<ServerProcess> Find(const std::string& host, int port);
 
-  // None once the process is gone.
+  // Returns nothing once the process has ended.
   std::optional<ProcessSample> Sample() const;
   int pid() const { return pid_; }
 

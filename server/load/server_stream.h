@@ -1,5 +1,4 @@
-// The bytes of a connection to a server, plain or by TLS, to Asio and Beast a stream like any
-// other. Used on one thread.
+// An Asio stream over plain TCP or TLS for a connection to a server. It must be used on one thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -26,16 +25,17 @@ class ServerStream : public streams::OptionalTls<boost::beast::unlimited_rate_po
  public:
   using Then = std::function<void(boost::system::error_code)>;
 
-  // `tls` null: plain.
+  // If `tls` is null, the stream is plain.
   ServerStream(boost::asio::io_context& io, std::shared_ptr<boost::asio::ssl::context> tls);
 
   void Connect(const boost::asio::ip::tcp::resolver::results_type& found, Then then);
-  // The first after it has connected: `then` is called once the host of that name or address has
-  // shown, where the stream is by TLS, that it is who it says.
+  // Performs the TLS handshake, which must be the first operation after connecting. On a TLS
+  // stream, `then` gets the result after the certificate was verified for that host name or
+  // address. On a plain stream, `then` is called at once.
   void Handshake(const std::string& host, Then then);
 };
 
-// Beast's hooks for the end of a WebSocket: that of its TCP connection.
+// Hooks for Beast's end of a WebSocket, which end its TCP connection.
 void beast_close_socket(ServerStream& stream);
 void teardown(boost::beast::role_type role, ServerStream& stream, boost::system::error_code& error);
 template <typename Handler>

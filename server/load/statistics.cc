@@ -9,7 +9,8 @@
 namespace thunderhead::load {
 namespace {
 
-// When a viewer first showed each update or a newer one; the period's end if it had not by then.
+// Returns when a viewer first showed each update or a newer one, or the period's end if it had not
+// by then.
 std::vector<double> ShownAt_s(const std::vector<Update>& updates,
                               const std::vector<Arrival>& arrivals, const Period& period) {
   std::vector<double> shown_s;

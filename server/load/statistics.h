@@ -14,7 +14,7 @@ struct Arrival {
   std::uint64_t scene_revision = 0;
 };
 
-// An update that the server took.
+// An update that the server accepted.
 struct Update {
   double sent_s = 0.0;
   std::uint64_t scene_revision = 0;
@@ -40,35 +40,37 @@ struct Percentiles {
   double p99 = 0.0;
 };
 
-// The least value that at least `share` of the values, 0 to 1, do not exceed; none if there are no
-// values.
+// Returns the smallest value that at least `share` of the values, 0 to 1, do not exceed. Returns
+// nothing if there are no values.
 std::optional<double> Percentile(std::vector<double> values, double share);
 std::optional<Percentiles> PercentilesOf(const std::vector<double>& values);
 std::optional<Percentiles> PercentilesOf(const std::vector<Latency>& latencies);
 
-// The latency at one viewer of each update sent in the period: until the first frame of its
-// revision or a newer one. `updates` are in the order of their revisions, `arrivals` of time. An
-// update that no frame had shown by the end counts with its age then, if that is more than any
-// other latency: a viewer that gets nothing any more is late, not absent.
+// Returns the latency of each update sent in the period, for one viewer. The latency ends at the
+// first frame with the update's revision or a newer one. `updates` must be in the order of their
+// revisions, and `arrivals` in that of time. An update that was not shown by the end counts with
+// its age at that time, if this exceeds all other latencies. So a viewer that no longer receives
+// frames counts as late rather than as absent.
 std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
                                  const std::vector<Arrival>& arrivals, const Period& period);
 
-// For each update sent in the period that a viewer showed: the milliseconds from the first viewer
-// that showed it, or a newer one, to the last. One that had not by the end counts until then.
-// `updates` are in the order of their revisions, each viewer's arrivals in that of time.
+// Returns the spread of each update sent in the period that a viewer showed. It is the time in
+// milliseconds from the first viewer that showed the update, or a newer one, to the last. A viewer
+// that had not shown it by the end counts until the end. The updates must be in the order of their
+// revisions, and the arrivals of each viewer in that of time.
 std::vector<double> SpreadsOf(const std::vector<Update>& updates,
                               const std::vector<const std::vector<Arrival>*>& viewers,
                               const Period& period);
 
-// The median latency of the updates sent in the first and in the last third of the period: how
-// latency grows.
+// The growth of latency: its median for the updates sent in the first and in the last third of the
+// period.
 struct Growth {
   std::optional<double> first_third_ms;
   std::optional<double> last_third_ms;
 };
 Growth GrowthOf(const std::vector<Latency>& latencies, const Period& period);
 
-// Frames a second over the whole period.
+// Returns the frames per second over the whole period.
 double FramesPerSecond(const std::vector<Arrival>& arrivals, const Period& period);
 
 }  // namespace thunderhead::load

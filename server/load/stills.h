@@ -1,4 +1,4 @@
-// A burst of single pictures beside a load: all are asked for at once, each by a call of its own.
+// A burst of single pictures during a load. All are requested at once, each by a separate call.
 #pragma once
 
 #include <mutex>
@@ -16,25 +16,25 @@ struct StillOptions {
   int count = 0;
   int width_px = 640;
   int height_px = 360;
-  int slices = 0;  // 0: the default
+  int slices = 0;  // 0 means the default
   double patience_s = 3600.0;
 };
 
 class Stills {
  public:
-  // A stop ends the waiting. `transport` and `errors` must outlive it.
+  // `stop` ends the waiting. `transport` and `errors` must outlive this object.
   Stills(const StillOptions& options, Transport& transport, std::stop_token stop, Errors& errors)
       : options_(options), transport_(transport), stop_(std::move(stop)), errors_(errors) {}
   ~Stills() { Join(); }
   Stills(const Stills&) = delete;
   Stills& operator=(const Stills&) = delete;
 
-  // Asks for all of them. The load's storm and light are the server's defaults, each with the
-  // camera turned a little further.
+  // Requests all of them. Storm and light are the server's defaults, and the camera of each is
+  // turned a little further.
   void Begin();
-  // Waits until each has come, was refused, or is not waited for any more.
+  // Waits until each picture has arrived, was refused or has timed out.
   void Join();
-  // From asking to the picture; once joined.
+  // Returns the times from the request to each picture. It must be called after Join.
   StillRecord Record() const { return {options_.count, came_ms_}; }
 
  private:

@@ -12,66 +12,68 @@
 
 namespace thunderhead::load {
 
-// Hears what comes by one link; called by one thread at a time.
+// Receives the messages of one link. It is called by one thread at a time.
 class Listener {
  public:
   virtual ~Listener() = default;
   virtual void OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::size_t bytes) = 0;
-  // The call has ended, and not by Close(). OK: the server ended it as it should.
+  // Reports that the call has ended other than by Close(). OK means that the server ended it
+  // normally.
   virtual void OnEnd(const absl::Status& status) = 0;
 };
 
 struct LinkOptions {
-  bool reads = true;        // false: never reads anything
-  double kbit_per_s = 0.0;  // the rate at which it reads; 0: no limit
+  bool reads = true;        // false if it never reads anything
+  double kbit_per_s = 0.0;  // the rate at which it reads; 0 means no limit
 };
 
-// A call of Interact on a connection of its own. Closed when it is destroyed.
+// A call of Interact on a separate connection. It is closed when it is destroyed.
 class Link {
  public:
   virtual ~Link() = default;
-  // Sends a serialized InteractRequest, after those sent before.
+  // Sends a serialized InteractRequest, after all earlier ones.
   virtual void Send(std::string message) = 0;
-  // Sends nothing more, whatever Send() is given, so that the server ends the call.
+  // Ends the sending, so that the server ends the call. Later calls of Send() are ignored.
   virtual void HalfClose() = 0;
-  // Breaks off the call. Once it returns, the listener hears no more. Not from the listener.
+  // Aborts the call. After it returns, the listener is not called again. It must not be called by
+  // the listener.
   virtual void Close() = 0;
 };
 
-// How long a call may take.
+// The timeout of a call.
 struct CallPatience {
   double seconds = 0.0;
-  std::stop_token stop = {};  // ends it at once
+  std::stop_token stop = {};  // ends the call at once
 };
 
 class Transport {
  public:
   virtual ~Transport() = default;
   virtual std::string Name() const = 0;
-  // Begins to connect. The listener must outlive the link, and the transport both.
+  // Starts to connect. The listener must outlive the link, and the transport must outlive both.
   virtual std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) = 0;
-  // Calls a unary method of the service with a serialized request; returns the response, or
-  // DEADLINE_EXCEEDED after the patience's seconds, CANCELLED when it is stopped. Safe from any
+  // Calls a unary method of the service with a serialized request and returns the response. Returns
+  // DEADLINE_EXCEEDED after the timeout, and CANCELLED when it is stopped. Safe to call from any
   // thread.
   virtual absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
                                            const CallPatience& patience) = 0;
 };
 
-// Credentials for a guarded server.
+// Credentials for a server with access control.
 struct Access {
-  std::string token;  // empty: none
-  // CA certificates, as PEM, by which the server's certificate is verified. Empty: no TLS or, where
-  // a transport always uses TLS, the machine's own CA certificates.
+  std::string token;  // empty for none
+  // CA certificates as PEM, by which the server's certificate is verified. If empty, there is no
+  // TLS; a transport that always uses TLS then uses the machine's CA certificates.
   std::string tls_roots;
 };
 
-// To HOST:PORT of a server's gRPC.
+// Returns a transport to HOST:PORT of a server's gRPC service.
 std::unique_ptr<Transport> MakeGrpcTransport(const std::string& address, const Access& access = {});
-// To the HTTP port of a server or of a proxy before it.
+// Returns a transport to the HTTP port of a server, or of a proxy in front of it.
 std::unique_ptr<Transport> MakeWebSocketTransport(const std::string& host, int port,
                                                   const std::string& token = "");
-// The same by TLS; the machine's certificates vouch where `access` has none. INVALID_ARGUMENT if
-// its certificates cannot be read.
+// Returns a transport to the same port by TLS. The machine's CA certificates apply if `access` has
+// none. Returns INVALID_ARGUMENT if its certificates cannot be read.
 absl::StatusOr<std::unique_ptr<Transport>> MakeSecureWebSocketTransport(const std::string& host,
                                                                         int port,
                                                                         const Access& access);

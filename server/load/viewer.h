@@ -1,4 +1,5 @@
-// A viewer of a session under load: joins, acknowledges each frame, and records when it came.
+// A viewer of a session under load. It joins, acknowledges each frame, and records when each
+// arrived.
 #pragma once
 
 #include <atomic>
@@ -16,33 +17,33 @@ namespace thunderhead::load {
 
 class Viewer final : public Listener {
  public:
-  // Records bytes while `measuring` is true. Both must outlive it.
+  // Bytes are recorded while `measuring` is true. It and `errors` must outlive the viewer.
   Viewer(ViewerKind kind, const std::atomic<bool>& measuring, Errors& errors);
 
-  // Connects and joins; a throttled viewer reads at that rate. With `takes_video` it asks for VP9.
+  // Connects and joins. A throttled viewer reads at that rate. With `takes_video` it asks for VP9.
   void Join(Transport& transport, const std::string& key, double kbit_per_s, bool takes_video);
-  // Leaves the session's view for its own, which begins with that camera; an orbit.
+  // Leaves the session's view for the viewer's own view, which begins with that orbit camera.
   void LookAround(const v1::Camera& camera);
-  // Turns the camera of its own view by an angle.
+  // Turns the camera of the viewer's own view by an angle.
   void Turn(double angle_deg);
-  // Breaks off the call and joins again.
+  // Aborts the call and joins again.
   void ComeAgain(Transport& transport, const std::string& key);
-  // Asks the server to end the call; one that does not read breaks it off.
+  // Asks the server to end the call. A viewer that does not read aborts it.
   void Leave();
-  // Breaks off the call. Nothing is recorded any more.
+  // Aborts the call and ends the recording.
   void Stop() { link_->Close(); }
 
   ViewerKind kind() const { return record_.kind; }
   bool HasFrame() const { return frames_ > 0; }
   std::uint64_t Frames() const { return frames_; }
-  // Those while `measuring` was true.
+  // Returns the number of frames received while `measuring` was true.
   std::uint64_t MeasuredFrames() const { return measured_frames_; }
-  // True until the first frame since it joined last has come, or the call has ended.
+  // Returns true until the first frame since the last join has arrived, or the call has ended.
   bool WaitsForFirstFrame() const { return !ended_ && frames_ == frames_before_; }
-  // When it joined last.
+  // Returns the time of the last join.
   double joined_at_s() const { return joined_at_s_; }
   bool HasEnded() const { return ended_; }
-  // Once stopped.
+  // Returns the record. It must be called after Stop.
   const ViewerRecord& record() const { return record_; }
 
   void OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::size_t bytes) override;
@@ -56,11 +57,11 @@ class Viewer final : public Listener {
   ViewerRecord record_;
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> measured_frames_{0};
-  std::uint64_t frames_before_ = 0;  // it joined last
+  std::uint64_t frames_before_ = 0;  // frames before the last join
   double joined_at_s_ = 0.0;
   bool takes_video_ = false;
   v1::Camera own_camera_;
-  std::optional<double> waits_since_s_;  // for its first frame
+  std::optional<double> waits_since_s_;  // the time since which it waits for its first frame
   std::atomic<bool> leaving_{false};
   std::atomic<bool> ended_{false};
   std::unique_ptr<Link> link_;

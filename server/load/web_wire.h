@@ -1,4 +1,5 @@
-// The ends of calls as the gateway writes them: gRPC-Web's response body, and trailers as text.
+// Parses the ends of calls as the gateway writes them: gRPC-Web's response body, and trailers as
+// text.
 #pragma once
 
 #include <string>
@@ -9,10 +10,10 @@
 
 namespace thunderhead::load {
 
-// The call's status in a block of trailers, lines of "name:value".
+// Returns the call's status from a block of trailers, which has lines "name:value".
 absl::Status StatusOfTrailers(std::string_view trailers);
 
-// The one message of a unary call's response body, or the call's error.
+// Returns the only message of a unary call's response body, or the call's error.
 absl::StatusOr<std::string> UnaryMessage(std::string_view body);
 
 }  // namespace thunderhead::load

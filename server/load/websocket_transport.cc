@@ -39,14 +39,15 @@ constexpr char kSubprotocol[] = "grpc-websocket.v1";
 constexpr char kMessageKind = 0x00;
 constexpr char kHalfCloseKind = 0x01;
 constexpr char kTrailersKind = static_cast<char>(0x80);
-// A reader of limited rate, or of none, must not have its messages wait in the kernel.
+// The receive buffer of a reader with a limited rate, or that never reads. It is small so that few
+// messages wait in the kernel.
 constexpr int kSlowReceiveBufferBytes = 64 << 10;
 
 struct Host {
   std::string name;
   int port = 0;
-  std::string token;                  // shown to it; empty: none
-  std::shared_ptr<ssl::context> tls;  // null: none
+  std::string token;                  // sent to the server; empty for none
+  std::shared_ptr<ssl::context> tls;  // null for none
 
   std::string ToString() const {
     const bool is_ipv6 = name.find(':') != std::string::npos;
@@ -65,7 +66,7 @@ absl::Status Unavailable(const Host& host, const char* doing, const error_code& 
                                              is_http ? "; is that the server's HTTP port?" : ""));
 }
 
-// One WebSocket. Everything runs on the transport's thread; handlers keep it alive.
+// One WebSocket call. Everything runs on the transport's thread, and handlers keep the call alive.
 class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
  public:
   WebSocketCall(net::io_context& io, Host host, Listener& listener, const LinkOptions& options)
@@ -86,14 +87,14 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   }
 
   void Send(std::string message) {
-    // Nothing may follow a half-close.
+    // No message may follow a half-close.
     if (half_closed_) return;
     half_closed_ = message.front() == kHalfCloseKind;
     unsent_.push_back(std::move(message));
     if (open_ && !writing_) WriteNext();
   }
 
-  // Nothing is heard any more.
+  // Closes the connection without further calls of the listener.
   void Abandon() {
     listener_ = nullptr;
     resolver_.cancel();
@@ -147,7 +148,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
     if (!writing_) return;
     socket_.async_write(net::buffer(unsent_.front()),
                         [self = shared_from_this()](error_code error, std::size_t) {
-                          // The reader tells of an error.
+                          // The reader reports an error.
                           if (error) return;
                           self->unsent_.pop_front();
                           self->WriteNext();
@@ -190,7 +191,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   }
 
   const Host host_;
-  Listener* listener_;  // null once it hears no more
+  Listener* listener_;  // null after Abandon
   const LinkOptions options_;
   Pace pace_;
   tcp::resolver resolver_;
@@ -229,7 +230,8 @@ class WebSocketLink final : public Link {
 
  private:
   void Post(std::string message) {
-    // At once where the listener answers a message, which it hears on that thread.
+    // If the listener sends an answer, it is already on that thread and the message is sent at
+    // once.
     net::dispatch(io_, [call = call_, message = std::move(message)]() mutable {
       call->Send(std::move(message));
     });
@@ -239,7 +241,7 @@ class WebSocketLink final : public Link {
   const std::shared_ptr<WebSocketCall> call_;
 };
 
-// A unary call by gRPC-Web, on an io_context of its own.
+// A unary call by gRPC-Web, on a separate io_context.
 class WebCall {
  public:
   WebCall(Host host, const std::string& method, const std::string& message)

@@ -1,5 +1,5 @@
-// Compares pictures of a scene with the one that the reference traces of it, where the two show the
-// same: not next to the sun (reference/near_sun.h).
+// Compares pictures of a scene with the reference's picture of it, except next to the sun, where
+// the two differ by design (reference/near_sun.h).
 #pragma once
 
 #include <vector>
@@ -13,19 +13,19 @@ namespace thunderhead::measure {
 
 class AgainstTruth {
  public:
-  // `truth` was traced with `peak_cut_deg` and has a standard error. INVALID_ARGUMENT if it shows
-  // hardly anything but the sun.
+  // Creates a comparison. `truth` must be traced with `peak_cut_deg` and have a standard error.
+  // INVALID_ARGUMENT if it shows almost nothing but the sun.
   static absl::StatusOr<AgainstTruth> Of(const scene::Scene& scene,
                                          const volume::HydrometeorFields& fields,
                                          picture::LinearPicture truth, double peak_cut_deg);
 
-  // Of pictures as large as the truth; as measure/image_error.h has them.
+  // Return the errors of a picture of the reference's size, as measure/image_error.h defines them.
   double RelativeRmseWithoutNoise(const picture::LinearPicture& image) const;
   double RelativeBias(const picture::LinearPicture& image) const;
-  // Relative RMSE of the truth's own noise.
+  // Returns the relative RMSE of the reference's own noise.
   double Noise() const { return noise_; }
 
-  // All of it.
+  // Returns the whole reference picture.
   const picture::LinearPicture& Truth() const { return truth_; }
 
  private:
@@ -33,7 +33,7 @@ class AgainstTruth {
 
   picture::LinearPicture truth_;
   std::vector<bool> left_out_;
-  picture::LinearPicture compared_;  // the truth without them
+  picture::LinearPicture compared_;  // the reference without the left-out pixels
   double noise_;
 };
 

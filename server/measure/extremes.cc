@@ -12,10 +12,10 @@ namespace internal {
 
 namespace {
 
-// Rounding of a number near 1 in the light volume's half-float buffers.
+// Rounding error of a number near 1 in the light volume's half-float buffers.
 constexpr double kHalfStep = 0x1p-11;
 
-// Rounding of each factor of a transmittance.
+// Rounding error of each factor of a transmittance.
 constexpr double kSingleStep = 0x1p-24;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Cases with extreme input of storms or users, each with its analytic or limiting answer.
+// Cases with extreme input from storms or users, each with its analytic or limiting result.
 // `thunderhead measure extremes` prints them; tests/accuracy runs the same list. Uses the current
 // GL context.
 #pragma once
@@ -19,11 +19,11 @@ struct Verdict {
 };
 
 struct Extreme {
-  std::string name;  // "half_angle: optical depth per slice 1e-08, paper"
+  std::string name;  // for example "half_angle: optical depth per slice 1e-08, paper"
   std::function<absl::StatusOr<Verdict>(Probe& probe)> check;
 };
 
-// Cases of files and numbers, then cases of pictures by every technique.
+// Returns the cases of files and numbers, then the cases of pictures of each technique.
 std::vector<Extreme> Extremes();
 
 }  // namespace thunderhead::measure

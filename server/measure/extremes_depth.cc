@@ -1,4 +1,4 @@
-// Extreme optical depths, numbers of slices, particle radii.
+// Cases with extreme optical depths, numbers of slices and particle radii.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,11 +14,11 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-// Thinner media are drawn in single precision: half floats cannot represent opacities below 5e-4 or
+// Thinner media are drawn in single precision. Half floats cannot represent opacities below 5e-4 or
 // radiances below 6e-8.
 constexpr double kThin = 0.01;
 
-// Isotropic single scattering of a layer of any profile, lit and seen from the zenith.
+// Returns the isotropic single scattering of a layer of any profile, lit and seen from the zenith.
 double Reflected(double depth) { return -std::expm1(-2.0 * depth) / 2.0 / (4 * std::numbers::pi); }
 
 constexpr int kFewSlices = 8;
@@ -37,8 +37,8 @@ Extreme DepthPerSlice(const accuracy::PlainTechnique& plain, double per_slice,
             const auto fields = FieldsOf({.optical_depth = depth});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
                                          probe.Draw(scene, *fields, {.single_precision = thin}));
-            // Of the extinction towards the eye, delta scaling removes the forward peak, similarity
-            // scaling all forward scattering.
+            // Along the ray towards the eye, delta scaling removes the forward peak from the
+            // extinction. Similarity scaling removes all forward scattering.
             const renderers::GroupWeights weights(
                 scene::GroupedFieldsOf(scene, *fields),
                 *scene::MediumSettingsOf(scene.rendering.technique));
@@ -49,12 +49,12 @@ Extreme DepthPerSlice(const accuracy::PlainTechnique& plain, double per_slice,
           }};
 }
 
-// Reflectance of a thin layer in the paper's transport, over the true one: its display
-// normalisation shows an isotropic phase function as white, 1/2 (common/phase.glsl), instead of
-// 1 / (4 pi).
+// Ratio of a thin layer's reflectance in the paper's transport to the exact one. The paper's
+// display normalisation shows an isotropic phase function as white, 1/2 (common/phase.glsl),
+// instead of 1 / (4 pi).
 constexpr double kPaperBrightness = 2.0 * std::numbers::pi;
 
-// With slices so thin that light is scattered only once, radiance is proportional to the optical
+// Slices are so thin that light is scattered only once, so radiance is proportional to the optical
 // depth. Transmittance could not show that: 1 - 1e-8 rounds to 1 in single precision.
 Extreme ThinSlices(const accuracy::PlainTechnique& plain, double per_slice,
                    const accuracy::Named<scene::Transport>& transport) {
@@ -128,13 +128,12 @@ Extreme LightEnergy(const accuracy::PlainTechnique& plain,
             scene::MediumSettingsOf(&scene.rendering.technique)->theta_f_deg = 90.0;
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({.optical_depth = 100.0}), {}));
-            // The eye sees the light scattered many times that goes back towards the sun, which no
-            // cloud sends more of than one that is deep and loses none. The paper's radiances are
-            // in a unit of its own.
+            // The eye sees the multiply scattered light that returns towards the sun. A deep cloud
+            // without absorption returns the most. The paper's radiances have their own unit.
             const double most = transport.value == scene::Transport::kPaper
                                     ? std::numeric_limits<double>::infinity()
                                     : kMaxFluence / (4.0 * std::numbers::pi);
-            // Some light must be lost, or there would be no medium.
+            // Some light must be lost; otherwise there would be no medium.
             const bool lit = seen.least_light < 0.999 && seen.radiance > 0.0;
             return Sound(
                 seen,

@@ -1,4 +1,4 @@
-// Extreme contents of files: empty, negative and missing values; and the whole range of half
+// Cases with extreme file contents: empty, negative and missing values; and the whole range of half
 // floats.
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// One layer of air, 1 m thick and of 1 kg/m3, with a column for each of `values`.
+// Returns one layer of air, 1 m thick and with 1 kg/m3, with a column for each of `values`.
 storm_files::LayerAir AirOver(const std::vector<float>& values) {
   storm_files::LayerAir air;
   air.levels = 1;
@@ -27,8 +27,8 @@ storm_files::LayerAir AirOver(const std::vector<float>& values) {
   return air;
 }
 
-// Reads mixing ratios as from a file and checks how many are negative and missing, and that only
-// valid ones remain.
+// Reads mixing ratios as from a file. Checks how many are negative and missing, and that only valid
+// ones remain.
 Extreme MixingRatios(const std::string& name, const std::vector<float>& values, int negative,
                      int missing, float left_kg_per_m3) {
   return {name, [=](Probe&) -> absl::StatusOr<Verdict> {

@@ -1,5 +1,5 @@
-// Metaballs at extreme optical depths, domains and cells. A fit does not represent a box exactly,
-// so the cases check soundness and bounds.
+// Cases with metaballs at extreme optical depths, domains and cells. A fit does not represent a box
+// exactly, so the cases check soundness and bounds.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,8 +27,8 @@ scene::Scene BallScene(scene::Transport transport) {
   return scene;
 }
 
-// Passes if `got` is from `low` to `high` and `without`, the value of a picture without balls, is
-// not.
+// Passes if `got` lies between `low` and `high`. `without` is the value of a picture without balls;
+// it must lie outside.
 Verdict Within(double got, double low, double high, double without) {
   Verdict verdict{absl::StrFormat("%g to %g", low, high), absl::StrFormat("%g", got),
                   got >= low && got <= high};
@@ -39,7 +39,7 @@ Verdict Within(double got, double low, double high, double without) {
   return verdict;
 }
 
-// The middle ray's transmittance is from `low` to `high` for any fit.
+// Passes if the middle ray's transmittance lies between `low` and `high` for any fit.
 Extreme Between(const std::string& what, const Box& box, const Look& look, double low,
                 double high) {
   return {absl::StrFormat("%s: %s", kPlain.name, what),
@@ -58,7 +58,8 @@ Extreme Depth(double depth) {
                  std::exp(-1.2 * depth), std::exp(-0.8 * depth));
 }
 
-// The same for the light scattered once by a thin box, even where 1 minus the depth rounds to 1.
+// The same tolerance applies to light scattered once by a thin box, even if 1 minus the depth
+// rounds to 1.
 Extreme ThinLight(double depth) {
   return {absl::StrFormat("%s: light scattered at optical depth %g", kPlain.name, depth),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -81,9 +82,9 @@ Extreme Empty() {
           }};
 }
 
-// Optical depth of the balls along a ray from `origin_m`, as in Man's paper: the sum over the balls
-// of tau, times the ball's density over the mean density (at most 1), times the ball's field where
-// the ray is nearest.
+// Returns the optical depth of the balls along a ray from `origin_m`, as in Man's paper. Each ball
+// contributes a product of three factors. They are tau, the ball's density relative to the mean
+// density (at most 1), and the ball's field at the ray's nearest point.
 double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const glm::dvec3& origin_m,
                   const glm::dvec3& direction) {
   double sum = 0.0;
@@ -100,7 +101,7 @@ double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const g
   return depth;
 }
 
-// Man's densities are relative and his optical depth is a setting, so the picture does not depend
+// Man's densities are relative and his optical depth is a setting. So the picture does not depend
 // on the storm's own optical depth.
 Extreme Paper(double depth) {
   return {

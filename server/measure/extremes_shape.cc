@@ -1,4 +1,5 @@
-// Domains of extreme sizes, cells of extreme shapes, volumes of one cell, too many cells, and none.
+// Cases with domains of extreme sizes, cells of extreme shapes, volumes of one cell, too many
+// cells, and empty volumes.
 #include <epoxy/gl.h>
 
 #include <algorithm>
@@ -45,7 +46,7 @@ Extreme TooManyCells(const accuracy::PlainTechnique& plain) {
           }};
 }
 
-// Nothing is drawn: transmittance is exactly 1 and radiance exactly 0.
+// Nothing must be drawn: transmittance is exactly 1 and radiance exactly 0.
 Extreme Nothing(const accuracy::PlainTechnique& plain, const std::string& what, const Box& box,
                 bool visible) {
   return {absl::StrFormat("%s: %s", plain.name, what),

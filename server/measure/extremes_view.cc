@@ -1,5 +1,5 @@
-// Views along, against and across the light, a sweep past 90 degrees, a camera inside the cloud,
-// the sun at the horizon and below.
+// Cases with extreme views: along, against and across the light, a sweep past 90 degrees, a camera
+// inside the cloud, and the sun at the horizon and below.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,8 +37,8 @@ double MeanRadiance(const Seen& seen) {
   return sum / (static_cast<double>(seen.eye.size()) / 4.0);
 }
 
-// At 90 degrees from the sun half-angle slices change their orientation. The picture must not pop
-// there: the change over that step is like the mean of the steps before and after.
+// At 90 degrees from the sun, half-angle slices change their orientation. The picture must not jump
+// there: the change over that step must be near the mean of the steps before and after.
 Extreme Sweep(const accuracy::PlainTechnique& plain,
               const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: pop when the view passes 90 degrees from the sun, %s", plain.name,
@@ -68,7 +68,7 @@ Extreme Sweep(const accuracy::PlainTechnique& plain,
           }};
 }
 
-// Half-float and float buffers give the same picture.
+// Half-float and float buffers must give the same picture.
 Extreme HalfAgainstSingle(const accuracy::PlainTechnique& plain) {
   return {absl::StrFormat("%s: half-float buffers against float buffers", plain.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -82,8 +82,8 @@ Extreme HalfAgainstSingle(const accuracy::PlainTechnique& plain) {
             if (half.eye == single.eye) {
               return Verdict{"two pictures", "one: both buffers are the same", false};
             }
-            // From 2^-11 in the square root of the light's optical depth, after a few optical
-            // depths.
+            // The tolerance results from 2^-11 in the square root of the light's optical depth,
+            // after a few optical depths.
             return Sound(half, Near(MeanRadiance(half) / MeanRadiance(single), 1.0, 0.002, 0.0));
           }};
 }
@@ -97,8 +97,8 @@ Extreme InsideTheCloud(const accuracy::PlainTechnique& plain, double elevation_d
                 const Seen seen,
                 probe.Draw(scene, *FieldsOf({.optical_depth = 2.0}),
                            {.view_elevation_deg = elevation_deg, .distance_in_boxes = 1e-6}));
-            // Half the box lies in front of the eye. Of the 64 half-angle slices there, the one
-            // with the eye counts completely or not at all.
+            // Half the box lies in front of the eye. Of the 64 half-angle slices there, the slice
+            // that contains the eye counts completely or not at all.
             constexpr DepthErrors kInside = {.half_angle = 1.0 / 64.0 + kUpright.half_angle,
                                              .light_volume = kUpright.light_volume};
             return TransmittanceNear(plain, seen, 1.0, kInside,
@@ -106,7 +106,7 @@ Extreme InsideTheCloud(const accuracy::PlainTechnique& plain, double elevation_d
           }};
 }
 
-// A whole picture with sky and ground, red, green and blue of each pixel.
+// Returns a whole picture with sky and ground as red, green and blue of each pixel.
 absl::StatusOr<std::vector<float>> WholePicture(const scene::Scene& scene) {
   const std::shared_ptr<const volume::HydrometeorFields> fields =
       FieldsOf({.size_m = glm::dvec3(4000.0), .optical_depth = 20.0, .shape = Box::Shape::kRound});
@@ -134,14 +134,14 @@ scene::Scene LowSunScene(const accuracy::PlainTechnique& plain, double elevation
   return scene;
 }
 
-// The maximum radiance is of the order of the sky's mean (10 times that near a setting sun). The
-// storm is visible, by at least a tenth of the mean, and lit everywhere: no pixel is darker than a
-// tenth of its background. Deep in the night the whole picture is black.
+// Checks the maximum radiance, which is of the order of the sky's mean (10 times that near a
+// setting sun). The storm must be visible, by at least a tenth of the mean, and lit everywhere. No
+// pixel may be darker than a tenth of its background. Deep in the night the whole picture is black.
 Verdict LowSunVerdict(const scene::Scene& scene, const std::vector<float>& storm,
                       const std::vector<float>& bare) {
   double brightest = 0.0;
   double changed = 0.0;
-  double darkest = 1.0;  // over its background
+  double darkest = 1.0;  // relative to its background
   for (std::size_t i = 0; i < storm.size(); ++i) {
     if (!std::isfinite(storm[i]) || storm[i] < 0.0F) {
       return {"radiances", absl::StrFormat("%g in the picture", storm[i]), false};

@@ -1,4 +1,5 @@
-// FLIP by Andersson et al. 2020, for pictures of low dynamic range. Constants are the paper's.
+// FLIP by Andersson et al. 2020, for pictures of low dynamic range. Constants are those of the
+// paper.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,9 +23,9 @@ constexpr double kColorExponent = 0.7;       // q_c
 constexpr double kFeatureExponent = 0.5;     // q_f
 constexpr double kCutOff = 0.4;              // p_c
 constexpr double kCutOffValue = 0.95;        // p_t
-constexpr double kFeatureWidth_deg = 0.082;  // of an edge that the eye detects
+constexpr double kFeatureWidth_deg = 0.082;  // width of an edge that the eye detects
 
-// Three planes of a picture's size.
+// Three planes with a picture's size.
 struct Planes {
   glm::ivec2 size{0};
   std::vector<glm::dvec3> values;
@@ -44,13 +45,13 @@ Planes Mapped(const Planes& planes, const std::function<glm::dvec3(const glm::dv
   return mapped;
 }
 
-// Linear sRGB to CIE XYZ under D65, columns for red, green and blue.
+// Matrix from linear sRGB to CIE XYZ under D65, with columns for red, green and blue.
 const glm::dmat3 kXyzFromRgb(0.4124564, 0.2126729, 0.0193339, 0.3575761, 0.7151522, 0.1191920,
                              0.1804375, 0.0721750, 0.9503041);
 const glm::dvec3 kWhite = kXyzFromRgb * glm::dvec3(1.0);
 
-// Opponent colours (luminance, red-green, blue-yellow), linear in radiance, so that they can be
-// filtered.
+// Returns opponent colours (luminance, red-green, blue-yellow). They are linear in radiance, so
+// that they can be filtered.
 glm::dvec3 OpponentOf(const glm::dvec3& rgb) {
   const glm::dvec3 xyz = kXyzFromRgb * rgb / kWhite;
   return {116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y), 200.0 * (xyz.y - xyz.z)};
@@ -62,7 +63,7 @@ glm::dvec3 RgbOf(const glm::dvec3& opponent) {
   return glm::inverse(kXyzFromRgb) * (xyz * kWhite);
 }
 
-// CIE L*a*b* with the Hunt effect: dim colours have less chroma.
+// Returns CIE L*a*b* with the Hunt effect: dim colours have less chroma.
 glm::dvec3 LabOf(const glm::dvec3& rgb) {
   const glm::dvec3 xyz = kXyzFromRgb * rgb / kWhite;
   const auto f = [](double t) {
@@ -146,8 +147,8 @@ std::vector<double> ColorDifference(const Planes& image, const Planes& truth) {
   return difference;
 }
 
-// One-dimensional kernels: a Gaussian, and its first or second derivative with the positive weights
-// and the negative ones adding up to one each.
+// One-dimensional kernels: a Gaussian, and its first or second derivative. The derivative's
+// positive weights and its negative weights add up to one each.
 struct Kernels {
   std::vector<double> smooth, derivative;
 };
@@ -173,11 +174,11 @@ Kernels KernelsOf(bool edges) {
   return kernels;
 }
 
-// The strength of edges or points at each pixel, from luminance.
+// Returns the strength of edges or points at each pixel, from luminance.
 std::vector<double> Features(const Planes& opponent, bool edges) {
   const Kernels kernels = KernelsOf(edges);
   const int radius = static_cast<int>(kernels.smooth.size() / 2);
-  // x: smoothed horizontally, y: horizontal derivative.
+  // x: smoothed horizontally; y: horizontal derivative.
   Planes rows{opponent.size, std::vector<glm::dvec3>(opponent.values.size())};
   std::vector<double> strength(opponent.values.size());
   const auto each = [&](const auto& visit) {

@@ -22,8 +22,8 @@
 namespace thunderhead::measure {
 namespace {
 
-constexpr int kWarmFrames = 2;  // not measured: the first compiles shaders
-constexpr int kMinFrames = 3;   // in a run
+constexpr int kWarmFrames = 2;  // not measured, because the first compiles shaders
+constexpr int kMinFrames = 3;   // in one run
 constexpr double kStep_deg = 1.0;
 
 using scene::FrameStage;
@@ -61,7 +61,8 @@ class Frames {
     return absl::OkStatus();
   }
 
-  // Frames a second over at least `seconds` while `move` changes the scene before each.
+  // Returns the frames per second over at least `seconds`, while `move` changes the scene before
+  // each frame.
   absl::StatusOr<double> Rate(void (Frames::*move)(), double seconds, Samples* stages) {
     const base::Stopwatch stopwatch;
     int frames = 0;
@@ -73,8 +74,8 @@ class Frames {
     return 1e3 * frames / stopwatch.ElapsedMs();
   }
 
-  // FLIP of the frame as it is drawn while something moves against the one that follows at rest, at
-  // the exposure of the former.
+  // Returns FLIP of the moving frame against the frame that follows at rest, at the exposure of the
+  // moving frame.
   absl::StatusOr<std::optional<double>> MovingFlip() {
     renderers::StageTimes times;
     THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped moving, DrawAsMoving(&times));
@@ -91,7 +92,7 @@ class Frames {
   }
 
  private:
-  // As sessions do while something moves; appends the times of its stages.
+  // Draws as sessions do while something moves; appends the times of its stages.
   absl::StatusOr<frame::ToneMapped> DrawAsMoving(renderers::StageTimes* times) {
     const accuracy::FrameQuality quality{.sparse = accuracy::MovesSparsely(scene_)};
     THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -147,7 +148,8 @@ absl::StatusOr<FrameRateRow> MeasureRow(
   }
   frames.MoveCamera();
   THUNDERHEAD_ASSIGN_OR_RETURN(row.camera_flip, frames.MovingFlip());
-  // From light that was solved for in full the first step is as good as one can be.
+  // After fully solved light, the first step is as good as it can be, so some steps precede the
+  // measurement.
   for (int i = 0; i < kWarmFrames; ++i) {
     frames.MoveSun();
     THUNDERHEAD_RETURN_IF_ERROR(frames.Draw(&warming));
@@ -170,7 +172,8 @@ struct Case {
   std::string_view mode;
 };
 
-// Presets and the default are without traced light, which waits until the view rests.
+// The presets and the default have no traced light here, because tracing waits until the view is at
+// rest.
 std::vector<Case> CasesOf(const FrameRateOptions& options) {
   std::vector<Case> cases;
   for (const accuracy::PlainTechnique& plain : accuracy::kPlainTechniques) {

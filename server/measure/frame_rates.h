@@ -1,4 +1,4 @@
-// Frame rates of one storm in every named setting: each technique in the papers' modes, and the
+// Frame rates of one storm in all named settings: each technique in the papers' modes, and the
 // presets. Measures whole frames, from a changed scene to a JPEG. Uses the current GL context.
 #pragma once
 
@@ -21,10 +21,10 @@ struct FrameRateOptions {
   int width_px = 300;  // the papers' size and slices
   int height_px = 300;
   int slices = scene::HalfAngle{}.slices;
-  scene::Transport transport = scene::Transport::kConsistent;  // of the papers' translucent modes
+  scene::Transport transport = scene::Transport::kConsistent;  // for the papers' translucent modes
   int runs = 5;                                                // results are their medians
   double seconds_a_run = 0.4;
-  std::string only_mode{};  // measures rows of that mode alone, if it is not empty
+  std::string only_mode{};  // if not empty, only rows of this mode are measured
 };
 
 struct StageMedian {
@@ -37,10 +37,10 @@ struct FrameRateRow {
   std::string_view mode;    // the papers' mode or preset; "default": the setting of a new scene
   double camera_fps = 0.0;  // the camera moves every frame
   double sun_fps = 0.0;     // the sun moves every frame
-  // The stages that a camera move reruns, and the light, which only a sun move reruns.
+  // The stages that a camera move reruns, and the light stage, which only a sun move reruns.
   std::vector<StageMedian> stages;
-  // FLIP of such a frame against one ray a pixel and light solved in full, after the camera and
-  // after the sun has moved; none where frames are drawn in full anyway.
+  // FLIP of such a frame against one with one ray per pixel and fully solved light, after a camera
+  // move and after a sun move. None if frames are drawn in full anyway.
   std::optional<double> camera_flip{};
   std::optional<double> sun_flip{};
 };
@@ -52,7 +52,7 @@ absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
 std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows);
 std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& rows);
 
-// Mass of all condensate, largest in a mature storm.
+// Returns the mass of all condensate, which is largest in a mature storm.
 double Condensate_kg(const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::measure

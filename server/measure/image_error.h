@@ -1,5 +1,5 @@
-// Differences between a picture and the truth: errors of linear radiance, and perceived ones. Pure
-// functions of pixels; images are rows from top to bottom.
+// Differences between a picture and the reference: errors of linear radiance, and perceived
+// differences. Pure functions of pixels; images are rows from top to bottom.
 #pragma once
 
 #include <vector>
@@ -9,29 +9,31 @@
 
 namespace thunderhead::measure {
 
-// The picture without the pixels of `left_out`, one for each of its own: the others in one row.
+// Returns the picture without the pixels that are set in `left_out`, as a single row.
 picture::LinearPicture Without(const std::vector<bool>& left_out,
                                const picture::LinearPicture& image);
 
-// Root mean square of the difference over pixels and colours, relative to the truth's mean
-// radiance. The images must have the same size and the truth must not be black.
+// Returns the root mean square of the difference over pixels and colours, relative to the
+// reference's mean radiance. The images must have the same size, and the reference must not be
+// black.
 double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPicture& truth);
 
-// The same of the truth's standard error, which must be present: the expected RelativeRmse between
-// the exact picture and this truth.
+// Returns the same for the reference's standard error, which must be present. It is the expected
+// RelativeRmse between the exact picture and this reference.
 double RelativeNoise(const picture::LinearPicture& truth);
 
-// RelativeRmse after subtracting the truth's RelativeNoise: the noise is independent of the
-// picture, so mean squares add up. 0 if the difference is all noise.
+// Returns RelativeRmse after subtracting the reference's RelativeNoise. The noise is independent of
+// the picture, so mean squares add up. 0 if the difference is all noise.
 double RelativeRmseWithout(double truth_noise, const picture::LinearPicture& image,
                            const picture::LinearPicture& truth);
 
-// Mean difference, relative to the truth's mean radiance: above 0 if the picture is too bright.
+// Returns the mean difference relative to the reference's mean radiance. It is above 0 if the
+// picture is too bright.
 double RelativeBias(const picture::LinearPicture& image, const picture::LinearPicture& truth);
 
-// The mean of the perceived difference, 0 to 1, by FLIP (Andersson et al. 2020, A Difference
-// Evaluator for Alternating Images) at 67 pixels a degree: colours after the eye's contrast
-// sensitivity, and edges and points.
+// Returns the mean perceived difference, 0 to 1, by FLIP (Andersson et al. 2020, A Difference
+// Evaluator for Alternating Images) at 67 pixels per degree. It compares colours after the eye's
+// contrast sensitivity, and edges and points.
 double Flip(const frame::RgbImage& image, const frame::RgbImage& truth);
 
 }  // namespace thunderhead::measure

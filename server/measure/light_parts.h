@@ -1,6 +1,6 @@
-// Parts of the light, to find which one a renderer gets wrong: the same scene with fewer light
-// sources, or with single scattering only, for renderer and reference alike. Owns GL objects: use
-// it on the context's thread.
+// Parts of the light, to find which part a renderer gets wrong. A part is the same scene with fewer
+// light sources, or with single scattering only, for the renderer and the reference alike. Owns GL
+// objects: use it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -19,18 +19,18 @@ namespace thunderhead::measure {
 enum class LightPart {
   kOnce,  // sunlight scattered once, uniform phase, black sky and ground: both sides are exact
   kSun,   // sunlight scattered any number of times, black sky and ground
-  kSky,   // skylight alone, black ground
+  kSky,   // only skylight, black ground
   kAll
 };
 
 std::string NameOf(LightPart part);
 
-// The scene that the reference traces for that part of `scene`, and its options.
+// Return the scene that the reference traces for that part of `scene`, and its options.
 scene::Scene SceneOf(LightPart part, scene::Scene scene);
 reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg);
 
-// Draws one part with `scene`'s renderer and transport at `finer` times its width and height and
-// averages blocks of pixels, as the reference averages over a pixel. `correction` may be null.
+// Draws one part with `scene`'s renderer and transport, at `finer` times its width and height.
+// Averages blocks of pixels, because the reference averages over a pixel. `correction` may be null.
 absl::StatusOr<picture::LinearPicture> DrawPart(
     renderers::SceneRenderer& renderer, const scene::Scene& scene,
     const std::shared_ptr<const volume::HydrometeorFields>& fields, LightPart part, int finer,

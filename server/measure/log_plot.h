@@ -9,14 +9,14 @@ namespace thunderhead::measure {
 
 class LogPlot {
  public:
-  // Axes that contain every point of `x` and `y`, all above 0 and at least one. `title` is above
-  // the plot, `note` below.
+  // Creates axes that contain all points of `x` and `y`. There must be at least one point, and all
+  // values must be above 0. `title` is above the plot, `note` below.
   LogPlot(const std::vector<double>& x, const std::vector<double>& y, const std::string& title,
           const std::string& note);
 
   // Connects the points in their order.
   void Line(const std::vector<std::pair<double, double>>& points, const std::string& color);
-  // A dot of `radius` pixels with the tool tip `tip`.
+  // Adds a dot of `radius` pixels with the tool tip `tip`.
   void Dot(double x, double y, int radius, const std::string& fill, const std::string& stroke,
            const std::string& tip);
 

@@ -20,7 +20,7 @@ namespace thunderhead::measure {
 namespace {
 
 constexpr float kCovered = 0.95F;
-constexpr double kTowerRadius = 1.0 / 2.0;  // shares of the core's height
+constexpr double kTowerRadius = 1.0 / 2.0;  // as shares of the core's height
 constexpr double kTowerFoot = 1.0 / 6.0;
 constexpr double kBaseRadius = 1.0 / 3.0;
 constexpr double kBaseHeight = 1.0 / 4.0;
@@ -39,7 +39,7 @@ class Places {
         view_(scene::ViewOf(scene, fields)),
         towards_sun_(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg)) {}
 
-  // The region of the pixel at device coordinates from -1 to 1, y upwards.
+  // Returns the region of the pixel at device coordinates from -1 to 1, y upwards.
   Region At(const glm::dvec2& at) const {
     const glm::dvec3 origin_m = view_.eye_m + at.x * view_.half_width_m * view_.right +
                                 at.y * view_.half_height_m * view_.up;
@@ -93,7 +93,7 @@ class Places {
   const glm::dvec3 towards_sun_;
 };
 
-// `values` are not empty.
+// Returns a percentile of `values`, which must not be empty.
 double Percentile(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());

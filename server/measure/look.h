@@ -13,35 +13,36 @@
 
 namespace thunderhead::measure {
 
-// A storm's strongest core (volume::StrongestCore), of height H, as a picture shows it. A
-// pixel counts where the storm covers it (an opacity of 0.95) and the place that it shows
-// (scene::PlaceSeen, without detail) is
+// The regions of a storm in a picture, relative to its strongest core (volume::StrongestCore) of
+// height H. A pixel counts if the storm covers it (an opacity of 0.95). Its region depends on the
+// place that it shows (scene::PlaceSeen, without detail):
 //
-//   tower  within H / 2 of the core's axis, higher than H / 6 above the ground, and sunlit;
-//   base   within H / 3 of the axis, not higher than H / 4 and 2 km, and not sunlit.
+//   tower  within H / 2 of the core's axis, higher than H / 6 above the ground, and sunlit
 //
-// Sunlit: farther than H / 8 towards the sun there is less than an optical depth of 1. So billows
-// and the shadows between them are parts of the sunlit tower, as they are of what is called so in a
-// photograph, but the shaded side and the shadow of an anvil are not.
+//   base   within H / 3 of the axis, not higher than H / 4 and 2 km, and not sunlit
+//
+// A place is sunlit if the optical depth towards the sun, beyond a distance of H / 8, is less than
+// 1. So billows and the shadows between them belong to the sunlit tower, as in the usual
+// description of photographs. The shaded side and the shadow of an anvil do not.
 enum class Region : std::uint8_t { kNeither, kTower, kBase };
 
-// The region of each pixel, rows from top to bottom. `opacity` is that of the storm.
+// Returns the region of each pixel, rows from top to bottom. `opacity` is the storm's opacity.
 std::vector<Region> RegionsOf(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                               const std::vector<float>& opacity);
 
-// Fewer pixels than this are not a region.
+// Minimum number of pixels of a region.
 inline constexpr int kFewestPixels = 50;
 
 struct LookFigures {
   int tower_pixels = 0;
   int base_pixels = 0;
   std::optional<double> tower_stops;  // from the 5th to the 95th percentile of luminance
-  double frame_stops = 0.0;           // of the whole picture, from the 1st to the 99th
-  std::optional<double> base_share;   // median luminance of the base over that of the tower
+  double frame_stops = 0.0;           // of the whole picture, from the 1st to the 99th percentile
+  std::optional<double> base_share;   // ratio of the base's median luminance to the tower's
 };
 
 LookFigures FiguresOf(const std::vector<Region>& regions, const picture::LinearPicture& picture);
-// Figures of the light that a screen shows. Black counts as half of the darkest grey.
+// Returns the figures of the light that a screen shows. Black counts as half of the darkest grey.
 LookFigures FiguresOf(const std::vector<Region>& regions, const frame::RgbImage& display);
 
 }  // namespace thunderhead::measure

@@ -1,4 +1,4 @@
-// The machine of a measurement.
+// Describes the machine of a measurement.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 namespace thunderhead::measure {
 
 struct Machine {
-  std::string processor;  // as the system names it
-  int threads = 0;        // that it runs in parallel
+  std::string processor;  // name reported by the system
+  int threads = 0;        // number of parallel threads
   std::string device;     // "software" or "gpu 0"
   std::string gl_renderer;
   std::string gl_version;
@@ -19,7 +19,7 @@ Machine MachineOf(const gl::ContextInfo& context);
 
 std::string ToJson(const Machine& machine);
 
-// `text` as a JSON string.
+// Returns `text` as a JSON string.
 std::string JsonText(const std::string& text);
 
 }  // namespace thunderhead::measure

@@ -17,12 +17,12 @@ namespace thunderhead::measure {
 namespace {
 
 constexpr std::array kCounts = {8, 16, 32, 64, 128, 256};
-constexpr int kLimit = 2048;  // slices, in place of infinitely many
+constexpr int kLimit = 2048;  // number of slices that stands for infinitely many
 
-// Relative rounding of half floats.
+// Relative rounding error of half floats.
 constexpr double kFrameRounding = 0x1p-12;
 
-// Value drawn in place of zero on a logarithmic axis.
+// Value drawn instead of zero on a logarithmic axis.
 constexpr double kMinSliceError = 1e-9;
 
 absl::StatusOr<picture::LinearPicture> DrawWith(

@@ -1,6 +1,6 @@
-// Convergence of pictures with the number of slices, for both transports: error of linear radiance
-// against the same transport with many more slices, and the order of convergence. The error of the
-// limit itself is measured by measure/trade.h. Uses the current GL context.
+// Convergence of pictures with the number of slices, for both transports. Measures the error of
+// linear radiance against the same transport with many more slices, and the order of convergence.
+// measure/trade.h measures the error of the limit itself. Uses the current GL context.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ struct SlicePoint {
 struct SliceCurve {
   accuracy::Named<scene::Transport> transport;
   std::vector<SlicePoint> points;
-  double order = 0.0;  // of a power law through the points: error ~ slices^-order
+  double order = 0.0;  // exponent of a power law through the points: error ~ slices^-order
 };
 
 // Draws `scene` (its renderer, mode and size) with 8 to 256 slices and both transports.
@@ -32,8 +32,9 @@ absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     const std::function<void(double share)>& progress);
 
-// The order of the power law that fits the points best (least squares of the logarithms). Ignores
-// points within ten roundings of the frame's half floats if two others remain.
+// Returns the order of the power law that fits the points best (least squares of the logarithms).
+// Ignores points within ten rounding errors of the frame's half floats if at least two other points
+// remain.
 double OrderOf(const std::vector<SlicePoint>& points);
 
 std::string ToTable(const std::vector<SliceCurve>& curves);

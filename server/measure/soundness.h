@@ -9,10 +9,10 @@
 
 namespace thunderhead::measure {
 
-// 1 plus tolerance: a ray's transmittance is a product of rounded factors.
+// 1 plus a tolerance, because a ray's transmittance is a product of rounded factors.
 inline constexpr float kMaxShare = 1.0F + 1e-5F;
 
-// Fluence of light scattered many times, over the sun's irradiance: deep in an infinite
+// Ratio of the fluence of multiply scattered light to the sun's irradiance, deep in an infinite
 // conservative cloud with the sun in the zenith (Eddington).
 inline constexpr double kMaxFluence = 5.0;
 
@@ -22,20 +22,21 @@ struct Soundness {
   double least_light = 1.0;  // smallest share of sunlight anywhere
 };
 
-// The first fault of radiance or transmittance, four floats a pixel; empty if there is none.
+// Returns the first fault of radiance or transmittance, with four floats per pixel; empty if there
+// is none.
 std::string UnsoundPicture(const std::vector<float>& eye);
 
-// Checks half-angle slicing's light buffer: four floats a texel, of which the first two are the
-// share of sunlight and its optical depth.
+// Checks half-angle slicing's light buffer, with four floats per texel. The first two are the share
+// of sunlight and its optical depth.
 Soundness LightBufferSoundness(const std::vector<float>& light);
 
-// Checks the light volume after carry.comp and arrive.comp: the optical depth of sunlight is
-// nowhere below 0 and does not fall along any ray of the sun.
+// Checks the light volume after carry.comp and arrive.comp. The optical depth of sunlight must be 0
+// or more everywhere and must not decrease along any ray of the sun.
 Soundness LightVolumeSoundness(const renderers::LightVolumeRenderer& renderer);
 
-// Checks the solution of diffusion transport, in as many cells as the medium's: the fluence of
-// sunlight is nowhere more than that deep in an infinite conservative cloud. `transport_share` is
-// the similarity-scaled extinction over the eye's.
+// Checks the solution of diffusion transport, which has as many cells as the medium. The fluence of
+// sunlight must nowhere exceed that deep in an infinite conservative cloud. `transport_share` is
+// the ratio of the similarity-scaled extinction to the eye's.
 Soundness DiffusionSoundness(const renderers::LightVolumeRenderer& renderer,
                              double transport_share);
 

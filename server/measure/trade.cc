@@ -55,7 +55,7 @@ void AddVariants(scene::Transport transport, std::vector<Setting>* settings) {
   }
 }
 
-// Moves the camera by too little to be seen.
+// Moves the camera by an invisible amount.
 void Nudge(scene::Camera* camera) {
   constexpr double kStep = 1e-9;
   std::visit(
@@ -195,8 +195,8 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
                                CorrectionOf(scene, setting.million_paths, stop));
   std::vector<double> milliseconds;
   std::string jpeg;
-  // A moving camera makes the view stage run again. The first frame is not measured, as it also
-  // compiles shaders and carries the light.
+  // A moving camera makes the view stage run again. The first frame is not measured because it also
+  // compiles shaders and propagates the light.
   for (int i = -1; i < kTimedFrames; ++i) {
     Nudge(&scene.camera);
     const base::Stopwatch stopwatch;

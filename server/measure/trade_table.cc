@@ -31,7 +31,7 @@ const char* PrecisionOf(const Setting& setting) {
   return setting.single_precision ? kSingle : kHalf;
 }
 
-// Values drawn in place of zero on a logarithmic axis.
+// Values drawn instead of zero on a logarithmic axis.
 constexpr double kMinMilliseconds = 1e-3;
 constexpr double kMinTradeError = 1e-6;
 
@@ -79,7 +79,7 @@ const char* ColorOf(const scene::Technique& technique) {
   return "#000000";
 }
 
-// Blue: light volume, orange: half-angle slices, green: metaballs, violet: surfaces; hollow: paper
+// Blue: light volume; orange: half-angle slices; green: metaballs; violet: surfaces; hollow: paper
 // transport.
 void AddDot(const TradeRow& row, LogPlot* plot) {
   const scene::Technique& technique = row.setting.technique;
@@ -110,7 +110,7 @@ std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows
   return front;
 }
 
-// JSON has no NaN.
+// JSON has no NaN, so an unmeasured error is left out.
 std::string EstimateJson(const TradeRow& row) {
   const accuracy::Estimated& error = row.estimated_error;
   if (std::isnan(error.value)) return "\"measured\": false, ";
@@ -150,7 +150,7 @@ absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string
   }
   std::vector<TradeRow> rows;
   const std::vector<absl::string_view> lines = absl::StrSplit(rest, '\n');
-  // After the last line's end there is nothing or an incomplete line.
+  // After the last line break there is nothing or an incomplete line.
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
     const std::optional<TradeRow> row = RowOf(lines[i]);
     if (!row.has_value()) {

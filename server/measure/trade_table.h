@@ -1,5 +1,5 @@
-// Rows of the trade as text: CSV from which a later run continues, JSON, and an SVG plot. Pure
-// functions.
+// Rows of the trade measurement as text: CSV from which a later run continues, JSON, and an SVG
+// plot. Pure functions.
 #pragma once
 
 #include <string>
@@ -11,27 +11,29 @@
 
 namespace thunderhead::measure {
 
-// The subject of the rows.
+// What the rows were measured on.
 struct TradeTitle {
   std::string storm;
-  std::string view;      // a name for people
+  std::string view;      // a display name
   std::string renderer;  // OpenGL's renderer string
   glm::ivec2 size_px{0};
   int truth_samples_per_pixel = 0;
   double truth_noise = 0.0;  // relative RMSE
 };
 
-// The first lines of a CSV file: comments with the title, then the names of the columns.
+// Returns the first lines of a CSV file: comments with the title, then the names of the columns.
 std::string CsvHead(const TradeTitle& title);
 std::string CsvLine(const TradeRow& row);
 
-// The rows of a file that begins with `head`. INVALID_ARGUMENT if it does not, or names the line
-// that cannot be parsed. A last line without its end, from an interrupted run, is ignored.
+// Returns the rows of a file that begins with `head`. INVALID_ARGUMENT if it begins differently, or
+// if a line cannot be parsed, which the error names. An incomplete last line, from an interrupted
+// run, is ignored.
 absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string_view head);
 
 std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows);
 
-// Milliseconds across, relative RMSE up, both logarithmic; the Pareto front joined by a line.
+// Returns a plot of relative RMSE over milliseconds, both logarithmic. A line joins the Pareto
+// front.
 std::string TradeSvg(const TradeTitle& title, const std::vector<TradeRow>& rows);
 
 }  // namespace thunderhead::measure

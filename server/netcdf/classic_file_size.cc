@@ -11,13 +11,14 @@ namespace {
 
 std::uintmax_t Padded(std::uintmax_t bytes) { return (bytes + 3) / 4 * 4; }
 
-// Sizes of the numbers in a header: counts and lengths grew with CDF-5, file offsets with CDF-2.
+// Sizes of the numbers in a header. CDF-5 widened counts and lengths, and CDF-2 widened file
+// offsets.
 struct HeaderWidths {
   std::uintmax_t count;
   std::uintmax_t offset;
 };
 
-// No larger than what can be counted: a header may promise anything.
+// Returns the product, limited so that sums cannot overflow. A header can announce any size.
 std::uintmax_t BoundedProduct(std::uintmax_t a, std::uintmax_t b) {
   constexpr std::uintmax_t kMax = std::numeric_limits<std::int64_t>::max() / 4096;
   std::uintmax_t product = 0;
@@ -34,7 +35,8 @@ std::uintmax_t TypeSize(int handle, nc_type type) {
   return size;
 }
 
-// A list of attributes: tag, count, then name, type, length and values of each.
+// Returns the size of a list of attributes: tag and count, then name, type, length and values of
+// each.
 std::uintmax_t AttributesSize(int handle, int variable, int attributes,
                               const HeaderWidths& widths) {
   std::uintmax_t bytes = 4 + widths.count;
@@ -96,7 +98,7 @@ std::uintmax_t ClassicFileSize(int handle) {
   int record_dimension = -1;
   nc_inq(handle, &dimensions, &variables, &attributes, &record_dimension);
 
-  std::uintmax_t bytes = 4 + widths.count;  // magic number, count of records
+  std::uintmax_t bytes = 4 + widths.count;  // magic number, number of records
   bytes += 4 + widths.count;                // head of the list of dimensions
   for (int i = 0; i < dimensions; ++i) {
     char name[NC_MAX_NAME + 1];
@@ -114,8 +116,8 @@ std::uintmax_t ClassicFileSize(int handle) {
     data += sizes.has_records ? BoundedProduct(sizes.data, records) : sizes.data;
     record_variables += sizes.has_records ? 1 : 0;
   }
-  // A complete file may lack the padding after its last value, and a single record variable has
-  // none between records.
+  // A complete file may lack the padding after its last value. A single record variable has no
+  // padding between records.
   const std::uintmax_t slack = 3 * (record_variables == 1 ? records + 1 : 1);
   return bytes + data - (data < slack ? data : slack);
 }

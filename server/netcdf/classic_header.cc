@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kTagBytes = 4;
 
-// Bytes of a value, by the number of its type from NC_BYTE, 1, to NC_UINT64, 11.
+// Size of a value in bytes, by the number of its type, from NC_BYTE (1) to NC_UINT64 (11).
 constexpr std::array<std::uint64_t, 12> kTypeBytes = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
 absl::Status Damaged(const std::string& what) {
@@ -35,7 +35,7 @@ class Header {
   }
 
  private:
-  // Big-endian; 0 past the end of the file.
+  // Reads a big-endian number. Returns 0 past the end of the file.
   std::uint64_t Number(std::uint64_t bytes) {
     std::uint64_t number = 0;
     for (std::uint64_t i = 0; i < bytes; ++i) {
@@ -45,7 +45,7 @@ class Header {
     return file_ ? number : 0;
   }
 
-  // Of values of so many bytes; a header may promise more than any file has.
+  // Skips `count` values of `bytes` each. A header can announce more values than any file has.
   void Skip(std::uint64_t count, std::uint64_t bytes) {
     constexpr std::uint64_t kMax = std::numeric_limits<std::streamsize>::max() / 2;
     std::uint64_t all = 0;

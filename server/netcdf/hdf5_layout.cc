@@ -11,7 +11,7 @@
 namespace thunderhead::netcdf {
 namespace {
 
-// More than any model writes; a file of many tiny objects must not take minutes to look through.
+// Maximum number of objects, more than any model writes. It limits the time that a check takes.
 constexpr int kMostObjects = 100'000;
 
 constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
@@ -33,16 +33,16 @@ class Handle {
   herr_t (*const close_)(hid_t);
 };
 
-// The state of a walk through a file.
+// The state of a traversal of the file.
 struct Walk {
   int objects = 0;
-  std::set<haddr_t> groups;  // where they are in the file
+  std::set<haddr_t> groups;  // their addresses in the file
   std::string complaint;
 };
 
 herr_t Refuse(Walk& walk, const char* name, const char* what) {
   walk.complaint = absl::StrCat(base::Printable(name), " ", what);
-  return 1;  // ends the walk
+  return 1;  // ends the traversal
 }
 
 herr_t LookAtLink(hid_t root, const char* name, const H5L_info_t* info, void* data) {
@@ -55,7 +55,7 @@ herr_t LookAtLink(hid_t root, const char* name, const H5L_info_t* info, void* da
   const bool is_group =
       H5Oget_info_by_name2(root, name, &target, H5O_INFO_BASIC, H5P_DEFAULT) >= 0 &&
       target.type == H5O_TYPE_GROUP;
-  // NetCDF-C follows every link, and never ends in a circle of groups.
+  // NetCDF-C follows every link, so it would never finish on a cycle of groups.
   if (is_group && !walk.groups.insert(target.addr).second) {
     return Refuse(walk, name, "is a second link to a group");
   }
@@ -105,8 +105,8 @@ absl::Status Look(const std::string& path, hid_t opened) {
                    "nccopy, and give that"));
 }
 
-// Returns callbacks by which HDF5 uses the bytes of a file where they are, and neither copies nor
-// frees them.
+// Returns callbacks with which HDF5 uses the bytes of a file in place, without copying or freeing
+// them.
 H5FD_file_image_callbacks_t ImageInPlace(void* image) {
   return {.image_malloc = [](std::size_t, H5FD_file_image_op_t, void* bytes) { return bytes; },
           .image_memcpy = [](void* to, const void*, std::size_t, H5FD_file_image_op_t,
@@ -138,7 +138,7 @@ absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> 
   }
   if (!found) return absl::OkStatus();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
-  void* const image = const_cast<std::byte*>(bytes.data());  // opened for reading alone
+  void* const image = const_cast<std::byte*>(bytes.data());  // the file is only read
   H5FD_file_image_callbacks_t callbacks = ImageInPlace(image);
   constexpr std::size_t kGrowth_bytes = 1 << 16;
   if (!access.ok() || H5Pset_fapl_core(access.get(), kGrowth_bytes, false) < 0 ||
@@ -146,7 +146,7 @@ absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> 
       H5Pset_file_image(access.get(), image, bytes.size()) < 0) {
     return absl::ResourceExhaustedError(absl::StrCat(path, ": HDF5 has no memory to look at it"));
   }
-  // HDF5 refuses the name of a file that exists.
+  // HDF5 refuses the name of a file that exists, so the name must not be a possible path.
   return Look(path, H5Fopen("bytes in memory, no file", H5F_ACC_RDONLY, access.get()));
 }
 

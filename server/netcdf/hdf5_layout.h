@@ -1,5 +1,5 @@
-// Looks through the structure of an HDF5 file before netCDF-C opens it. HDF5 can place the values
-// of a variable in other files, which would show a viewer any file that the server's user can read.
+// Checks the structure of an HDF5 file before netCDF-C opens it. HDF5 can store the values of a
+// variable in other files. A viewer could then see any file that the server's user can read.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,21 @@
 
 namespace thunderhead::netcdf {
 
-// HDF5's signature stands at the start of a file, or at this offset, or at a power of two times it.
+// HDF5's signature is at the start of a file, at this offset, or at this offset times a power of
+// two.
 inline constexpr std::size_t kFirstHdf5Offset = 512;
 
 // Returns whether the bytes begin with HDF5's signature of eight bytes.
 bool IsHdf5Signature(std::span<const std::byte> bytes);
 
-// Return DATA_LOSS if a dataset keeps its values in other files (external storage, virtual
-// datasets), if a link leads to another file or to a group that another link leads to, or if the
-// structure cannot be read, and OK for a file that is not HDF5. The caller holds NetcdfLock. The
-// bytes are not copied.
+// Both functions return DATA_LOSS in these cases:
+//
+// - A dataset keeps its values in other files (external storage, virtual datasets).
+// - A link leads to another file, or to a group to which another link leads.
+// - The structure cannot be read.
+//
+// They return OK for a file that is not HDF5. The caller must hold NetcdfLock. The bytes are not
+// copied.
 absl::Status CheckHdf5File(const std::string& path);
 absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes);
 

@@ -32,15 +32,15 @@ namespace {
 
 constexpr int kNoHandle = -1;
 
-// Models write fills from 1e30 (a common choice) to 9.969e36 (netCDF's own); no quantity in a storm
-// is that large.
+// Models write fill values from 1e30 (a common choice) to 9.969e36 (netCDF's own). No quantity in a
+// storm is that large.
 constexpr double kLargestValue = 1e30;
 
-// Maximum length of an attribute; readers ask for no longer ones.
+// Maximum length of an attribute. Readers need no longer ones.
 constexpr std::size_t kLongestText = 1 << 20;
 
-// True if a writer holds the file: HDF5 locks what it writes with flock(2), and its reader then
-// fails with what netCDF-C gives for any damage (NC_EHDFERR).
+// Returns whether a writer holds the file. HDF5 locks a file that it writes with flock(2). Its
+// reader then fails with the code that netCDF-C returns for any damage (NC_EHDFERR).
 bool IsHeldByWriter(int file) {
   if (flock(file, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
   flock(file, LOCK_UN);
@@ -78,7 +78,7 @@ absl::Status OpenError(const std::string& path, int code) {
   }
 }
 
-// A variable's packing attributes; fill values are packed ones.
+// A variable's packing attributes. Its fill values are packed values.
 struct Packing {
   nc_type type = NC_FLOAT;
   double scale = 1.0;
@@ -127,7 +127,8 @@ Packing PackingOf(int handle, int variable) {
   return packing;
 }
 
-// Comparisons are written so that NaN fails them. `Real` is the type as which values were read.
+// Returns the unpacked value, or NaN if it is missing. The comparisons are written so that NaN
+// fails them. `Real` is the type in which the values were read.
 template <typename Real>
 float Clean(Real packed, const Packing& packing) {
   constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
@@ -163,7 +164,7 @@ std::optional<MemoryFile>& InMemory() {
   return file;
 }
 
-// Bytes in memory as a stream, which does not write to them.
+// A stream buffer that reads bytes in memory and never writes to them.
 class BytesBuffer final : public std::streambuf {
  public:
   explicit BytesBuffer(std::span<const std::byte> bytes) {
@@ -176,9 +177,9 @@ absl::Status CheckHeader(const std::string& path, std::istream& file) {
   return base::Annotate(CheckClassicHeader(file), path);
 }
 
-// NetCDF-C neither writes to the bytes nor frees them.
+// Opens the bytes. NetCDF-C neither writes to the bytes nor frees them.
 int OpenMemory(const MemoryFile& file, int& handle) {
-  constexpr std::size_t kMagicBytes = 8;  // with fewer netCDF-C speaks of an invalid argument
+  constexpr std::size_t kMagicBytes = 8;  // with fewer, netCDF-C reports an invalid argument
   if (file.bytes.size() < kMagicBytes) return NC_ENOTNC;
   return nc_open_mem(file.path.c_str(), NC_NOWRITE, file.bytes.size(),
                      const_cast<std::byte*>(file.bytes.data()), &handle);
@@ -218,7 +219,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
   if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
-  // An empty file has just been created by its writer; HDF5 would call it "unknown format".
+  // The writer has just created an empty file. HDF5 would report it as "unknown format".
   if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
   std::ifstream header(path, std::ios::binary);
   THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
@@ -243,7 +244,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Checked(const std::string& path, int hand
   NetcdfFile file(path, handle);
   const std::uintmax_t expected = ClassicFileSize(handle);
   if (bytes >= expected) return file;
-  // Not by ~NetcdfFile, which would take the lock again.
+  // The file is closed here, because ~NetcdfFile would take the lock again.
   nc_close(std::exchange(file.handle_, kNoHandle));
   return absl::DataLossError(absl::StrCat(
       path, ": has ", bytes, " bytes where its header promises ", expected,
@@ -476,8 +477,8 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
     const NetcdfLock lock;
     THUNDERHEAD_ASSIGN_OR_RETURN(const int id, NumbersId(variable, count.size()));
     packing = PackingOf(handle_, id);
-    // No chunk cache: every chunk is read once, and the cache would keep a second copy of each
-    // variable.
+    // The chunk cache is off. Every chunk is read once, and the cache would keep a second copy of
+    // each variable.
     nc_set_var_chunk_cache(handle_, id, 0, 0, 0.0F);
     int code = NC_NOERR;
     if (packing.PlainFloat()) {
@@ -522,8 +523,8 @@ absl::StatusOr<int> NetcdfFile::NumbersId(const std::string& variable, std::size
     case NC_CHAR:
       return ReadError(variable, NC_ECHAR);
     default:
-      // NetCDF-C calls strings, and numbers that it does not know such as long double, NC_STRING,
-      // and would write pointers into the memory of the numbers.
+      // NetCDF-C reports NC_STRING for strings, and for numbers that it does not know, such as long
+      // double. It would write pointers into the memory of the numbers.
       return absl::InvalidArgumentError(
           absl::StrCat(path_, ": ", variable,
                        " is of a type other than integers of up to 64 bits, float and double; "

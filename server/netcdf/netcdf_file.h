@@ -1,6 +1,6 @@
-// One netCDF file, owned: reads text and numbers, with all codes for "no value" replaced by NaN.
-// Knows no model and no storm. NetCDF-C and HDF5 are not thread-safe, so every call holds a lock of
-// the whole process (NetcdfLock); no other code may call netCDF-C.
+// An open netCDF file: reads text and numbers, and replaces all codes for "no value" by NaN. This
+// class does not depend on any model or storm. NetCDF-C and HDF5 are not thread-safe, so every call
+// holds a lock of the whole process (NetcdfLock). No other code may call netCDF-C.
 #pragma once
 
 #include <cstddef>
@@ -16,82 +16,83 @@ namespace thunderhead::netcdf {
 
 class NetcdfFile {
  public:
-  // Opens `path` for reading. Errors: NOT_FOUND; INVALID_ARGUMENT (no netCDF file); DATA_LOSS (cut
-  // short or damaged); UNAVAILABLE (another program is writing it).
+  // Opens `path` for reading. Errors: NOT_FOUND; INVALID_ARGUMENT (not a netCDF file); DATA_LOSS
+  // (truncated or damaged); UNAVAILABLE (another program is writing it).
   static absl::StatusOr<NetcdfFile> Open(const std::string& path);
 
-  // For a process that may open no file: from now on the file at `path`, and no other, is read from
-  // these bytes, which must stay.
+  // Makes this process read the file at `path`, and no other file, from these bytes. It is for a
+  // process that may not open files. The bytes must stay valid.
   static void ReadFromMemory(const std::string& path, std::span<const std::byte> bytes);
 
   NetcdfFile(NetcdfFile&& other) noexcept;
   NetcdfFile& operator=(NetcdfFile&& other) noexcept;
   ~NetcdfFile();
 
-  // Checks an open file before anything parses it: INVALID_ARGUMENT if it does not begin as netCDF
-  // does, DATA_LOSS if it is empty, UNAVAILABLE while another program writes it (HDF5 locks it
-  // then).
+  // Checks an open file before anything parses it. Returns INVALID_ARGUMENT if it does not begin
+  // like a netCDF file, and DATA_LOSS if it is empty. Returns UNAVAILABLE while another program
+  // writes it, which HDF5 marks with a lock.
   static absl::Status CheckStart(const std::string& path, int file);
 
   const std::string& Path() const { return path_; }
 
   bool HasVariable(const std::string& variable) const;
 
-  // The names of all variables, in the file's order.
+  // Returns the names of all variables, in the file's order.
   std::vector<std::string> Variables() const;
 
-  // The names of the variable's dimensions, slowest first.
+  // Returns the names of the variable's dimensions, slowest first.
   absl::StatusOr<std::vector<std::string>> Dimensions(const std::string& variable) const;
 
-  // Length of the dimension, or nothing.
+  // Returns the length of the dimension, or nothing if there is no such dimension.
   std::optional<std::size_t> DimensionLength(const std::string& dimension) const;
 
-  // Lengths of the variable's dimensions, slowest first.
+  // Returns the lengths of the variable's dimensions, slowest first.
   absl::StatusOr<std::vector<std::size_t>> Shape(const std::string& variable) const;
 
-  // Attributes; nothing if absent or of another type. An empty `variable` means the global
-  // attributes.
+  // Return an attribute, or nothing if it is absent or has another type. An empty `variable` means
+  // the global attributes.
   std::optional<std::string> TextAttribute(const std::string& variable,
                                            const std::string& attribute) const;
   std::optional<double> NumberAttribute(const std::string& variable,
                                         const std::string& attribute) const;
-  // A text attribute that is empty if absent. One of another type is "(not text)", which no reader
-  // knows, so that it is refused like any other unknown text.
+  // Returns a text attribute, or an empty text if it is absent. An attribute of another type is
+  // returned as "(not text)". No reader recognizes that text, so it is refused like any other
+  // unknown text.
   std::string TextOrEmpty(const std::string& variable, const std::string& attribute) const;
 
-  // The rows of a two-dimensional character variable, up to the first NUL each.
+  // Returns the rows of a two-dimensional character variable, each up to its first NUL.
   absl::StatusOr<std::vector<std::string>> ReadRows(const std::string& variable) const;
 
-  // How many values a record of the variable has, from its dimensions; reads none. DATA_LOSS if
-  // that is more than any memory holds.
+  // Returns how many values a record of the variable has, computed from its dimensions without
+  // reading values. Returns DATA_LOSS if that is more than any memory holds.
   absl::StatusOr<std::size_t> RecordLength(const std::string& variable) const;
 
-  // One record (index of the slowest dimension) of a numeric variable: unpacked (scale_factor,
-  // add_offset), missing values (the variable's fill values, anything of 1e30 or more, NaN,
-  // infinities) as NaN, denormals as zero. Reuses the memory of `values`.
+  // Reads one record (an index of the slowest dimension) of a numeric variable. Unpacks values
+  // (scale_factor, add_offset). Missing values become NaN: the variable's fill values, anything of
+  // 1e30 or more, NaN and infinities. Denormals become zero. Reuses the memory of `values`.
   absl::Status ReadRecord(const std::string& variable, std::size_t record,
                           std::vector<float>& values) const;
 
-  // A whole numeric variable in double precision, for coordinates; missing values become NaN as
-  // above.
+  // Reads a whole numeric variable in double precision, for coordinates. Missing values become NaN
+  // as in ReadRecord.
   absl::StatusOr<std::vector<double>> ReadDoubles(const std::string& variable) const;
 
-  // A hyperslab of a variable; missing values become NaN as above.
+  // Reads a hyperslab of a variable. Missing values become NaN as in ReadRecord.
   absl::StatusOr<std::vector<float>> ReadPart(const std::string& variable,
                                               const std::vector<std::size_t>& start,
                                               const std::vector<std::size_t>& count) const;
 
  private:
   NetcdfFile(std::string path, int handle);
-  // `bytes` is the size of the file. The caller holds NetcdfLock.
+  // Checks the opened file. `bytes` is its size. The caller must hold NetcdfLock.
   static absl::StatusOr<NetcdfFile> Checked(const std::string& path, int handle,
                                             std::uintmax_t bytes);
 
   absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
                           const std::vector<std::size_t>& count, std::vector<float>& values) const;
-  // Returns the id of a variable whose type is in the allow-list of numbers and that has `rank`
-  // dimensions. Every read of numbers begins here. INVALID_ARGUMENT for another type or rank. The
-  // caller holds NetcdfLock.
+  // Returns the id of a variable if its type is an allowed numeric type and it has `rank`
+  // dimensions. Otherwise returns INVALID_ARGUMENT. Every function that reads numbers calls it
+  // first. The caller must hold NetcdfLock.
   absl::StatusOr<int> NumbersId(const std::string& variable, std::size_t rank) const;
   absl::StatusOr<std::size_t> CountThatFits(const std::string& variable,
                                             const std::vector<std::size_t>& lengths,

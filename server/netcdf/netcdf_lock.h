@@ -1,5 +1,5 @@
-// The one lock of the process around netCDF-C and HDF5, which are not thread-safe. What reads and
-// writes netCDF for all rooms includes it: NetcdfFile and NetcdfWriter.
+// The process-wide lock around netCDF-C and HDF5, which are not thread-safe. NetcdfFile and
+// NetcdfWriter, which read and write netCDF for all libraries, hold it.
 #pragma once
 
 #include <hdf5.h>
@@ -8,12 +8,12 @@
 
 namespace thunderhead::netcdf {
 
-// Held around every call of netCDF-C.
+// A guard that must be held around every call of netCDF-C.
 class NetcdfLock {
  public:
   NetcdfLock() : lock_(Mutex()) {
-    // HDF5 prints failed look-ups unless switched off, thread by thread; netCDF does so only in the
-    // thread that opens the first file.
+    // HDF5 prints failed look-ups unless printing is switched off in each thread. NetCDF switches
+    // it off only in the thread that opens the first file.
     thread_local const herr_t silenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     static_cast<void>(silenced);
   }

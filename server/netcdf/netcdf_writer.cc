@@ -8,7 +8,7 @@
 namespace thunderhead::netcdf {
 namespace {
 
-// zlib's level; higher ones save little.
+// Compression level of zlib. Higher levels save little.
 constexpr int kCompression = 4;
 
 }  // namespace

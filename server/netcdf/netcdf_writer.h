@@ -1,5 +1,5 @@
-// A netCDF-4 file being written. Holds the lock of netCDF-C as long as it lives, and keeps the
-// first error, after which calls do nothing.
+// A netCDF-4 file that is being written. The writer holds the lock of netCDF-C as long as it lives.
+// It keeps the first error, after which calls do nothing.
 #pragma once
 
 #include <netcdf.h>
@@ -14,17 +14,17 @@ namespace thunderhead::netcdf {
 
 class NetcdfWriter {
  public:
-  // At `path`, in place of what is there; or in memory, where `path` only names it to others who
-  // wait for the lock.
+  // kOnDisk replaces the file at `path`. kInMemory writes no file, and netCDF-C uses `path` only as
+  // a name.
   enum class Where { kOnDisk, kInMemory };
   explicit NetcdfWriter(const std::string& path, Where where = Where::kOnDisk);
   ~NetcdfWriter() { Close(); }
   NetcdfWriter(const NetcdfWriter&) = delete;
   NetcdfWriter& operator=(const NetcdfWriter&) = delete;
 
-  // Each returns what netCDF-C calls it by.
+  // Both functions return netCDF-C's id of the new dimension or variable.
   int Dimension(const char* name, std::size_t length);
-  // Compressed if it has dimensions, of which the last runs fastest.
+  // Defines a variable, compressed if it has dimensions. The last dimension runs fastest.
   int Variable(const char* name, nc_type type, const std::vector<int>& dimensions);
 
   void Text(int variable, const char* name, const std::string& text);
@@ -32,17 +32,17 @@ class NetcdfWriter {
   void Number(int variable, const char* name, double number) {
     Numbers(variable, name, {&number, 1});
   }
-  // The value of cells without one.
+  // Sets the value of cells without data.
   void Fill(int variable, float value);
   void EndDefinitions();
 
-  // All of a variable.
+  // Both functions write all values of a variable.
   void Values(int variable, absl::Span<const float> values);
   void Values(int variable, absl::Span<const double> values);
 
-  // The file is whole after this if it is still good.
+  // Closes the file, which is complete after this unless there was an error.
   void Close();
-  // The same; the bytes of one in memory.
+  // Closes a file in memory and returns its bytes.
   std::string Take();
 
   bool Good() const { return code_ == NC_NOERR; }

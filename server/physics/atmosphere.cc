@@ -23,15 +23,15 @@ const glm::vec2 kScaleHeights_m(glsl::kAirScaleHeight_m, glsl::kHazeScaleHeight_
 
 constexpr float kInverseFourPi = 0.25F * std::numbers::inv_pi_v<float>;
 
-// Densities of air, haze and ozone relative to their largest ones.
+// Returns the densities of air, haze and ozone relative to their maxima.
 glm::vec3 Densities(float height_m) {
   const float ozone = 1.0F - std::abs(height_m - kOzoneMiddle_m) / kOzoneHalfWidth_m;
   return {std::exp(-height_m / glsl::kAirScaleHeight_m),
           std::exp(-height_m / glsl::kHazeScaleHeight_m), std::max(ozone, 0.0F)};
 }
 
-// Height at `distance_m` along a ray. In single precision the difference of radii would be wrong by
-// metres.
+// Returns the height at `distance_m` along a ray. It uses double precision, because in single
+// precision the difference of radii would be wrong by metres.
 float HeightAlong(float height_m, float sine, float distance_m) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double d = distance_m;
@@ -39,8 +39,8 @@ float HeightAlong(float height_m, float sine, float distance_m) {
                             kEarthRadius_m);
 }
 
-// Distances along a ray to a sphere of the given height around the Earth: from inside it, and from
-// outside.
+// Return the distance along a ray to a sphere of the given height around the Earth. The first is
+// for a point inside the sphere, the second for a point outside.
 float DistanceUpTo_m(float target_m, float height_m, float sine) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double target = static_cast<double>(kEarthRadius_m) + target_m;
@@ -57,8 +57,8 @@ float DistanceDownTo_m(float target_m, float height_m, float sine) {
   return static_cast<float>(-across - std::sqrt(std::max(inside, 0.0)));
 }
 
-// For a table whose rows are spaced evenly in the square root of height, up to the atmosphere's
-// top.
+// Returns the row of a height in a table whose rows are spaced evenly in the square root of height,
+// up to the atmosphere's top.
 TableRow RowAt(float height_m, int rows) {
   const float high = std::sqrt(glm::clamp(height_m / kAtmosphereTop_m, 0.0F, 1.0F));
   const float place = high * static_cast<float>(rows - 1);
@@ -66,7 +66,8 @@ TableRow RowAt(float height_m, int rows) {
   return {low, place - static_cast<float>(low)};
 }
 
-// Bilinear look-up at a fractional column and between two rows of a table of `columns` columns.
+// Interpolates bilinearly in a table of `columns` columns, at a fractional column and between two
+// rows.
 glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column,
                   const TableRow& row) {
   const int left = std::min(static_cast<int>(column), columns - 2);
@@ -76,9 +77,9 @@ glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column
   return glm::mix(glm::mix(low[0], low[1], share), glm::mix(high[0], high[1], share), row.share);
 }
 
-// Amounts of air, haze and ozone from a point to space, in metres at their largest densities. They
-// do not depend on turbidity, so one table serves all: by height and, from the horizon up, sine of
-// elevation, both spaced evenly in the square root.
+// Amounts of air, haze and ozone from a point to space, in metres at their maximum densities. They
+// do not depend on turbidity, so one table serves all atmospheres. Its axes are height and, from
+// the horizon up, sine of elevation, both spaced evenly in the square root.
 class ColumnsToSpace {
  public:
   static const ColumnsToSpace& Get() {
@@ -126,7 +127,8 @@ class ColumnsToSpace {
 
 constexpr int kDiffuseHeights = 10;
 constexpr int kDiffuseSines = 24;
-constexpr float kLowestSine = -0.4F;  // of the sun's elevation; below it the atmosphere is dark
+// Sine of the lowest elevation of the sun. For lower suns the atmosphere is dark.
+constexpr float kLowestSine = -0.4F;
 
 AirLevel LevelAt(float height_m) {
   return {HorizonSine(height_m), ColumnsToSpace::RowAt(height_m), RowAt(height_m, kDiffuseHeights)};
@@ -201,14 +203,14 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
   if (line.end_m <= 0.0F) return line;
   float from_m = 0.0F;
   for (int i = 1; i <= ray.steps; ++i) {
-    // Steps grow with distance, as the air usually gets thinner.
+    // Steps grow with distance, because the air usually gets thinner.
     const float share = static_cast<float>(i) / static_cast<float>(ray.steps);
     const float to_m = line.end_m * share * share;
     const float middle_m = 0.5F * (from_m + to_m);
     const float height_m = height_at(middle_m);
     const AirOptics optics = At(height_m);
     const glm::vec3 transmittance = glm::exp(-optics.extinction * (to_m - from_m));
-    // Light from within the step is attenuated by the step itself.
+    // The step itself attenuates the light that is scattered within it.
     const glm::vec3 seen = line.transmittance * (1.0F - transmittance) /
                            glm::max(optics.extinction, glm::vec3(1e-20F));
     line.steps.push_back(
@@ -222,7 +224,8 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
 
 namespace {
 
-// A point of a ray; its vertical tilts with the distance, as the Earth is round.
+// Returns a point of a ray. The vertical there is tilted in proportion to the distance, because the
+// Earth is round.
 AirPlace PlaceOn(const Atmosphere::Line& line, const Atmosphere::Sunwards& sun, float distance_m,
                  float height_m) {
   const float above = distance_m * sun.mu + (kEarthRadius_m + line.height_m) * sun.sine;
@@ -238,7 +241,7 @@ Atmosphere::Gathered Atmosphere::Gather(const Line& line, const Sunwards& sun) c
     const glm::vec3 sunlight = SunTransmittance(step.level, sun_sine);
     gathered.air += sunlight * step.air;
     gathered.haze += sunlight * step.haze;
-    // Empty while the higher orders are still being computed.
+    // diffuse_ is empty while the constructor computes the higher orders.
     if (!diffuse_.empty()) {
       gathered.diffuse +=
           (step.air + step.haze) * DiffuseMeanRadiance(step.level.diffuse, sun_sine);
@@ -253,7 +256,7 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
   glm::vec3 second(0.0F);
   glm::vec3 again(0.0F);  // share of uniform light that returns after one more scattering
   for (int i = 0; i < kDirections; ++i) {
-    // Fibonacci spiral: directions spread evenly over the sphere.
+    // A Fibonacci spiral spreads the directions evenly over the sphere.
     const float sine = 1.0F - 2.0F * (static_cast<float>(i) + 0.5F) / kDirections;
     const float cosine = std::sqrt(1.0F - sine * sine);
     const float azimuth = static_cast<float>(i) * 2.39996323F;

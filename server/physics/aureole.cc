@@ -11,21 +11,21 @@
 namespace thunderhead::physics {
 namespace {
 
-// Rings around the sun that hold the cut light, by the square so that they are narrow in its
-// middle.
+// Rings around the sun that hold the cut light. Their radii grow with the square of the index, so
+// the inner rings are narrow.
 constexpr int kAureoleRings = 600;
-// Wave numbers of the Hankel transform, in 1/rad: up to 15 over the disc's radius, beyond which the
-// tables, which hold it, have nothing left; so close that what wraps around is four times beyond
-// the largest angle.
+// Wave numbers of the Hankel transform, in 1/rad. They reach 15 divided by the disc's radius. The
+// tables are averaged over the disc, so they hold nothing beyond that. The steps are so small that
+// aliases appear only beyond four times the largest angle.
 constexpr int kWaves = 800;
 constexpr double kWaveStep = 4.0;
 
 struct Ring {
   double radius = 0.0;
-  glm::dvec3 share{0.0};  // of all scattered light
+  glm::dvec3 share{0.0};  // share of all scattered light
 };
 
-// The radius is 2 sin(angle / 2), which makes equal areas equal solid angles.
+// Returns 2 sin(angle / 2). With this radius, equal areas of rings are equal solid angles.
 double RingRadius(double angle_rad) { return 2.0 * std::sin(0.5 * angle_rad); }
 
 std::vector<Ring> RingsOf(const PhaseFunction& phase, double cut_rad) {
@@ -42,7 +42,8 @@ std::vector<Ring> RingsOf(const PhaseFunction& phase, double cut_rad) {
   return rings;
 }
 
-// The transform of the rings at each wave number; at 0 the share of the light that is cut.
+// Returns the transform of the rings at each wave number. At wave number 0 it is the share of the
+// light that is cut.
 std::vector<glm::dvec3> TransformOf(const std::vector<Ring>& rings) {
   std::vector<glm::dvec3> transform;
   for (int k = 0; k < kWaves; ++k) {
@@ -54,7 +55,7 @@ std::vector<glm::dvec3> TransformOf(const std::vector<Ring>& rings) {
   return transform;
 }
 
-// exp(x) - 1 - x, without its cancellation.
+// Returns exp(x) - 1 - x without cancellation.
 double TwiceAndMore(double x) {
   return std::abs(x) < 1e-3 ? 0.5 * x * x * (1.0 + x / 3.0) : std::expm1(x) - x;
 }
@@ -73,7 +74,8 @@ Aureole Aureole::Of(const PhaseFunction& phase, double cut_rad) {
   aureole.radiances.assign(static_cast<std::size_t>(kAngles) * kDepths, glm::vec3(0.0F));
   if (aureole.share <= 0.0) return aureole;
   const std::vector<glm::dvec3> transform = TransformOf(RingsOf(phase, cut_rad));
-  std::vector<double> bessel;  // by angle, then wave number, times the area of its ring
+  // By angle, then wave number; includes the factors of the transform's integral.
+  std::vector<double> bessel;
   for (int a = 0; a < kAngles; ++a) {
     const double radius = RingRadius(aureole.end_rad * Squared(a, kAngles));
     for (int k = 0; k < kWaves; ++k) {

@@ -1,5 +1,5 @@
-// Long computations in chunks on several threads, with a result that does not depend on how many:
-// each chunk works into its own value, and the values are merged in the chunks' order.
+// Long computations in chunks on several threads. The result does not depend on the number of
+// threads: each chunk writes its own value, and the values are merged in the order of the chunks.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace thunderhead::physics {
 
-// How a long computation is run. `progress` is called with the share done, from one thread at a
-// time.
+// Settings of a long computation. `progress` receives the finished share and is called from one
+// thread at a time.
 struct WorkPlan {
   int threads = 1;
   std::function<void(double done)> progress = [](double) {};
 };
 
-// work(i) for i = 0 ... chunks - 1, in no particular order.
+// Calls work(i) for i = 0 ... chunks - 1, in no particular order.
 template <typename Work>
 void ForEachChunk(int chunks, const WorkPlan& plan, const Work& work) {
   std::atomic<int> next = 0;

@@ -1,18 +1,19 @@
-// Random numbers that are a pure function of a key and a counter, so that a computation gives the
-// same bits in whatever order and on however many threads its parts run.
+// Random numbers that are a pure function of a key and a counter. A computation therefore gives the
+// same bits in any order and on any number of threads.
 #pragma once
 
 #include <cstdint>
 
 namespace thunderhead::physics {
 
-// One stream of uniform numbers. The mixing is SplitMix64's (Steele, Lea and Flood 2014).
+// One stream of uniform numbers. The mixing function is that of SplitMix64 (Steele, Lea and Flood
+// 2014).
 class CounterRandom {
  public:
   CounterRandom(std::uint64_t seed, std::uint64_t stream)
       : key_(Mix(Mix(seed + kStep) ^ (stream * kStep))) {}
 
-  // The next number, at least 0 and below 1.
+  // Returns the next number, at least 0 and below 1.
   double Next() {
     counter_ += kStep;
     return static_cast<double>(Mix(key_ + counter_) >> 11U) * 0x1p-53;

@@ -16,17 +16,17 @@ constexpr std::size_t kTileSide = DetailTile::kSide;
 constexpr std::size_t kTexels = kTileSide * kTileSide * kTileSide;
 constexpr int kWarpOctaves = 2;
 constexpr double kBillowPersistence = 0.65;
-constexpr double kWarpDeviation = 0.4;  // of the full displacement
-constexpr double kFibreStretch = 6.0;   // along the shear
-constexpr double kFibreWidth = 0.7;     // across it, of the billows'
+constexpr double kWarpDeviation = 0.4;  // standard deviation relative to the full displacement
+constexpr double kFibreStretch = 6.0;   // stretch along the shear
+constexpr double kFibreWidth = 0.7;     // across the shear, relative to the billows
 constexpr double kMinShear_m_per_s = 1.0;
-constexpr double kDriftPeriod_s = 3.0 * 3600.0;  // divides a day
+constexpr double kDriftPeriod_s = 3.0 * 3600.0;  // a divisor of a day
 constexpr double kWarpInCells = 1.0;
-constexpr double kUpwardWarpInCells = 2.0;  // layers are thin
+constexpr double kUpwardWarpInCells = 2.0;  // larger, because layers are thin
 constexpr double kWarpInWavelengths = 0.25;
 
-// Adds `octaves` of noise, the first being `first`, each `persistence` times the one before; their
-// absolute values if `billows`.
+// Adds `octaves` of noise, beginning with octave `first`. Each amplitude is `persistence` times the
+// one before. With `billows`, the absolute values are added.
 std::vector<float> Sum(int first, int octaves, double persistence, std::uint32_t seed,
                        bool billows) {
   std::vector<float> sums(kTexels, 0.0F);
@@ -47,7 +47,7 @@ std::vector<float> Sum(int first, int octaves, double persistence, std::uint32_t
   return sums;
 }
 
-// Replaces values by their ranks, 0 to 255.
+// Replaces values by their ranks, scaled to 0 to 255.
 void StoreRanks(const std::vector<float>& values, std::size_t channel, DetailTile* tile) {
   constexpr std::size_t kBins = 1U << 16U;
   const float largest = *std::max_element(values.begin(), values.end());
@@ -64,7 +64,7 @@ void StoreRanks(const std::vector<float>& values, std::size_t channel, DetailTil
   }
 }
 
-// Scales values, whose mean is nearly 0, to their standard deviation.
+// Scales values, whose mean is nearly 0, by their standard deviation.
 void StoreDisplacement(const std::vector<float>& values, std::size_t channel, DetailTile* tile) {
   double mean = 0.0;
   double square = 0.0;
@@ -87,7 +87,7 @@ DetailTile MakeDetailTile(int octaves, std::uint32_t seed) {
   DetailTile tile;
   tile.texels.resize(4 * kTexels);
   StoreRanks(Sum(0, octaves, kBillowPersistence, seed, true), 0, &tile);
-  // Seeds of scenes are below this.
+  // An offset above all seeds of scenes, so that the displacement has other seeds than the billows.
   constexpr std::uint32_t kOtherSeeds = 1U << 20U;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     StoreDisplacement(Sum(0, kWarpOctaves, 0.5, seed + kOtherSeeds * (axis + 1), false), axis + 1,

@@ -19,8 +19,8 @@ std::complex<double> WaterIndex(std::size_t channel, double shift_um = 0.0) {
   return {WaterRefractiveIndex(kWavelengthsUm[channel] + shift_um), kWaterAbsorption[channel]};
 }
 
-// The cross section per logarithm of the radius, r^3 n(r), at r = radius / effective radius, up to
-// a constant factor; 1 at its peak.
+// Returns the cross section per logarithm of the radius, r^3 n(r), at r = radius / effective
+// radius. It is scaled to 1 at its peak.
 double AreaDensity(double r, double variance) {
   const double power = 1.0 / variance;
   return std::exp(power * (std::log(r) - r + 1.0));
@@ -80,7 +80,7 @@ PhaseAccumulator ScatterByDroplets(const DropletSizes& sizes, const std::vector<
   std::vector<double> cosines;
   for (const double angle : angles.angles_rad) cosines.push_back(std::cos(angle));
 
-  // Drops are dealt out in turn, so that every chunk has small and large ones.
+  // Drops are distributed in turn, so that every chunk has small and large ones.
   constexpr int kChunks = 64;
   using Sums = std::array<std::vector<double>, kPhaseChannels>;
   std::vector<Sums> chunk_sums(kChunks);

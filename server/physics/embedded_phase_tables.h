@@ -1,4 +1,4 @@
-// The texts of data/phase, built into the program by cmake/embed_texts.cmake, by table name.
+// The texts of data/phase by table name. cmake/embed_texts.cmake builds them into the program.
 #pragma once
 
 #include <map>

@@ -13,9 +13,9 @@ namespace {
 constexpr int kPatternSide = glsl::kFieldMapCells;
 constexpr std::uint64_t kFieldSeed = 1862;
 constexpr std::uint64_t kGrainSeed = 1803;
-constexpr float kBrightest = 2.35F;  // the largest factor of reflectance, grain included
+constexpr float kBrightest = 2.35F;  // the largest factor of reflectance, including grain
 
-// The crop of a field, from -1 (dark, green) to 1 (bright, dry).
+// The crop of a field. Both values range from -1 (dark, green) to 1 (bright, dry).
 struct Crop {
   float brightness = 0.0F;
   float dryness = 0.0F;
@@ -42,8 +42,8 @@ Crop RandomCrop(CounterRandom* random) {
   return crop;
 }
 
-// Sections of four quarters of four cells; fields are sections, quarters, halves of quarters or
-// cells.
+// The map of fields. A section has four quarters, and a quarter has four cells. A field is a
+// section, a quarter, half of a quarter or a cell.
 class FieldMap {
  public:
   FieldMap() : crops_(At(kPatternSide - 1, kPatternSide - 1) + 1), pivots_(crops_.size(), 0.0F) {
@@ -77,7 +77,7 @@ class FieldMap {
     std::array<Crop, 4> crops;
     for (Crop& crop : crops) crop = RandomCrop(random);
     const double layout = random->Next();
-    if (layout < 0.15) {  // the corners that the centre pivot leaves dry
+    if (layout < 0.15) {  // cells in the corners that centre-pivot irrigation does not reach
       Plant(west, south, {kFieldCrops[0], kFieldCrops[0], kFieldCrops[0], kFieldCrops[0]}, 1.0F);
     } else if (layout < 0.55) {
       Plant(west, south, {crops[0], crops[0], crops[0], crops[0]});
@@ -109,7 +109,8 @@ class FieldMap {
   std::vector<float> pivots_;
 };
 
-// Value noise of octaves that each repeat over the map; mean 0, from -1 to 1.
+// Returns value noise of octaves that each repeat over the map. Its mean is 0 and its range is -1
+// to 1.
 std::vector<float> GrainMap() {
   std::vector<float> grain(At(kPatternSide - 1, kPatternSide - 1) + 1, 0.0F);
   const int coarsest = static_cast<int>(glsl::kCoarsestGrain_m / glsl::kGrainCell_m);
@@ -128,7 +129,7 @@ std::vector<float> GrainMap() {
     const auto value = [&](int x, int y) {
       return nodes_of_row[static_cast<std::size_t>((y % nodes) * nodes + x % nodes)];
     };
-    constexpr float kAmplitude = 0.3F;  // of each octave
+    constexpr float kAmplitude = 0.3F;  // amplitude of each octave
     for (int y = 0; y < kPatternSide; ++y) {
       for (int x = 0; x < kPatternSide; ++x) {
         const auto smooth = [&](int at) {

@@ -1,7 +1,7 @@
-// Fields of crops on the one-mile grid of the Great Plains: a pattern for the ground of idealised
-// runs, which have no land use. It is decoration: which field is where follows from a random
-// number alone. The geometry is that of shaders/physics/ground_cover.glsl, compiled for the CPU
-// here; this has the map of fields, and samples it as a GPU does.
+// Fields of crops on the one-mile grid of the Great Plains. This pattern covers the ground of
+// idealised runs, which have no land use. It is decoration: random numbers decide which field is
+// where. The geometry comes from shaders/physics/ground_cover.glsl, compiled for the CPU here. This
+// file adds the map of fields, and samples it as a GPU does.
 #pragma once
 
 #include <cstdint>
@@ -35,23 +35,24 @@ using glm::vec4;
 
 }  // namespace glsl
 
-// The map: brightness, dryness and centre pivots of fields (the red, green and blue of a texel of
-// 402 m), and the grain (alpha; texels of 0.8 m). The means of the first two and of the last are
-// 128 / 255.
+// The map. Red, green and blue of a texel of 402 m hold brightness, dryness and centre pivots of
+// fields. Alpha holds the grain, with texels of 0.8 m. The means of red, green and alpha are 128 /
+// 255.
 class FieldPattern {
  public:
-  // The one pattern that there is.
+  // Returns the only pattern.
   static const FieldPattern& Plains();
 
-  // kFieldMapCells squared texels.
+  // Returns the texels, kFieldMapCells squared.
   const std::vector<glm::u8vec4>& Texels() const { return texels_; }
 
-  // Reflectance by colour over the ground's on average (of the same luminance), at a place in world
-  // metres, averaged over a footprint in metres. `contrast` is 1 for all of the pattern.
+  // Returns the reflectance by colour relative to the ground's mean (of the same luminance). The
+  // place is in world metres, and the result is averaged over a footprint in metres. A `contrast`
+  // of 1 shows the pattern in full.
   glm::vec3 Reflectance(const glm::vec2& place_m, const glm::vec2& footprint_m,
                         float contrast) const;
 
-  // The factor of the grain alone.
+  // Returns only the factor of the grain.
   float Grain(const glm::vec2& place_m, const glm::vec2& footprint_m, float contrast) const;
 
  private:
@@ -63,7 +64,8 @@ class FieldPattern {
   std::vector<std::vector<glm::vec4>> levels_;  // the mip chain, 0 to 1
 };
 
-// The largest contrast at which nothing reflects more than it receives, at a mean reflectance.
+// Returns the largest contrast at which no texel reflects more light than it receives, for a given
+// mean reflectance.
 float FieldContrast(const glm::vec3& mean_reflectance);
 
 }  // namespace thunderhead::physics

@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 using glm::dvec3;
 
-// A unit vector at right angles to unit `direction`.
+// Returns a unit vector perpendicular to the unit vector `direction`.
 dvec3 Perpendicular(const dvec3& direction) {
   const dvec3 axis = std::abs(direction.z) < 0.7 ? dvec3(0.0, 0.0, 1.0) : dvec3(1.0, 0.0, 0.0);
   return glm::normalize(glm::cross(direction, axis));
@@ -73,7 +73,7 @@ BoundaryRays CrossBoundary(const PolarizedRay& incident, const dvec3& normal, do
   const dvec3 p = glm::cross(d, s);
   const dvec3 p_reflected = glm::cross(rays.reflected.direction, s);
   const dvec3 p_refracted = glm::cross(rays.refracted.direction, s);
-  // The rest is refracted, in phase with the incident field.
+  // The rest of the energy is refracted, in phase with the incident field.
   const double t_s = std::sqrt(std::fmax(1.0 - std::norm(r.s), 0.0));
   const double t_p = std::sqrt(std::fmax(1.0 - std::norm(r.p), 0.0));
   for (std::size_t i = 0; i < incident.fields.size(); ++i) {

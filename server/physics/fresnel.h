@@ -1,6 +1,7 @@
 // Reflection and refraction of polarised rays at a plane boundary between two transparent media
-// (Fresnel; signs as in Born and Wolf, chapter 1.5). An unpolarised ray is traced as two fields,
-// polarised at right angles where it began; its energy is the mean of theirs.
+// (Fresnel; signs as in Born and Wolf, chapter 1.5). An unpolarised ray is traced as two fields
+// whose polarisations are perpendicular at its start. Its energy is the mean of the energies of the
+// two fields.
 #pragma once
 
 #include <array>
@@ -19,17 +20,17 @@ struct PolarizedRay {
   glm::dvec3 direction{0.0};
   std::array<FieldVector, 2> fields;
 
-  // Mean energy of the two fields.
+  // Returns the mean energy of the two fields.
   double Energy() const;
 };
 
-// An unpolarised ray of energy 1.
+// Returns an unpolarised ray of energy 1.
 PolarizedRay UnpolarizedRay(const glm::dvec3& direction);
 
-// The reflected and the refracted ray of `incident` at a boundary. `normal` points to the side it
-// comes from (its dot product with the direction is below 0); `index_ratio` is the refractive index
-// on that side over that beyond. Energies are fluxes through the boundary: the two add up to the
-// incident one.
+// The reflected and the refracted ray of `incident` at a boundary. The `normal` points to the side
+// from which the ray comes, so its dot product with the direction is below 0. The `index_ratio` is
+// the refractive index on that side divided by the index on the other side. Energies are fluxes
+// through the boundary. The two energies sum to the incident one.
 struct BoundaryRays {
   PolarizedRay reflected;
   PolarizedRay refracted;
@@ -38,7 +39,7 @@ struct BoundaryRays {
 BoundaryRays CrossBoundary(const PolarizedRay& incident, const glm::dvec3& normal,
                            double index_ratio);
 
-// Reflectance for unpolarised light at a cosine of the angle of incidence.
+// Returns the reflectance for unpolarised light at a cosine of the angle of incidence.
 double Reflectance(double cosine, double index_ratio);
 
 }  // namespace thunderhead::physics

@@ -1,4 +1,4 @@
-// The geometry of an ice crystal: a hexagonal prism about the z axis, its centre at the origin.
+// The geometry of an ice crystal: a hexagonal prism about the z axis with its centre at the origin.
 #pragma once
 
 #include <array>
@@ -13,21 +13,22 @@ class HexagonalPrism {
  public:
   static constexpr std::size_t kFaces = 8;  // six sides, then the bases at +z and -z
 
-  // `width` is from one edge to the opposite one, `length` along the axis.
+  // `width` is the distance between opposite edges, `length` is along the axis.
   HexagonalPrism(double width, double length);
 
-  // The outward normal of a face.
+  // Returns the outward normal of a face.
   const glm::dvec3& Normal(std::size_t face) const { return normals_[face]; }
 
   double Area(std::size_t face) const { return face < 6 ? side_area_ : base_area_; }
 
-  // The corners of a face in order around it.
+  // Returns the corners of a face in order around it.
   std::vector<glm::dvec3> Corners(std::size_t face) const;
 
-  // The area of the prism's projection along a direction.
+  // Returns the area of the prism's projection along a direction.
   double ProjectedArea(const glm::dvec3& direction) const;
 
-  // A point on a face: uniform over it for uniform `u` and `v` in [0, 1).
+  // Returns a point on a face. It is distributed uniformly over the face for uniform `u` and `v` in
+  // [0, 1).
   glm::dvec3 PointOn(std::size_t face, double u, double v) const;
 
   // The face through which a line from a point inside or on the prism leaves it, and the distance.
@@ -38,14 +39,14 @@ class HexagonalPrism {
   Exit ExitOf(const glm::dvec3& point, const glm::dvec3& direction) const;
 
  private:
-  glm::dvec3 Edge(std::size_t corner) const;  // radius to the corner-th edge, 0 to 5
+  glm::dvec3 Edge(std::size_t corner) const;  // vector from the axis to the corner-th edge, 0 to 5
 
-  double edge_;  // of the hexagon: half its width
+  double edge_;  // edge length of the hexagon: half its width
   double half_length_;
   double side_area_;
   double base_area_;
   std::array<glm::dvec3, kFaces> normals_;
-  std::array<double, kFaces> offsets_;  // of the faces' planes from the centre
+  std::array<double, kFaces> offsets_;  // distances of the faces' planes from the centre
 };
 
 }  // namespace thunderhead::physics

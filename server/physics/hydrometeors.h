@@ -1,11 +1,11 @@
 // The kinds of hydrometeors and the optics of one particle of each: radius, bulk density, albedo,
-// phase function, false colour. Knows no files and no GL.
+// phase function and false colour. This code does not use files or GL.
 //
-// Radii: observed. Cloud droplets 10 um, ice crystals 30 um; the others are effective radii of the
-// exponential distributions that were observed, at 1 g/m3: rain by Marshall and Palmer 1948, snow
-// by Houze et al. 1979 at -20 C, graupel as in Rutledge and Hobbs 1984, hail by Federer and
-// Waldvogel 1975. The papers' radii and false colours: Riley et al. 2003 (AMS), Tables II and III;
-// densities as in common bulk microphysics.
+// The default radii are observed ones. Cloud droplets have 10 um and ice crystals 30 um. The others
+// are effective radii of observed exponential distributions at 1 g/m3. The sources are Marshall and
+// Palmer 1948 for rain and Houze et al. 1979 for snow at -20 C. For graupel it is Rutledge and
+// Hobbs 1984, for hail Federer and Waldvogel 1975. The papers' radii and false colours are from
+// Riley et al. 2003 (AMS), Tables II and III. Densities are those of common bulk microphysics.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
   return static_cast<std::size_t>(hydrometeor);
 }
 
-// "cloud", "rain", "ice", "snow", "graupel" or "hail".
+// Returns "cloud", "rain", "ice", "snow", "graupel" or "hail".
 std::string_view NameOf(Hydrometeor hydrometeor);
 
 // A kind of phase function: a formula (kPhaseFormulas in optics.h) or a table (kPhaseTables).
@@ -42,8 +42,9 @@ enum class PhaseKind {
   kWaterNarrow
 };
 
-// The name of each kind: that of its enumerator of the message PhaseFunction.Kind, in lower case
-// and without KIND_. Messages are translated by it, so kinds may be in any order.
+// The name of each kind. It is the name of the enumerator in the message PhaseFunction.Kind, in
+// lower case and without KIND_. Messages are converted by this name, so the kinds may be in any
+// order.
 struct PhaseKindName {
   PhaseKind kind;
   std::string_view name;
@@ -60,11 +61,11 @@ inline constexpr std::array kPhaseKindNames = {
 };
 
 // The computed tables (docs/phase_tables.md) of the kinds that are not formulas. Water droplets
-// have one for each of several radii, and the nearest is chosen. Other kinds have no radius.
+// have tables for several radii, of which the nearest is chosen. Other kinds have no radius.
 struct PhaseTableName {
   PhaseKind kind;
   float droplet_radius_m;
-  const char* name;  // of its recipe (tables/recipes.h) and its file in data/phase
+  const char* name;  // name of the recipe (tables/recipes.h) and of the file in data/phase
 };
 inline constexpr std::array kPhaseTables = {
     PhaseTableName{PhaseKind::kWaterDroplets, 5e-6F, "cloud_re05"},
@@ -80,12 +81,12 @@ inline constexpr std::array kPhaseTables = {
 struct PhaseFunction {
   PhaseKind kind = PhaseKind::kHenyeyGreenstein;
   float asymmetry = 0.0F;  // the parameter g of Henyey and Greenstein, and of Cornette and Shanks
-  float droplet_radius_m = 0.0F;  // effective; chooses among the tables of water
+  float droplet_radius_m = 0.0F;  // effective radius; selects one of the tables of water
 
   bool operator==(const PhaseFunction&) const = default;
 };
 
-// Optics of the particles of a field, as if all were alike.
+// Optics of the particles of a field. All particles count as equal.
 struct ParticleOptics {
   float radius_m;
   float density_kg_per_m3;
@@ -94,7 +95,7 @@ struct ParticleOptics {
   glm::vec3 false_color;  // linear sRGB
 };
 
-// All that is known of a kind; in the order of Hydrometeor.
+// The properties of one kind. The rows are in the order of Hydrometeor.
 struct HydrometeorRow {
   Hydrometeor hydrometeor;
   std::string_view name;
@@ -102,10 +103,10 @@ struct HydrometeorRow {
   ParticleOptics optics;
 };
 
-// The asymmetry parameters are for the formulas, should one be chosen: water 0.85 (Mie, r_e 10 um,
-// 0.55 um, rounded down for the broad part of the lobe), smooth ice crystals 0.78, roughened and
+// The asymmetry parameters apply if a scene chooses a formula. Water has 0.85 (Mie, r_e 10 um, 0.55
+// um, rounded down for the broad part of the lobe). Smooth ice crystals have 0.78, roughened and
 // rimed ice 0.76. The false colours are Okabe and Ito's (#E69F00, #56B4E9, #CC79A7, #F0E442,
-// #009E73, #D55E00), which people of any colour vision tell apart.
+// #009E73, #D55E00). People with any colour vision can tell them apart.
 inline constexpr std::array kHydrometeorRows = {
     HydrometeorRow{
         Hydrometeor::kCloud,
@@ -139,15 +140,16 @@ inline constexpr std::array kHydrometeorRows = {
         {2.6e-3F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.6654F, 0.1119F, 0.0F}}},
 };
 
-// The defaults of each hydrometeor.
+// Returns the defaults of a hydrometeor.
 const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor);
 
-// Riley et al. 2003 (AMS), Table II; hail, which it leaves out, 1 cm.
+// Returns the radius of Riley et al. 2003 (AMS), Table II. The table omits hail, for which the
+// radius is 1 cm.
 float PapersRadius_m(Hydrometeor hydrometeor);
 
-// Mass extinction coefficient in m2/kg: extinction (1/m) per mass of condensate in a volume of air
-// (kg/m3), 3 / (2 rho_f R_f). Riley et al. 2003 (AMS), eq. 4, geometric optics with an extinction
-// efficiency of 2. `density_kg_per_m3` and `radius_m` must be above zero.
+// Returns the mass extinction coefficient in m2/kg: extinction (1/m) per mass of condensate in a
+// volume of air (kg/m3), 3 / (2 rho_f R_f). The source is Riley et al. 2003 (AMS), eq. 4: geometric
+// optics with an extinction efficiency of 2. `density_kg_per_m3` and `radius_m` must be above zero.
 float MassExtinction_m2_per_kg(float density_kg_per_m3, float radius_m);
 
 }  // namespace thunderhead::physics

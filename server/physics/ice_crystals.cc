@@ -21,13 +21,14 @@ using glm::dvec3;
 
 constexpr int kCrystalChunks = 128;
 
-// A ray ends below this share of its initial energy, or after this many encounters with faces.
+// A ray ends when its energy is below this share of the initial one, or after this many encounters
+// with faces.
 constexpr double kMinEnergy = 1e-5;
 constexpr int kMaxEncounters = 200;
 
-// Five numbers for each ray that fill the unit cube evenly: the additive recurrence whose step is
-// given by the powers of the root of r^6 = r + 1 (Roberts 2018). In 64-bit integers, so that it is
-// exact.
+// Returns five numbers for a ray, such that the points of all rays fill the unit cube evenly. The
+// points follow an additive recurrence whose step consists of the powers of the root of r^6 = r + 1
+// (Roberts 2018). 64-bit integers keep it exact.
 std::array<double, 5> EvenPoint(std::uint64_t index, std::uint64_t seed) {
   constexpr double kRoot = 1.1347241384015194;
   CounterRandom shift(seed, 0);
@@ -42,8 +43,8 @@ std::array<double, 5> EvenPoint(std::uint64_t index, std::uint64_t seed) {
   return point;
 }
 
-// The direction of light in the crystal's frame; by symmetry a 24th of the sphere covers all
-// orientations.
+// Returns the direction of light in the crystal's frame. By symmetry, a 24th of the sphere covers
+// all orientations.
 dvec3 DirectionOf(double u, double v) {
   const double z = -u;
   const double azimuth = v * std::numbers::pi / 6.0;
@@ -71,7 +72,7 @@ Entry EntryOf(const HexagonalPrism& prism, const dvec3& direction, double choice
   return {chosen, prism.PointOn(chosen, u, v)};
 }
 
-// `normal` tilted at random by slopes whose root mean square is `roughness`.
+// Tilts `normal` at random by slopes with a root mean square of `roughness`.
 dvec3 Tilted(const dvec3& normal, double roughness, CounterRandom& random) {
   const double slope = roughness * std::sqrt(-std::log(1.0 - random.Next()));
   const double azimuth = 2.0 * std::numbers::pi * random.Next();
@@ -81,8 +82,9 @@ dvec3 Tilted(const dvec3& normal, double roughness, CounterRandom& random) {
   return glm::normalize(normal + slope * (std::cos(azimuth) * a + std::sin(azimuth) * b));
 }
 
-// Reflected and refracted rays at a face of normal `normal`, which is tilted at random if the
-// crystal is rough. A tilt that would send either ray to the wrong side of the face is drawn again.
+// Returns the reflected and refracted rays at a face with the normal `normal`. If the crystal is
+// rough, the face is tilted at random. A tilt that sends either ray to the wrong side of the face
+// is drawn again.
 BoundaryRays CrossFace(const PolarizedRay& ray, const dvec3& normal, double index_ratio,
                        double roughness, CounterRandom& random) {
   constexpr int kTries = 20;
@@ -98,7 +100,7 @@ BoundaryRays CrossFace(const PolarizedRay& ray, const dvec3& normal, double inde
   return CrossBoundary(ray, normal, index_ratio);
 }
 
-// Follows single rays through a crystal, and adds the light that leaves it to one channel of a
+// Traces single rays through a crystal, and adds the light that leaves it to one channel of a
 // result.
 class Tracer {
  public:
@@ -109,7 +111,7 @@ class Tracer {
         index_(kIceRefractiveIndex[channel]),
         result_(result) {}
 
-  // Follows a ray of energy `weight` from its entry.
+  // Traces a ray of energy `weight` from its entry.
   void Trace(const Entry& entry, const dvec3& direction, double weight, CounterRandom random) {
     BoundaryRays rays = CrossFace(UnpolarizedRay(direction), prism_.Normal(entry.face),
                                   1.0 / index_, roughness_, random);
@@ -179,7 +181,7 @@ RayScattering TraceRays(const IceCrystal& crystal, const std::vector<double>& an
       const Entry entry = EntryOf(prism, direction, point[2], point[3], point[4]);
       const double shadow = prism.ProjectedArea(direction);
       for (std::size_t c = 0; c < kPhaseChannels; ++c) {
-        // The same random tilts in every channel, so that colours differ by refraction and not by
+        // Every channel has the same random tilts, so that colours differ by refraction and not by
         // noise.
         Tracer(prism, crystal.roughness, c, part)
             .Trace(entry, direction, shadow, CounterRandom(seed, stream));

@@ -34,7 +34,8 @@ double AreaOf(const std::vector<dvec2>& polygon) {
   return area;
 }
 
-// The outline of the shadow, counter-clockwise: the convex hull of the corners' shadows.
+// Returns the outline of the shadow counter-clockwise, which is the convex hull of the corners'
+// projections.
 std::vector<dvec2> ShadowOf(const HexagonalPrism& prism, const dvec3& direction) {
   const dvec3 x = glm::normalize(glm::cross(
       direction, std::abs(direction.z) < 0.7 ? dvec3(0.0, 0.0, 1.0) : dvec3(1.0, 0.0, 0.0)));
@@ -47,7 +48,7 @@ std::vector<dvec2> ShadowOf(const HexagonalPrism& prism, const dvec3& direction)
   }
   std::sort(points.begin(), points.end(),
             [](const dvec2& a, const dvec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  // Andrew's monotone chain: the lower hull from left to right, the upper one back.
+  // Andrew's monotone chain: the lower hull from left to right, then the upper one back.
   std::vector<dvec2> hull;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t start = hull.size();
@@ -64,11 +65,11 @@ std::vector<dvec2> ShadowOf(const HexagonalPrism& prism, const dvec3& direction)
   return hull;
 }
 
-// The integral of exp(-i q.r) over the polygon, as a sum over its edges.
+// Returns the integral of exp(-i q.r) over the polygon, as a sum over its edges.
 Complex FourierTransform(const std::vector<dvec2>& polygon, double area, const dvec2& q,
                          double size) {
   const double q2 = glm::dot(q, q);
-  // The sum is a difference of large numbers for small q, where the transform is flat.
+  // For small q the sum is a difference of large numbers, and the transform is flat.
   if (q2 * size * size < 1e-8) return area;
   Complex sum = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -103,7 +104,7 @@ PhaseAccumulator Diffract(const IceCrystal& crystal, const std::vector<double>& 
       const std::vector<dvec2> shadow = ShadowOf(prism, direction);
       const double area = AreaOf(shadow);
       for (std::size_t j = 0; j < angles.angles_rad.size(); ++j) {
-        // One scattering direction for each angle is enough: random orientations cover all
+        // One azimuth of scattering for each angle is enough, because random orientations cover all
         // azimuths.
         const double turn = 2.0 * std::numbers::pi * random.Next();
         const double sine = std::sin(angles.angles_rad[j]);

@@ -1,5 +1,6 @@
 // Reflectances of the classes of land use: the 24 of the U.S. Geological Survey and the 21 of MODIS
-// (modified IGBP) that WRF's LU_INDEX counts, with the summer albedos of WRF's LANDUSE.TBL.
+// (modified IGBP), as numbered by WRF's LU_INDEX. The albedos are the summer albedos of WRF's
+// LANDUSE.TBL.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -12,20 +13,20 @@ struct LandUse {
   glm::vec3 hue{1.0F};  // linear sRGB of luminance 1
   float albedo = 0.2F;
   bool water = false;
-  bool ripens = false;  // its hue fades to that of dry plants and soil where little is green
+  bool ripens = false;  // the hue fades to that of dry plants and soil if little is green
 };
 
-// Class `index`, from 1 on; of an unknown one, grassland.
+// Returns class `index`, counted from 1, or grassland for an unknown index.
 LandUse LandUseOf(LandUseScheme scheme, int index);
 
-// A model's state of the land besides its class; NaN where it has none.
+// A model's state of the land in addition to its class. A value is NaN if the model has none.
 struct LandState {
-  float albedo = 0.0F;         // broadband, with its snow; 0 counts as unknown
+  float albedo = 0.0F;         // broadband, including snow; 0 counts as unknown
   float green_percent = 0.0F;  // share that green plants cover
   float snow_share = 0.0F;     // share that snow covers
 };
 
-// Reflectance by colour of land, whose luminance is its albedo.
+// Returns the reflectance by colour of land. Its luminance is the albedo.
 glm::vec3 LandReflectance(const LandUse& use, const LandState& state);
 
 }  // namespace thunderhead::physics

@@ -12,13 +12,13 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Angles worked on at a time; their recurrences fit the first-level cache.
+// Number of angles per block, small enough for their recurrences to fit the first-level cache.
 constexpr std::size_t kBlock = 256;
 
-// The logarithmic derivative D_n(z) of psi_n, n = 0 ... count: by downward recurrence (eq. 4.89),
-// which is stable whatever the absorption. It starts from 0, an error that dies out before n = |z|
-// over a few times the cube root of |z|; starting the usual 15 terms above |z| leaves 1e-5 in the
-// efficiencies.
+// Returns the logarithmic derivative D_n(z) of psi_n, n = 0 ... count, by downward recurrence (eq.
+// 4.89). The recurrence is stable for any absorption. It starts from 0. The error of that start
+// vanishes before n = |z| if the start is a few times the cube root of |z| above |z|. A start at
+// the usual 15 terms above |z| leaves an error of 1e-5 in the efficiencies.
 std::vector<Complex> LogarithmicDerivatives(Complex z, std::size_t count) {
   const double turning = std::abs(z);
   const auto above = static_cast<std::size_t>(turning + 8.0 * std::cbrt(turning) + 16.0);
@@ -33,9 +33,9 @@ std::vector<Complex> LogarithmicDerivatives(Complex z, std::size_t count) {
   return d;
 }
 
-// psi_n(x), n = 0 ... count: upward while n < x; from there, where going up would lose all digits,
-// by the ratios psi_n / psi_n-1 of the downward recurrence. They are safe there: psi_n has no zero
-// below n.
+// Returns psi_n(x), n = 0 ... count. The upward recurrence is used while n < x. Beyond, it would
+// lose all digits, so the ratios psi_n / psi_n-1 of the downward recurrence are used. The ratios
+// are safe there, because psi_n has no zero below n.
 std::vector<double> PsiFunctions(double x, std::size_t count) {
   const std::size_t top = std::max(count, static_cast<std::size_t>(x)) + 40;
   std::vector<double> ratios(count + 1);
@@ -60,7 +60,7 @@ std::vector<double> PsiFunctions(double x, std::size_t count) {
 
 MieSeries::MieSeries(double x, Complex m) : x_(x) {
   THUNDERHEAD_CHECK(x > 0.0 && m.imag() >= 0.0, absl::StrCat(x, ", ", m.imag()));
-  // Number of terms: Wiscombe 1980 (Appl. Opt. 19, 1505), eq. 6.
+  // The number of terms follows Wiscombe 1980 (Appl. Opt. 19, 1505), eq. 6.
   const auto count = static_cast<std::size_t>(x + 4.05 * std::cbrt(x) + 2.0);
   const std::vector<Complex> d = LogarithmicDerivatives(m * x, count);
   const std::vector<double> psi = PsiFunctions(x, count);
@@ -120,8 +120,8 @@ MieAmplitudes MieSeries::Amplitudes(double mu) const {
 
 void MieSeries::AddIntensities(const std::vector<double>& cosines, double factor,
                                std::vector<double>& sums) const {
-  // s1 + s2 and s1 - s2 are sums of (a + b)(pi + tau) and (a - b)(pi - tau): half the work of s1
-  // and s2, and the same intensity.
+  // s1 + s2 and s1 - s2 are sums of (a + b)(pi + tau) and (a - b)(pi - tau). They need half the
+  // work of s1 and s2 and give the same intensity.
   for (std::size_t begin = 0; begin < cosines.size(); begin += kBlock) {
     const std::size_t size = std::min(kBlock, cosines.size() - begin);
     std::array<double, kBlock> mu{};

@@ -1,6 +1,7 @@
-// Mie theory: a plane wave scattered by a homogeneous sphere. Notation of Bohren and Huffman 1983,
-// chapter 4: x = 2 pi r / wavelength, m = n + i k the refractive index against the surroundings.
-// Double precision; tested for x from 0.001 to 10000.
+// Mie theory: a plane wave scattered by a homogeneous sphere. The notation is that of Bohren and
+// Huffman 1983, chapter 4: x = 2 pi r / wavelength, and m = n + i k is the refractive index
+// relative to the surroundings. The code uses double precision and is tested for x from 0.001 to
+// 10000.
 #pragma once
 
 #include <complex>
@@ -9,7 +10,8 @@
 
 namespace thunderhead::physics {
 
-// The efficiencies are cross sections over the geometric one, pi r^2; `back` is the radar one.
+// Cross sections divided by the geometric one, pi r^2. `back` is the radar backscattering
+// efficiency.
 struct MieEfficiencies {
   double extinction = 0.0;
   double scattering = 0.0;
@@ -23,17 +25,18 @@ struct MieAmplitudes {
   std::complex<double> s2;
 };
 
-// The series of one sphere.
+// The Mie series of one sphere.
 class MieSeries {
  public:
-  // `x` must be above 0, the imaginary part of `m` 0 or more.
+  // `x` must be above 0, and the imaginary part of `m` 0 or more.
   MieSeries(double x, std::complex<double> m);
 
   MieEfficiencies Efficiencies() const;  // eq. 4.61, 4.62, 4.82; asymmetry from p. 120
 
   MieAmplitudes Amplitudes(double mu) const;  // eq. 4.74
 
-  // Adds factor (|s1|^2 + |s2|^2) / 2 at each cosine to `sums`. Fast: all the cosines at a time.
+  // Adds factor (|s1|^2 + |s2|^2) / 2 at each cosine to `sums`. Processing all cosines in one call
+  // makes it fast.
   void AddIntensities(const std::vector<double>& cosines, double factor,
                       std::vector<double>& sums) const;
 

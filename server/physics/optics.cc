@@ -15,8 +15,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// The integral of f(angle) over low..high by Simpson's rule; phase functions up to g = 0.99 need
-// steps of about 0.1 degree for six digits.
+// Returns the integral of f(angle) over low..high by Simpson's rule. Phase functions up to g = 0.99
+// need steps of about 0.1 degree for six digits.
 template <typename F>
 double IntegrateOverAngle(double low_rad, double high_rad, const F& f) {
   constexpr int kIntervals = 4096;
@@ -28,7 +28,8 @@ double IntegrateOverAngle(double low_rad, double high_rad, const F& f) {
   return sum * step / 3.0;
 }
 
-// Index in kPhaseTables of the table for `phase`; droplets have one for each of several radii.
+// Returns the index in kPhaseTables of the table for `phase`. For droplets it is the table with the
+// nearest radius.
 std::size_t TableIndexOf(const PhaseFunction& phase) {
   std::size_t nearest = kPhaseTables.size();
   double least = std::numeric_limits<double>::infinity();
@@ -67,7 +68,7 @@ double Luminance(const F& value_of_channel) {
 }
 
 double HenyeyGreenstein(double g, double mu) {
-  // 1 - mu keeps the forward peak free of cancellation.
+  // Using 1 - mu avoids cancellation in the forward peak.
   const double base = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - mu);
   return (1.0 - g) * (1.0 + g) / (base * std::sqrt(base));
 }
@@ -85,7 +86,7 @@ constexpr std::array kPhaseFormulas = {
     PhaseFormula{PhaseKind::kRayleigh, false, Rayleigh},
 };
 
-// Every kind is either a formula or a table.
+// Returns true if the kind is either a formula or a table, but not both.
 constexpr bool HasOneForm(PhaseKind kind) {
   const bool formula = std::ranges::count(kPhaseFormulas, kind, &PhaseFormula::kind) == 1;
   const bool table = std::ranges::count(kPhaseTables, kind, &PhaseTableName::kind) > 0;

@@ -1,6 +1,7 @@
 // Phase functions, by formula and by table, and closed forms of light transport. Code that the GPU
-// runs as well is GLSL that also compiles as C++, so that the tests check the same text; code for
-// the CPU alone (phase functions, which the GPU looks up, and their integrals) is beside it.
+// also runs is GLSL that compiles as C++ too, so that the tests check the same text. This header
+// adds the code for the CPU alone: phase functions, which the GPU reads from tables, and their
+// integrals.
 #pragma once
 
 #include "glm/common.hpp"
@@ -21,44 +22,44 @@ using glm::sqrt;
 
 }  // namespace glsl
 
-// A phase function by a formula.
+// A phase function given by a formula.
 struct PhaseFormula {
   PhaseKind kind;
   bool has_asymmetry;  // whether `value` depends on the asymmetry parameter g
-  // The value at the cosine `mu` of a scattering angle, the same for all colours. The mean over the
-  // sphere is 1.
+  // Returns the value at the cosine `mu` of a scattering angle, which is the same for all colours.
+  // Its mean over the sphere is 1.
   double (*value)(double g, double mu);
 };
 
 // Returns the formula of `kind`, or null for a kind that is a table.
 const PhaseFormula* FormulaOf(PhaseKind kind);
 
-// The phase function of a field's particles in canonical form, so that equal functions compare
-// equal: parameters that its kind does not use are zero, and the droplets' radius is that of the
-// nearest table (by ratio).
+// Returns the phase function of a field's particles in canonical form, so that equal functions
+// compare equal. Parameters that its kind does not use are zero. The droplets' radius is that of
+// the nearest table (by ratio).
 PhaseFunction PhaseOf(const ParticleOptics& optics);
 
-// Where light has no colours, one value stands for three: the luminance of linear sRGB. Formulas
-// have one value for all colours.
+// Weights of the luminance of linear sRGB. Where light has no colours, one value stands for three.
+// Formulas have one value for all colours.
 inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
 
-// The value of `phase` at the cosine of a scattering angle, for red, green and blue; its mean over
-// the sphere is 1.
+// Returns the value of `phase` at the cosine of a scattering angle, for red, green and blue. Its
+// mean over the sphere is 1.
 glm::dvec3 PhaseColors(const PhaseFunction& phase, double mu);
 
-// The same as a single value, as all below: the luminance of the colours.
+// Returns the luminance of the colours. The functions below use this single value as well.
 double PhaseValue(const PhaseFunction& phase, double mu);
 
-// The share of light scattered by less than `angle_rad`: CP(theta) of Riley et al. 2003 (Vis), eq.
-// 13. 0 at 0, 1 at pi.
+// Returns the share of light scattered by less than `angle_rad`: CP(theta) of Riley et al. 2003
+// (Vis), eq. 13. It is 0 at 0 and 1 at pi.
 double CumulativePhase(const PhaseFunction& phase, double angle_rad);
 
-// The mean cosine of the scattering angle, from -1 to 1.
+// Returns the mean cosine of the scattering angle, from -1 to 1.
 double MeanCosine(const PhaseFunction& phase);
 
-// Delta scaling of a phase function: for angles below `angle_rad` it is held at its value there,
-// and the light so cut off counts as not scattered at all. `forward_share` is the share cut off, 0
-// to 1.
+// Delta scaling of a phase function. For angles below `angle_rad` the function is replaced by its
+// value at that angle. The light cut off in this way counts as not scattered. `forward_share` is
+// the share cut off, 0 to 1.
 struct DeltaScaling {
   double forward_share = 0.0;
   double cut_cosine = 1.0;

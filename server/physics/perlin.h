@@ -1,6 +1,6 @@
 // Octaves of Perlin's gradient noise (Perlin 1985; gradients along a cell's edges as in Perlin
-// 2002) on a cube of texels that repeats without a seam. Computed in integers: the same bits on
-// every machine. Knows no fields and no GL.
+// 2002) on a cube of texels that repeats without a seam. The computation uses integers, so it gives
+// the same bits on every machine. This code does not use fields or GL.
 #pragma once
 
 #include <cstddef>
@@ -10,9 +10,10 @@
 namespace thunderhead::physics {
 
 inline constexpr int kMaxPerlinSide = 128;  // texels along an edge of a tile
-inline constexpr int kPerlinWaves = 8;      // wavelengths of the first octave along it
+inline constexpr int kPerlinWaves = 8;      // wavelengths of the first octave along an edge
 inline constexpr std::int64_t kPerlinOne = std::int64_t{1} << 12U;  // a weight of 1
-// Texels' middles lie at odd multiples of half a texel: with at most 16 texels a cell, of 1 / 32.
+// Texel centres lie at odd multiples of half a texel. With at most 16 texels a cell, that is 1 / 32
+// of a cell.
 inline constexpr std::int64_t kPerlinPlaceUnits = 2 * kMaxPerlinSide / kPerlinWaves;
 
 struct PerlinGradient {
@@ -22,10 +23,10 @@ struct PerlinGradient {
 // Positions of an octave's texels in its lattice cells, in units of 1 / kPerlinPlaceUnits of a
 // cell.
 struct PerlinOctave {
-  int cells = 0;            // along an edge of the tile
+  int cells = 0;            // number along an edge of the tile
   int texels_per_cell = 0;  // at least 1
   std::vector<PerlinGradient> gradients;
-  std::vector<std::int64_t> place;  // of texel i in its cell
+  std::vector<std::int64_t> place;  // place of texel i in its cell
   std::vector<std::int64_t> fade;   // 6 t^5 - 15 t^4 + 10 t^3, in units of 1 / kPerlinOne
 
   const PerlinGradient& At(int x, int y, int z) const {
@@ -35,12 +36,12 @@ struct PerlinOctave {
   }
 };
 
-// Octave `index`, from 0, of a tile of `side` texels; it has 2^index times kPerlinWaves cells along
-// an edge, at most `side`.
+// Creates octave `index`, counted from 0, of a tile of `side` texels. It has 2^index times
+// kPerlinWaves cells along an edge, at most `side`.
 PerlinOctave MakePerlinOctave(int index, int side, std::uint32_t seed);
 
-// The gradients at one lattice point of a row of texels, interpolated across the row: noise along
-// it is slope * place + offset.
+// The gradients at one lattice point of a row of texels, interpolated across the row. The noise
+// along the row is slope * place + offset.
 struct PerlinCorner {
   std::int64_t slope = 0;
   std::int64_t offset = 0;

@@ -58,7 +58,7 @@ void PhaseAccumulator::Add(const PhaseAccumulator& other, const PhaseRgb& factor
 std::vector<PhaseRgb> PhaseAccumulator::Values() const {
   std::vector<PhaseRgb> values(energies_.size());
   for (std::size_t i = 0; i < energies_.size(); ++i) {
-    // The share of the sphere that this angle stands for: the integral of its hat function.
+    // The share of the sphere that this angle stands for is the integral of its hat function.
     double share = 0.0;
     if (i > 0) share += ShareOf({angles_rad_[i - 1], angles_rad_[i], 0.0, 1.0});
     if (i + 1 < energies_.size()) share += ShareOf({angles_rad_[i], angles_rad_[i + 1], 1.0, 0.0});
@@ -86,7 +86,8 @@ AngleQuadrature QuadratureOf(const std::vector<double>& angles_deg, int order) {
 
 GaussLegendre::GaussLegendre(int order) {
   for (int i = 0; i < order; ++i) {
-    // Newton's method on the Legendre polynomial, from Tricomi's estimate of its i-th zero.
+    // Newton's method finds the zeros of the Legendre polynomial. It starts from Tricomi's estimate
+    // of the i-th zero.
     double x = -std::cos(std::numbers::pi * (i + 0.75) / (order + 0.5));
     double slope = 1.0;
     for (int step = 0; step < 20; ++step) {

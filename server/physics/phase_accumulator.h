@@ -1,6 +1,6 @@
-// Histogram of scattered light by angle, from which a phase table is made. A ray's energy is
-// divided between the two nearest angles of the grid, so that the table, linear in between, has
-// exactly the energy put in. Serves ray tracing and quadrature over the angle.
+// A histogram of scattered light by angle, from which a phase table is made. A ray's energy is
+// divided between the two nearest angles of the grid. The table, linear in between, therefore holds
+// exactly the energy that was added. Ray tracing and quadrature over the angle use it.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace thunderhead::physics {
 
-// The grid's angles up to `end_deg` are `step_deg` apart.
+// A part of the grid. Its angles up to `end_deg` are `step_deg` apart.
 struct GridSpan {
   double end_deg;
   double step_deg;
 };
 
-// The angles of consecutive spans from 0; the last span must end at 180, each be a multiple of its
-// step.
+// Returns the angles of consecutive spans from 0. The last span must end at 180, and each span must
+// be a multiple of its step.
 std::vector<double> AngleGrid(const std::vector<GridSpan>& spans);
 
 class PhaseAccumulator {
@@ -27,13 +27,15 @@ class PhaseAccumulator {
   // Adds light scattered by `angle_rad`.
   void Add(double angle_rad, double energy, std::size_t channel);
 
-  // Adds all of another accumulator of the same grid, times `factor` in each channel.
+  // Adds all energies of another accumulator of the same grid, multiplied by `factor` in each
+  // channel.
   void Add(const PhaseAccumulator& other, const PhaseRgb& factor);
 
-  // All that was added.
+  // Returns the sum of all added energies.
   const PhaseRgb& energy() const { return energy_; }
 
-  // The phase function of what was added, its mean over the sphere 1: a value for each angle.
+  // Returns the phase function of the added light, one value for each angle. Its mean over the
+  // sphere is 1.
   std::vector<PhaseRgb> Values() const;
 
  private:

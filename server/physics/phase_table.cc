@@ -33,7 +33,7 @@ absl::Status CheckShape(const PhaseTableContent& content) {
                         angles.front(), angles.back()));
   }
   for (std::size_t i = 0; i < angles.size(); ++i) {
-    // Written so that NaN fails, too.
+    // The negated comparison also rejects NaN.
     if (i > 0 && !(angles[i] > angles[i - 1])) {
       return absl::InvalidArgumentError(absl::StrFormat(
           "angle %g degrees follows %g; angles must ascend", angles[i], angles[i - 1]));
@@ -121,7 +121,8 @@ double PhaseTable::SampleAngle(double u, std::size_t channel) const {
   double low = angles_rad_[i];
   double high = angles_rad_[i + 1];
   double angle = 0.5 * (low + high);
-  // Newton's method, by halves where it would leave the bracket (the share is flat at angle 0).
+  // Newton's method bisects when a step would leave the bracket, because the share is flat at angle
+  // 0.
   for (int step = 0; step < 60; ++step) {
     const double excess = ShareWithin(i, angle, channel) - missing;
     (excess > 0.0 ? high : low) = angle;

@@ -1,11 +1,14 @@
-// The text form of a phase table:
+// The text form of a phase table. An angle of `forward_share` and `angles` is in degrees. It is
+// followed by the share of light within it or, below `angles`, by the values:
+//
 //   # comments
 //   name cloud_re10
 //   wavelengths_um 0.65 0.55 0.45
 //   asymmetry 0.8626 0.8618 0.8629
-//   forward_share 5 0.58 0.57 0.56    (an angle in degrees, then the share of light within it)
+//   forward_share 5 0.58 0.57 0.56
+//
 //   angles 3
-//   0 9000 12000 18000                (an angle in degrees, then the values)
+//   0 9000 12000 18000
 //   ...
 #include <cmath>
 #include <iterator>
@@ -22,8 +25,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// Tolerance for the mean and for the figures in the header; values are written with six digits, so
-// a sound file is well within it.
+// Tolerance for the mean and for the figures in the header. Values are written with six digits, so
+// a valid file is well within it.
 constexpr double kFileTolerance = 1e-3;
 
 absl::string_view AbslView(std::string_view text) { return {text.data(), text.size()}; }
@@ -38,7 +41,7 @@ class Lines {
  public:
   explicit Lines(std::string_view text) : lines_(absl::StrSplit(AbslView(text), '\n')) {}
 
-  // The words of the next line; none at the end of the text.
+  // Returns the words of the next line, or none at the end of the text.
   std::vector<absl::string_view> Next() {
     while (next_ < lines_.size()) {
       const absl::string_view line = lines_[next_++];
@@ -51,8 +54,8 @@ class Lines {
 
   int number() const { return static_cast<int>(next_); }
 
-  // The numbers of the next line, which must be `key` and `count` numbers; an empty key stands for
-  // none.
+  // Returns the numbers of the next line, which must consist of `key` and `count` numbers. If the
+  // key is empty, the line has only numbers.
   absl::StatusOr<std::vector<double>> Numbers(std::string_view key, std::size_t count) {
     const std::vector<absl::string_view> words = Next();
     const std::size_t first = key.empty() ? 0 : 1;

@@ -5,9 +5,10 @@
 namespace thunderhead::physics {
 
 double WaterRefractiveIndex(double wavelength_um) {
-  constexpr double kDensity = 999.70 / 1000.0;  // of the formulation's 1000 kg/m3
+  constexpr double kDensity = 999.70 / 1000.0;  // relative to the formulation's 1000 kg/m3
   constexpr double kTemperature = 283.15 / 273.15;
-  constexpr double kAir = 1.00028;  // the formulation is against vacuum
+  // Converts from an index relative to vacuum to one relative to air.
+  constexpr double kAir = 1.00028;
   const double wavelength = wavelength_um / 0.589;
   const double w2 = wavelength * wavelength;
   constexpr double kUltraviolet = 0.2292020;

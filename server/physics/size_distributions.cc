@@ -18,7 +18,7 @@ constexpr double kWater_kg_per_m3 = 1000.0;
 constexpr double kMinDroplet_m = 2.51e-6;
 constexpr double kLargestDroplet_m = 50e-6;
 
-// Spheres of one density whose numbers fall off exponentially with diameter.
+// Spheres of one density whose number decreases exponentially with diameter.
 struct Exponential {
   double intercept_per_m4;
   double density_kg_per_m3;
@@ -29,7 +29,7 @@ constexpr Exponential kWsm6Rain = {8e6, kWater_kg_per_m3, 8e4};
 constexpr Exponential kWsm6Graupel = {4e6, 500.0, 6e4};
 constexpr Exponential kWsm6Hail = {4e4, 700.0, 2e4};
 
-// The radius at which particles of the default density have the same mass extinction.
+// Returns the radius at which particles of the default density have the same mass extinction.
 double AtDefaultDensity(Hydrometeor hydrometeor, double radius_m, double density_kg_per_m3) {
   return radius_m * density_kg_per_m3 / DefaultOptics(hydrometeor).density_kg_per_m3;
 }
@@ -55,14 +55,15 @@ double Wsm6Crystals_m(double content_kg_per_m3) {
   return std::clamp(0.75 * 0.163 * diameter_m, 10e-6, 125e-6);
 }
 
-// The colder the air, the more numerous and smaller the particles (Houze et al. 1979).
+// Returns the distribution of snow. In colder air the particles are more numerous and smaller
+// (Houze et al. 1979).
 Exponential Wsm6Snow(double temperature_K) {
   constexpr double kFreezing_K = 273.16;
   const double intercept_per_m4 = 2e6 * std::exp(0.12 * (kFreezing_K - temperature_K));
   return {std::clamp(intercept_per_m4, 2e6, 1e11), 100.0, 1e5};
 }
 
-// Nothing for fields that WSM6 does not have, such as hail apart from graupel.
+// Returns nothing for fields that WSM6 does not have, such as hail separate from graupel.
 std::optional<double> Wsm6Radius_m(Hydrometeor hydrometeor, const Exponential& graupel,
                                    double content_kg_per_m3, double temperature_K) {
   switch (hydrometeor) {
@@ -81,7 +82,8 @@ std::optional<double> Wsm6Radius_m(Hydrometeor hydrometeor, const Exponential& g
   }
 }
 
-// A gamma distribution of 1e8 droplets per m3, whose shape follows from that number: 12.
+// Returns the radius of a gamma distribution of 1e8 droplets per m3. That number gives the shape,
+// 12.
 double ThompsonDroplets_m(double content_kg_per_m3) {
   constexpr double kDroplets_per_m3 = 1e8;
   constexpr double kShape = 12.0;
@@ -91,17 +93,19 @@ double ThompsonDroplets_m(double content_kg_per_m3) {
   return std::clamp(0.5 * (kShape + 3.0) / slope_per_m, kMinDroplet_m, kLargestDroplet_m);
 }
 
-// Particles grow with the content, as the intercept rises only with its 2/7th power.
+// Returns the radius of graupel. Particles grow with the content, because the intercept increases
+// only with its 2/7th power.
 double ThompsonGraupel_m(double content_kg_per_m3) {
   const double exponent = 3.0 + 2.0 / 7.0 * (std::log10(std::max(content_kg_per_m3, 1e-9)) + 8.0);
-  // A median volume diameter of 50 um at least.
+  // The slope that gives a median volume diameter of 50 um, its minimum.
   constexpr double kLargestSlope_per_m = 3.672 / 50e-6;
   const Exponential graupel = {std::pow(10.0, std::clamp(exponent, 2.0, 6.0)), 400.0,
                                kLargestSlope_per_m};
   return RadiusOf(graupel, Hydrometeor::kGraupel, content_kg_per_m3);
 }
 
-// Nothing for Thompson's other fields: their distributions do not depend on the content alone.
+// Returns nothing for Thompson's other fields, because their distributions depend on more than the
+// content.
 std::optional<double> ThompsonRadius_m(Hydrometeor hydrometeor, double content_kg_per_m3) {
   if (hydrometeor == Hydrometeor::kCloud) return ThompsonDroplets_m(content_kg_per_m3);
   if (hydrometeor == Hydrometeor::kGraupel) return ThompsonGraupel_m(content_kg_per_m3);
@@ -140,7 +144,7 @@ std::string_view NameOf(Microphysics microphysics) {
 }
 
 bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor) {
-  // The existence of a distribution depends on neither content nor temperature.
+  // Whether a distribution exists depends on neither content nor temperature.
   return Radius_m(microphysics, hydrometeor, 1e-3, 260.0).has_value();
 }
 

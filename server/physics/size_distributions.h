@@ -1,5 +1,5 @@
-// The size distributions that microphysics schemes assume: what a model that neither counts nor
-// measures its particles nevertheless means by their mass. Knows no files.
+// The size distributions that microphysics schemes assume. They give particle sizes for a model
+// that outputs only mass. This code does not use files.
 #pragma once
 
 #include <string_view>
@@ -10,26 +10,26 @@ namespace thunderhead::physics {
 
 enum class Microphysics { kUnknown, kWsm6, kWsm6WithHail, kThompson };
 
-// "WSM6", "WSM6 with hail", "Thompson"; "" if unknown.
+// Returns "WSM6", "WSM6 with hail", "Thompson", or "" if unknown.
 std::string_view NameOf(Microphysics microphysics);
 
-// True if the scheme's own distribution of these particles is known here.
+// Returns true if this code knows the scheme's own distribution of these particles.
 bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor);
 
-// The effective radius (m) of the particles in air that holds `content_kg_per_m3` of them (above
-// zero) at `temperature_K`, which only snow depends on. Where the scheme's particles are of another
-// density than DefaultOptics says, it is the radius of particles of that density with the same
-// extinction by mass. Within kMinRadius_m and kMaxRadius_m.
+// Returns the effective radius (m) of the particles in air that holds `content_kg_per_m3` of them
+// (above zero). Only snow depends on `temperature_K`. If the scheme's density differs from
+// DefaultOptics, it is the radius of particles of the default density with the same mass
+// extinction. The result is within kMinRadius_m and kMaxRadius_m.
 //
-// WSM6: Hong and Lim 2006, with the limits of WRF's mp_wsm6_effectRad; with hail (WRF's HAIL_OPT)
-// its graupel has the intercept and density of hail. Snow: spheres of 100 kg/m3, from whose mass
-// the scheme finds its slope. Their extinction by mass at 1 mm, 30 m2/kg, is that of observed
-// aggregates (Mitchell 1996: 27). What WRF hands to the radiation instead, 0.5 / slope, is a third
-// of that radius; it is meant for optics by the density of solid ice.
+// WSM6 follows Hong and Lim 2006, with the limits of WRF's mp_wsm6_effectRad. With hail (WRF's
+// HAIL_OPT), its graupel has the intercept and density of hail. Its snow consists of spheres of 100
+// kg/m3, and the scheme derives the slope from their mass. Their mass extinction at 1 mm, 30 m2/kg,
+// equals that of observed aggregates (Mitchell 1996: 27). WRF passes 0.5 / slope to its radiation
+// code instead, a third of that radius, for optics by the density of solid ice.
 //
-// Thompson (Thompson et al. 2008): cloud droplets as in calc_effectRad of WRF 4.7, graupel by that
-// version's intercept. Its rain and ice are counted. Its snow has a mass for each diameter and
-// moments (Field et al. 2005), but no area, on which extinction depends.
+// Thompson follows Thompson et al. 2008. Cloud droplets are as in calc_effectRad of WRF 4.7, and
+// graupel has the intercept of that version. The scheme counts its rain and ice. Its snow has a
+// mass for each diameter and moments (Field et al. 2005), but no area, on which extinction depends.
 float DistributionRadius_m(Microphysics microphysics, Hydrometeor hydrometeor,
                            float content_kg_per_m3, float temperature_K);
 

@@ -8,10 +8,10 @@ namespace thunderhead::physics {
 
 namespace {
 
-// Eyes above this see the atmosphere as from here.
+// Eyes above this height see the atmosphere as from this height.
 constexpr float kHighestEye_m = 0.98F * kAtmosphereTop_m;
 
-// The sine of elevation in the middle of a row: the inverse of glsl::sky_cell.
+// Returns the sine of elevation in the middle of a row: the inverse of glsl::sky_cell.
 float SineOfRow(int row, float horizon_sine) {
   constexpr int kMiddle = glsl::kSkyElevations / 2;
   if (row >= kMiddle) {
@@ -19,7 +19,7 @@ float SineOfRow(int row, float horizon_sine) {
     return horizon_sine + root * root * (1.0F - horizon_sine);
   }
   const float root = static_cast<float>(kMiddle - 1 - row) / (kMiddle - 1);
-  // Just below the horizon: on it the ray would miss the ground.
+  // The row is just below the horizon, because on the horizon the ray would miss the ground.
   return horizon_sine - std::max(root * root, 1e-5F) * (1.0F + horizon_sine);
 }
 

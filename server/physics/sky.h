@@ -1,6 +1,6 @@
-// The clear sky seen from a height above the ground, and its light: a table for one direction of
-// the sun, looked up by the GLSL of shaders/physics/sky.glsl, compiled for the CPU here. Radiance
-// is in units of the sun's irradiance above the atmosphere. Air between eye and storm:
+// The clear sky seen from a height above the ground, and its light. It is a table for one direction
+// of the sun. The GLSL of shaders/physics/sky.glsl, compiled for the CPU here, reads the table.
+// Radiance is in units of the sun's irradiance above the atmosphere. Air between eye and storm:
 // shaders/physics/air.glsl.
 #pragma once
 
@@ -28,35 +28,36 @@ using glm::vec2;
 using glm::vec3;
 #include "shaders/physics/air.glsl"
 #include "shaders/physics/sky.glsl"
-// Uses both.
+// air_light.glsl uses both files above, so it comes last.
 #include "shaders/physics/air_light.glsl"
 
 }  // namespace glsl
 
 // Light from the whole sky, in units of the sun's irradiance above the atmosphere.
 struct SkyLight {
-  glm::vec3 mean_radiance{0.0F};  // over the upper hemisphere
-  glm::vec3 irradiance{0.0F};     // on level ground
+  glm::vec3 mean_radiance{0.0F};  // mean over the upper hemisphere
+  glm::vec3 irradiance{0.0F};     // irradiance on level ground
 };
 
 class ClearSky {
  public:
-  // Heights are above sea level; `towards_sun` is a unit vector, z up.
+  // Heights are above sea level. `towards_sun` is a unit vector, z up.
   struct Site {
     float eye_m = 0.0F;
     float ground_m = 0.0F;
   };
   ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, const Site& site);
 
-  // The sky in one direction; below the horizon, the air in front of the ground.
+  // The sky in one direction. Below the horizon it is the air in front of the ground.
   struct Seen {
     glm::vec3 radiance{0.0F};
-    glm::vec2 air_mass{0.0F};  // of air and haze, as in Atmosphere::Line
+    glm::vec2 air_mass{0.0F};  // air masses of air and haze, as in Atmosphere::Line
   };
   // `direction` is a unit vector.
   Seen At(const glm::vec3& direction) const;
 
-  // Turns the sky with the sun, whose elevation is kept: only the azimuth of `towards_sun` matters.
+  // Rotates the sky with the sun and keeps the sun's elevation. Only the azimuth of `towards_sun`
+  // matters.
   void TurnTo(const glm::vec3& towards_sun) {
     towards_sun_ = {towards_sun.x, towards_sun.y, towards_sun_.z};
   }
@@ -64,10 +65,10 @@ class ClearSky {
   // Integrates the radiance over the upper hemisphere.
   SkyLight Light() const;
 
-  // Transmittance from the ground to the sun.
+  // Returns the transmittance from the ground to the sun.
   const glm::vec3& SunTransmittance() const { return sun_transmittance_; }
 
-  // 2 * kSkyAzimuths by kSkyElevations texels, rows from the nadir up.
+  // Returns 2 * kSkyAzimuths by kSkyElevations texels, with rows from the nadir up.
   const std::vector<glm::vec4>& Table() const { return table_; }
 
  private:

@@ -10,23 +10,24 @@ namespace {
 
 // Equatorial coordinates of the sun.
 struct Equatorial {
-  double right_ascension = 0.0;  // radians
+  double right_ascension = 0.0;  // in radians
   double declination = 0.0;
 };
 
-// Sine and cosine of degrees; large angles lose nothing that matters here.
+// Return the sine and cosine of degrees. For large angles the loss of precision does not matter
+// here.
 double Sin(double degrees) { return std::sin(glm::radians(degrees)); }
 double Cos(double degrees) { return std::cos(glm::radians(degrees)); }
 
-// `t` is Julian centuries since 2000 January 1, 12 h. UTC stands in for dynamical time: the minute
-// between them moves the sun by 0.0007 degrees.
+// Returns the apparent sun. `t` is in Julian centuries since 2000 January 1, 12 h. UTC replaces
+// dynamical time: the difference of a minute moves the sun by 0.0007 degrees.
 Equatorial ApparentSun(double t) {
   const double mean_longitude = 280.46646 + t * (36000.76983 + t * 0.0003032);
   const double anomaly = 357.52911 + t * (35999.05029 - t * 0.0001537);
   const double center = (1.914602 - t * (0.004817 + t * 0.000014)) * Sin(anomaly) +
                         (0.019993 - t * 0.000101) * Sin(2.0 * anomaly) +
                         0.000289 * Sin(3.0 * anomaly);
-  const double node = 125.04 - 1934.136 * t;  // of the moon's orbit: nutation
+  const double node = 125.04 - 1934.136 * t;  // node of the moon's orbit, for nutation
   const double longitude = mean_longitude + center - 0.00569 - 0.00478 * Sin(node);
   const double obliquity = 23.439291 - t * 0.0130042 + 0.00256 * Cos(node);
   return {std::atan2(Cos(obliquity) * Sin(longitude), Cos(longitude)),

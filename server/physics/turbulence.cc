@@ -12,15 +12,16 @@
 namespace thunderhead::physics {
 namespace {
 
-// Finer octaves would need more texels than they are worth: the finest of five has one a cell.
+// Limits of the tile's side. The finest of five octaves has only one texel a cell, because a larger
+// tile would cost more than it gains.
 constexpr int kSmallestSide = 64;
 constexpr int kLargestSide = 128;
 static_assert(kLargestSide <= kMaxPerlinSide);
 
 constexpr std::size_t kOneInClear = 3;
 
-// Noise below the threshold becomes zero: sheets of clear air between the billows. The threshold is
-// such that kClearShare of the tile is empty.
+// Sets noise below a threshold to zero, which gives sheets of clear air between the billows. The
+// threshold leaves a share of 1 / kOneInClear of the tile empty.
 void FillTexels(const std::vector<std::uint32_t>& sums, TurbulenceTile* tile) {
   std::vector<std::uint32_t> sorted = sums;
   const auto clear = sorted.begin() + static_cast<std::ptrdiff_t>(sums.size() / kOneInClear);
@@ -34,7 +35,7 @@ void FillTexels(const std::vector<std::uint32_t>& sums, TurbulenceTile* tile) {
   }
 }
 
-// Adds up each texel with its neighbours along an axis, weighted by 1, 4 and 1.
+// Adds to each texel its neighbours along an axis, with the weights 1, 4 and 1.
 std::vector<std::uint32_t> Spread(const std::vector<std::uint32_t>& values, std::size_t side,
                                   std::size_t stride) {
   std::vector<std::uint32_t> spread(values.size());
@@ -48,7 +49,8 @@ std::vector<std::uint32_t> Spread(const std::vector<std::uint32_t>& values, std:
   return spread;
 }
 
-// Exact mean square of the linear interpolant between texels; texels count from 0 to 1.
+// Returns the exact mean square of the linear interpolant between texels, with texels scaled to 0
+// to 1.
 double MeanSquare(const TurbulenceTile& tile) {
   const auto side = static_cast<std::size_t>(tile.side);
   std::vector<std::uint32_t> spread(tile.texels.begin(), tile.texels.end());
@@ -66,7 +68,7 @@ double MeanSquare(const TurbulenceTile& tile) {
 TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
   THUNDERHEAD_CHECK(octaves >= 1 && octaves <= kMaxTurbulenceOctaves, std::to_string(octaves));
   TurbulenceTile tile;
-  // Two texels a cell of the finest octave.
+  // The finest octave has two texels a cell.
   tile.side = std::clamp(TurbulenceTile::kWaves << octaves, kSmallestSide, kLargestSide);
   const auto side = static_cast<std::size_t>(tile.side);
   std::vector<PerlinOctave> parts;
@@ -85,7 +87,8 @@ TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
                                      static_cast<unsigned>(i);
                      });
       }
-      // Below 2^43 before: three fades of 12 bits, a place of 5, and a factor of 4.
+      // The sums are below 2^43: three fades of 12 bits, a place of 5, and a factor of 4. The shift
+      // makes them fit into 32 bits.
       for (const std::uint64_t sum : row) sums.push_back(static_cast<std::uint32_t>(sum >> 12U));
     }
   }

@@ -1,4 +1,4 @@
-// Light that a surface of water reflects: shaders/physics/water.glsl, compiled for the CPU.
+// Light that a water surface reflects: shaders/physics/water.glsl, compiled for the CPU.
 #pragma once
 
 #include "glm/common.hpp"

@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::array<const char*, 3> kRadiance = {"R", "G", "B"};
 constexpr std::array<const char*, 3> kError = {"stderr.R", "stderr.G", "stderr.B"};
-// Not A, by which viewers would composite.
+// The channel is not named A, because viewers would use that for compositing.
 constexpr char kOpacity[] = "storm.opacity";
 constexpr char kOpticalDepth[] = "storm.optical_depth";
 constexpr char kDepthOneDistance[] = "storm.depth_one_distance";
@@ -52,7 +52,7 @@ void AddValues(const char* name, std::vector<float>& values, std::vector<Channel
   if (!values.empty()) channels.push_back({name, values.data(), sizeof(float)});
 }
 
-// Of what the picture has.
+// Returns the channels of the values that the picture has.
 std::vector<Channel> ChannelsOf(LinearPicture& picture) {
   std::vector<Channel> channels;
   AddColors(kRadiance, picture.radiance, channels);
@@ -72,7 +72,7 @@ Imf::FrameBuffer FrameBufferOf(const std::vector<Channel>& channels, std::size_t
   return buffer;
 }
 
-// OpenEXR tells by exceptions what goes wrong; they end in this file.
+// OpenEXR reports errors by exceptions, which do not leave this file.
 class BytesOut final : public Imf::OStream {
  public:
   BytesOut() : OStream("memory") {}
@@ -141,7 +141,7 @@ absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
     for (const auto& [name, number] : attributes.numbers) {
       header.insert(name.c_str(), Imf::FloatAttribute(number));
     }
-    // OpenEXR takes addresses that it may write to, also to write a file from.
+    // OpenEXR takes non-const addresses even for writing a file.
     LinearPicture copy = picture;
     const std::vector<Channel> channels = ChannelsOf(copy);
     for (const Channel& channel : channels) {
@@ -149,7 +149,7 @@ absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
     }
     BytesOut bytes;
     {
-      // Whole when it is closed.
+      // The file is complete when it is closed.
       Imf::OutputFile file(bytes, header);
       file.setFrameBuffer(FrameBufferOf(channels, static_cast<std::size_t>(picture.size_px.x)));
       file.writePixels(picture.size_px.y);
@@ -161,7 +161,7 @@ absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
 }
 
 void SetExrNumber(const std::string& name, float value, std::string* exr) {
-  // Name, type and size, then the value, least significant byte first.
+  // An attribute is its name, type and size, then the value with the least significant byte first.
   using std::string_literals::operator""s;
   const std::string before = name + "\0float\0\4\0\0\0"s;
   const std::size_t at = exr->find(before);

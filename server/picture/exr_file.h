@@ -1,8 +1,12 @@
-// A picture as an OpenEXR file: linear radiance in R, G, B as 32-bit floats, and where the picture
-// has them: its standard error in stderr.R, stderr.G, stderr.B, the share of each pixel that the
-// storm covers in storm.opacity (of the depth that the renderer sees the background through, which
-// is less than the whole: decision 44), the storm's optical depth in storm.optical_depth and the
-// distance (m) at which that reaches 1 in storm.depth_one_distance, infinite where it does not.
+// Stores a picture as an OpenEXR file. R, G, B hold linear radiance as 32-bit floats. Further
+// channels exist if the picture has their values:
+//
+// - stderr.R, stderr.G, stderr.B: the standard error of the radiance.
+// - storm.opacity: the share of each pixel that the storm covers. It refers to the depth through
+//   which the renderer sees the background, which is less than the whole (decision 44).
+// - storm.optical_depth: the storm's optical depth.
+// - storm.depth_one_distance: the distance (m) at which the optical depth reaches 1, infinite if it
+//   does not.
 #pragma once
 
 #include <map>
@@ -13,20 +17,20 @@
 
 namespace thunderhead::picture {
 
-// Texts about the picture, by name; in the header.
+// Named texts and numbers about the picture in the file's header.
 struct ExrAttributes {
   std::map<std::string, std::string> texts;
   std::map<std::string, float> numbers;
 };
 
-// The file's bytes.
+// Returns the file's bytes.
 absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
                                       const ExrAttributes& attributes = {});
 
 // Sets a number in the header of a file that EncodeExr made with that number.
 void SetExrNumber(const std::string& name, float value, std::string* exr);
 
-// The picture in a file's bytes, which `what` names in errors.
+// A picture and its attributes, decoded from a file's bytes. Errors name the file as `what`.
 struct ExrPicture {
   LinearPicture picture;
   ExrAttributes attributes;
@@ -36,7 +40,7 @@ absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& 
 absl::Status WriteExr(const std::string& path, const LinearPicture& picture,
                       const ExrAttributes& attributes = {});
 
-// Reads what WriteExr wrote.
+// Reads a file that WriteExr wrote.
 absl::StatusOr<LinearPicture> ReadExr(const std::string& path);
 
 }  // namespace thunderhead::picture

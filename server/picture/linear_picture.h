@@ -1,4 +1,4 @@
-// A picture as light: linear radiance, whether drawn or traced, before any tone mapping.
+// A picture of linear radiance, drawn or traced, before any tone mapping.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,18 @@
 
 namespace thunderhead::picture {
 
-// Rows from top to bottom.
+// Rows are from top to bottom.
 struct LinearPicture {
   glm::ivec2 size_px{0};
   std::vector<glm::vec3> radiance;
-  // Of each pixel's radiance, where that is an estimate; infinite where it is not known. Empty for
-  // a picture without noise, or where nobody needs it.
+  // Standard error of each pixel's radiance if that is an estimate. It is infinite for pixels with
+  // unknown error. Empty for a picture without noise, or if no caller needs it.
   std::vector<glm::vec3> standard_error{};
-  // Share of each pixel that the storm covers, 0 to 1; empty where that is not known.
+  // Share of each pixel that the storm covers, 0 to 1. Empty if it is not known.
   std::vector<float> opacity{};
-  // Of the storm along the ray through each pixel's middle, and the distance from the ray's
-  // beginning at which it reaches 1, in m; infinite where it does not. Empty where nobody asked.
+  // The storm's optical depth along the ray through each pixel's centre, and the distance in m from
+  // the ray's start at which it reaches 1. The distance is infinite if the depth does not reach 1.
+  // Both are empty unless requested.
   std::vector<float> optical_depth{};
   std::vector<float> depth_one_distance_m{};
 };

@@ -37,8 +37,8 @@ std::optional<Value> Optional(const Json& json, const char* name) {
   return value.get<Value>();
 }
 
-// The entries of a manifest's text. A last line without its end is left out, as its product's
-// entry was not written to the end; `whole_bytes` is where it begins.
+// Returns the entries of a manifest's text. A last line without a line break is left out because it
+// was not written completely; `whole_bytes` is its start.
 absl::StatusOr<std::vector<ManifestEntry>> ParseLines(const std::string& path,
                                                       std::string_view text,
                                                       std::size_t& whole_bytes) {
@@ -64,7 +64,7 @@ absl::Status NotUsable(const std::string& path) {
       absl::StrCat(path, ": the manifest cannot be written (", std::strerror(code), ")"), code);
 }
 
-// True if the open file is still the one of that name: another process may have replaced it.
+// Returns true if the open file still has that name. Another process may have replaced it.
 bool IsAt(int file, const std::string& path) {
   struct stat open_file {};
   struct stat named {};
@@ -72,7 +72,7 @@ bool IsAt(int file, const std::string& path) {
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
-// Opens and locks; -1 with errno otherwise.
+// Opens and locks a file. Returns -1 with errno set on failure.
 int OpenLocked(const std::string& path) {
   while (true) {
     const int file = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -94,7 +94,7 @@ std::string TextOf(const std::vector<ManifestEntry>& entries) {
   return text;
 }
 
-// The entries of another manifest, none if it is gone.
+// Returns the entries of another manifest; none if it no longer exists.
 absl::StatusOr<std::vector<ManifestEntry>> Read(const std::string& path) {
   auto text = base::ReadWholeFile(path);
   if (absl::IsNotFound(text.status())) return std::vector<ManifestEntry>();
@@ -103,7 +103,7 @@ absl::StatusOr<std::vector<ManifestEntry>> Read(const std::string& path) {
   return ParseLines(path, *text, whole_bytes);
 }
 
-// The oldest first. The dates of one folder's files are of one clock.
+// Sorts manifests from oldest to newest. The files of a folder are dated by the same clock.
 std::vector<std::string> ByDate(const std::vector<std::string>& manifests) {
   std::vector<std::pair<fs::file_time_type, std::string>> dated;
   for (const std::string& path : manifests) {
@@ -117,8 +117,8 @@ std::vector<std::string> ByDate(const std::vector<std::string>& manifests) {
   return sorted;
 }
 
-// Locks another manifest, which a share may hold for as long as it takes out a line; -1 if a
-// process keeps it, or it is gone.
+// Locks another manifest, which another share may hold briefly to remove a line. Returns -1 if a
+// process holds it longer or it no longer exists.
 int LockOther(const std::string& path) {
   constexpr int kTries = 50;
   std::error_code error;
@@ -153,7 +153,7 @@ std::string ToLine(const ManifestEntry& entry) {
                    {"bytes", entry.input.bytes},
                    {"modified_ns", entry.input.modified_ns},
                    {"sha256", entry.input.sha256}};
-  // Names of files may be in any encoding.
+  // File names may be in any encoding.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -222,8 +222,8 @@ absl::Status Manifest::ReadOther(const std::string& manifest) {
   return absl::OkStatus();
 }
 
-// The lines reach the disk here before they leave it there: a process that is killed in between
-// leaves them in both places, and the next run takes them over again.
+// The lines are durable here before they are deleted there. If the process is killed in between,
+// both places have them, and the next run moves them again.
 absl::Status Manifest::TakeOver(const std::vector<std::string>& manifests) {
   std::vector<std::pair<std::string, int>> taken;  // locked
   absl::Status read;
@@ -258,8 +258,8 @@ absl::Status Manifest::TakeOver(const std::vector<std::string>& manifests) {
   return moved;
 }
 
-// Done before its new line is written: a process that is killed in between leaves a product without
-// a line, which is made again, but never a false line.
+// Runs before the new line is written. If the process is killed in between, a product has no line
+// and is made again, but no line is ever wrong.
 absl::Status Manifest::RemoveFromOthers(const std::string& name) {
   const auto others = others_.find(name);
   if (others == others_.end()) return absl::OkStatus();
@@ -343,7 +343,7 @@ absl::Status Manifest::Append(const ManifestEntry& entry) const {
   if (written == static_cast<ssize_t>(line.size()) && fsync(file_) == 0) return absl::OkStatus();
   if (written >= 0 && written < static_cast<ssize_t>(line.size())) errno = ENOSPC;
   absl::Status status = NotUsable(path_);
-  // Half a line would be dropped by the next run as well.
+  // The next run would also drop a partial line, so a failed truncation is harmless.
   if (ftruncate(file_, before.st_size) != 0) return status;
   return status;
 }

@@ -1,5 +1,5 @@
-// The manifest: one line of JSON for each product that is whole, written after it. It tells which
-// file made which picture, and what need not be drawn again.
+// The manifest has one line of JSON for each complete product, written after the product. It
+// records which file each picture was made from, and shows what need not be drawn again.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace thunderhead::pipeline {
 
-// The file that a product was made of, as it was then.
+// The input file of a product, in its state at that time.
 struct InputFile {
   std::string path;
   std::uint64_t bytes = 0;
@@ -29,7 +29,7 @@ struct ManifestEntry {
   std::string sha256;
   std::string storm;
   std::string valid;               // ISO 8601, UTC
-  std::optional<std::string> run;  // the same
+  std::optional<std::string> run;  // start of the run, in the same format
   std::optional<double> lead_s;
   std::string view;
   std::string scene_sha256;
@@ -37,48 +37,48 @@ struct ManifestEntry {
   std::string device;
   double milliseconds = 0.0;
   std::optional<double> estimated_error;
-  // The 95 % interval; none where the error was not measured but taken from a table.
+  // The 95 % interval; absent if the error was taken from a table and not measured.
   std::optional<double> error_low;
   std::optional<double> error_high;
   InputFile input;
 };
 
-// One line, without its end.
+// Returns one line without the line break.
 std::string ToLine(const ManifestEntry& entry);
-// INVALID_ARGUMENT for what ToLine does not write.
+// INVALID_ARGUMENT if ToLine cannot have written the line.
 absl::StatusOr<ManifestEntry> FromLine(std::string_view line);
 
-// The manifests beside a manifest.
+// The other manifests in a manifest's folder.
 struct OtherManifests {
-  std::vector<std::string> count;  // their products count as well
-  // Those of shares that have ended: their lines move to the manifest, and they are deleted. One
-  // that a process still holds counts as the others.
+  std::vector<std::string> count;  // manifests whose products count as done, too
+  // Manifests of shares that have ended. Their lines are moved into this manifest, and they are
+  // deleted. A manifest that a process still holds is treated like those in `count`.
   std::vector<std::string> take_over;
 };
 
-// The manifest of one process, which holds it until it ends, however that happens.
+// The manifest of one process. The process holds its lock until it ends for any reason.
 class Manifest {
  public:
-  // Creates it if it does not exist. Drops a last line that is torn; another that is no entry is
-  // DATA_LOSS. UNAVAILABLE if another process holds it.
+  // Creates the manifest if it does not exist. Drops an incomplete last line. DATA_LOSS if another
+  // line is not an entry; UNAVAILABLE if another process holds the manifest.
   static absl::StatusOr<Manifest> Open(const std::string& path, const OtherManifests& others);
   Manifest(Manifest&& other) noexcept;
   Manifest& operator=(Manifest&&) = delete;
   ~Manifest();
 
-  // The entry of the product at `path`, or null: that of this manifest, else of the other that was
-  // written to last.
+  // Returns the entry of the product at `path`, or null. This manifest's entry comes first, then
+  // that of the other manifest that was written last.
   const ManifestEntry* Find(const std::string& path) const;
 
-  // The same of every product.
+  // Returns the same for all products.
   std::vector<ManifestEntry> Entries() const;
-  // Where an entry's product is.
+  // Returns the path of an entry's product.
   std::string PathOf(const ManifestEntry& entry) const;
-  // The name by which entries know the product at `path`.
+  // Returns the name in entries of the product at `path`.
   std::string NameOf(const std::string& path) const;
 
-  // Adds the entry of the product at `path`, in place of an older one wherever that is, and returns
-  // when it is on the disk. `entry.file` is set here.
+  // Adds the entry of the product at `path` and removes an older one from any manifest. Returns
+  // when the entry is durable. Sets `entry.file`.
   absl::Status Record(const std::string& path, ManifestEntry entry);
 
   const std::string& Path() const { return path_; }
@@ -101,8 +101,8 @@ class Manifest {
   std::string path_;
   int file_;                                          // locked; -1: none
   std::vector<ManifestEntry> entries_;                // of this manifest, in order
-  std::map<std::string, std::vector<Other>> others_;  // by product, the newest last
-  std::set<std::string> held_;                        // others that a process keeps
+  std::map<std::string, std::vector<Other>> others_;  // by product, newest last
+  std::set<std::string> held_;                        // other manifests that a process holds
 };
 
 }  // namespace thunderhead::pipeline

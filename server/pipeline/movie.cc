@@ -24,17 +24,17 @@ namespace {
 
 constexpr int kLongestGap = 1000;
 
-// libavcodec's own errors are four letters, far above those of the system.
+// libavcodec's own errors consist of four letters and are far above the system's error numbers.
 constexpr int kErrnos = 4096;
 
-// A kind of movie, by the ending of its name.
+// A kind of movie, identified by the file extension.
 struct Kind {
   const char* ending;
   const char* container;
   AVCodecID codec;
   const char* codec_name;
-  // Settings of the encoder: a constant quality at which clouds show no loss (libvpx counts from 0
-  // to 63, libx264 to 51, lower is better).
+  // Settings of the encoder: a constant quality at which clouds show no loss. libvpx counts from 0
+  // to 63, libx264 to 51; lower is better.
   std::vector<std::pair<const char*, const char*>> encoder;
   std::vector<std::pair<const char*, const char*>> muxer;
 };
@@ -47,7 +47,7 @@ const std::vector<Kind>& Kinds() {
        "VP9",
        {{"crf", "24"}, {"deadline", "good"}, {"cpu-used", "2"}, {"row-mt", "1"}},
        {}},
-      // Players that stream it find its index before the frames.
+      // With faststart, the index precedes the frames, which streaming players need.
       {".mp4", "mp4", AV_CODEC_ID_H264, "H.264", {{"crf", "20"}}, {{"movflags", "+faststart"}}}};
   return kinds;
 }
@@ -103,12 +103,13 @@ absl::Status Failed(const std::string& path, const std::string& what, int code) 
   const std::string message =
       absl::StrCat(path, " cannot be written: ", what, " (", Reason(code),
                    "); check that its folder exists, may be written to and has room");
-  // Other errors than the system's are of the pictures, such as a size that the encoder cannot do.
+  // Errors other than the system's are caused by the pictures, such as a size that the encoder does
+  // not support.
   if (AVUNERROR(code) >= kErrnos) return absl::InvalidArgumentError(message);
   return base::WriteProblem(message, AVUNERROR(code));
 }
 
-// One movie on its way to the partial file.
+// Writes one movie to the partial file.
 class MovieWriter {
  public:
   explicit MovieWriter(std::string path) : path_(std::move(path)) {}
@@ -130,7 +131,7 @@ class MovieWriter {
     }
     format_.reset(format);
     codec_.reset(avcodec_alloc_context3(codec));
-    // Chroma has half the size, so a last odd row or column is left out.
+    // Chroma has half the size, so an odd last row or column is left out.
     codec_->width = width_px & ~1;
     codec_->height = height_px & ~1;
     codec_->time_base = {1, frames_per_second};
@@ -140,7 +141,7 @@ class MovieWriter {
     codec_->colorspace = AVCOL_SPC_BT709;
     codec_->color_primaries = AVCOL_PRI_BT709;
     codec_->color_trc = AVCOL_TRC_IEC61966_2_1;
-    codec_->bit_rate = 0;  // quality decides
+    codec_->bit_rate = 0;  // the quality setting decides
     if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) {
       codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     }
@@ -209,7 +210,7 @@ class MovieWriter {
     return absl::OkStatus();
   }
 
-  // Encodes a frame, or the rest with null, and writes what is ready.
+  // Encodes a frame and writes the packets that are ready. A null frame flushes the encoder.
   absl::Status Encode(const AVFrame* frame) {
     if (const int code = avcodec_send_frame(codec_.get(), frame); code < 0) {
       return Failed(path_, "a frame", code);
@@ -233,7 +234,7 @@ class MovieWriter {
   std::unique_ptr<AVFrame, FrameDeleter> frame_;
   std::unique_ptr<AVPacket, PacketDeleter> packet_;
   std::unique_ptr<SwsContext, ScalerDeleter> scaler_;
-  AVStream* stream_ = nullptr;  // format_ owns it
+  AVStream* stream_ = nullptr;  // owned by format_
   std::int64_t next_frame_ = 0;
 };
 

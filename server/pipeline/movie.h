@@ -1,5 +1,5 @@
-// Movies of pictures by libavcodec, in this process: VP9 in WebM, or H.264 in MP4 where libavcodec
-// has an encoder of it.
+// Makes movies of pictures with libavcodec, in this process: VP9 in WebM, or H.264 in MP4 if
+// libavcodec has an encoder for it.
 #pragma once
 
 #include <functional>
@@ -14,27 +14,27 @@
 
 namespace thunderhead::pipeline {
 
-// True for a name that ends in .webm or .mp4.
+// Returns true for a name that ends in .webm or .mp4.
 bool IsMovieName(std::string_view path);
 
-// For how many of the movie's frames each picture stands, so that every frame lasts the same time
-// of the storm: the shortest step between two pictures. `valid` are their times, in order; the last
-// picture stands for one. A gap of a thousand steps counts as one.
+// Returns the number of movie frames for each picture. Each frame covers the same time of the
+// storm: the shortest step between two pictures. `valid` are the pictures' times in order. The last
+// picture gets one frame. A gap of a thousand steps or more counts as one.
 std::vector<int> FramesOfPictures(const std::vector<absl::Time>& valid);
 
-// In the movie's metadata, where players and ffprobe show it.
+// Text in the movie's metadata, which players and ffprobe show.
 struct MovieText {
   std::string title;
   std::string comment;
   std::string description = {};
 };
 
-// Reads the picture of that index; all have one size.
+// Reads the picture of that index. All pictures must have the same size.
 using MoviePicture = std::function<absl::StatusOr<frame::RgbImage>(std::size_t)>;
 
-// Writes the movie at `path`, whole or not at all. `frames[i]` says for how many frames picture i
-// stands. Errors: those of `picture`, those of base::WriteWholeFile, FAILED_PRECONDITION if there
-// is no encoder, and INVALID_ARGUMENT for pictures that differ in size or that it cannot encode.
+// Writes the movie at `path`, completely or not at all. `frames[i]` is the number of frames of
+// picture i. Errors: those of `picture`, those of base::WriteWholeFile, and FAILED_PRECONDITION if
+// there is no encoder. INVALID_ARGUMENT if pictures differ in size or cannot be encoded.
 absl::Status WriteMovie(const std::string& path, const std::vector<int>& frames,
                         int frames_per_second, const MovieText& text, const MoviePicture& picture);
 

@@ -12,7 +12,7 @@
 namespace thunderhead::pipeline {
 namespace {
 
-// Neither 0 nor a reasonable number of processes.
+// An upper limit far above any reasonable number of processes.
 constexpr int kMaxShards = 1'000'000;
 
 absl::string_view PlanText(std::string_view text) { return {text.data(), text.size()}; }
@@ -77,7 +77,7 @@ absl::StatusOr<Shard> ShardOfEnvironment() {
     return ShardOf("the share of SLURM_ARRAY_TASK_ID", absl::StrCat(index - minimum), count);
   }
   if (const char* index = variable("JOB_COMPLETION_INDEX"); index != nullptr) {
-    // Kubernetes tells a pod its index alone; the job's manifest passes the number on.
+    // Kubernetes gives a pod only its index, so the job's manifest must pass the number of pods.
     const char* count = variable("JOB_COMPLETIONS");
     if (count == nullptr) {
       return absl::InvalidArgumentError(

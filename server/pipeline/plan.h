@@ -1,4 +1,4 @@
-// Which pictures a run makes: times, shares of several processes, and what is done already.
+// Selects the pictures that a run makes: times, shares of several processes, and finished products.
 #pragma once
 
 #include <functional>
@@ -18,27 +18,29 @@ struct Shard {
   int count = 1;
 };
 
-// The times that a text such as "0,3,6-9", "all" or "last" names, in order, each once; of `count`
-// times. INVALID_ARGUMENT names --times.
+// Parses times such as "0,3,6-9", "all" or "last", out of `count` times. Returns them in order and
+// without duplicates. INVALID_ARGUMENT names --times.
 absl::StatusOr<std::vector<int>> ParseTimes(std::string_view text, int count);
 
-// "I/N", I from 0 to N - 1; INVALID_ARGUMENT names --shard.
+// Parses "I/N", with I from 0 to N - 1. INVALID_ARGUMENT names --shard.
 absl::StatusOr<Shard> ParseShard(std::string_view text);
 
-// The share that a batch system tells this process to take, from its environment: Slurm's array
-// task (SLURM_ARRAY_TASK_ID of SLURM_ARRAY_TASK_COUNT, counted from SLURM_ARRAY_TASK_MIN), or
-// `JOB_COMPLETION_INDEX` of Kubernetes with JOB_COMPLETIONS; everything without one.
+// Returns the share that a batch system assigns to this process, from environment variables. For
+// Slurm it is the array task (SLURM_ARRAY_TASK_ID of SLURM_ARRAY_TASK_COUNT, counted from
+// SLURM_ARRAY_TASK_MIN). For Kubernetes it is `JOB_COMPLETION_INDEX` with JOB_COMPLETIONS. Without
+// a batch system it is everything.
 absl::StatusOr<Shard> ShardOfEnvironment();
 
-// The manifest of a share: "manifest.jsonl", for one of several "manifest.2-of-4.jsonl".
+// Returns the name of a share's manifest: "manifest.jsonl", or for one of several
+// "manifest.2-of-4.jsonl".
 std::string ManifestName(const Shard& shard);
 
-// True for the name of the manifest of one of several shares.
+// Returns true for the name of the manifest of one of several shares.
 bool IsManifestOfShare(std::string_view file);
 
-// True if the entry's product is as it would be made now: of the same scene, by the same version,
-// of the same input: by its hash where `input` has it, else by path, size and time, and only if
-// those differ by the hash that `input_sha256` finds.
+// Returns true if the entry's product is what would be made now: the same scene, version and input.
+// Inputs are compared by hash if `input` has one, else by path, size and time. If path or time
+// differ but the size does not, the hash from `input_sha256` decides.
 bool MadeAlike(const ManifestEntry& entry, std::string_view scene_sha256, std::string_view version,
                const InputFile& input, const std::function<std::string()>& input_sha256);
 

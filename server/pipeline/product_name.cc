@@ -24,7 +24,7 @@ bool IsNumber(std::string_view field) {
   return field == "lead" || field == "lead_min" || field == "time";
 }
 
-// Every conversion is one of kConversions, and there is at least one.
+// Returns true if the format has at least one conversion and all of them are in kConversions.
 bool IsTimeFormat(std::string_view format) {
   bool any = false;
   for (std::size_t i = 0; i < format.size(); ++i) {
@@ -38,7 +38,7 @@ bool IsTimeFormat(std::string_view format) {
   return any;
 }
 
-// "03d" is 3.
+// Returns the width of a format; "03d" is 3.
 std::optional<int> WidthOf(std::string_view format) {
   if (format.size() < 2 || format.front() != '0' || format.back() != 'd') return std::nullopt;
   int width = 0;
@@ -49,7 +49,7 @@ std::optional<int> WidthOf(std::string_view format) {
 }
 
 std::string Formatted(std::string_view format, absl::Time time) {
-  // Years before 1000 have four digits too.
+  // %E4Y gives years before 1000 four digits, too.
   const std::string four =
       absl::StrReplaceAll(absl::string_view(format.data(), format.size()), {{"%Y", "%E4Y"}});
   return absl::FormatTime(four, time, absl::UTCTimeZone());

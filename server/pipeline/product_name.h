@@ -13,10 +13,10 @@
 
 namespace thunderhead::pipeline {
 
-// The contents of a product.
+// The properties of a product that its name may contain.
 struct ProductKey {
   std::string storm;
-  std::optional<absl::Time> run;  // when the run began; nothing if that is not known
+  std::optional<absl::Time> run;  // start of the run; absent if unknown
   absl::Time valid;
   int time_index = 0;  // among the run's times
   std::string view;
@@ -24,27 +24,36 @@ struct ProductKey {
 
 class ProductName {
  public:
-  // {storm}, {view}; {run:%...} and {valid:%...} with strftime's %Y %y %m %d %j %H %M %S, in UTC;
-  // {lead}, hours since the run began, {lead_min}, minutes, and {time}, the index of the time, each
-  // also with a width as in {lead:03d}. INVALID_ARGUMENT names the part that is wrong and `flag`.
+  // Parses a template. It may have these fields:
+  //
+  //   {storm}, {view}           texts
+  //
+  //   {run:%...}, {valid:%...}  times, in UTC, with strftime's %Y %y %m %d %j %H %M %S
+  //
+  //   {lead}, {lead_min}        hours or minutes since the run began
+  //
+  //   {time}                    the index of the time
+  //
+  // A number may have a width, as in {lead:03d}. INVALID_ARGUMENT names the wrong part and `flag`.
   static absl::StatusOr<ProductName> Parse(std::string_view flag, std::string_view text);
 
-  // INVALID_ARGUMENT if the name needs a start of the run that is not known.
+  // Returns the product's name. INVALID_ARGUMENT if the name needs the start of the run and that is
+  // unknown.
   absl::StatusOr<std::string> For(const ProductKey& key) const;
 
-  // True if names depend on a field, such as "view".
+  // Returns true if names depend on a field, such as "view".
   bool Has(std::string_view field) const;
 
   const std::string& Text() const { return text_; }
-  // The deepest folder that all products are in, "." if that is the current one.
+  // Returns the deepest folder that contains all products; "." if it is the current folder.
   std::string Folder() const;
 
  private:
   // A field with its format, or fixed text if `field` is empty.
   struct Part {
     std::string field;
-    std::string format;  // of times, or the text
-    int width = 0;       // of numbers, filled with zeros
+    std::string format;  // format of a time, or the fixed text
+    int width = 0;       // width of a number, which is padded with zeros
   };
 
   static absl::StatusOr<Part> ParseField(std::string_view field);
@@ -53,7 +62,7 @@ class ProductName {
   std::vector<Part> parts_;
 };
 
-// INVALID_ARGUMENT, naming both, if two products of `keys` would have one name.
+// INVALID_ARGUMENT, naming both, if two products of `keys` would have the same name.
 absl::Status CheckDistinct(const ProductName& name, const std::vector<ProductKey>& keys);
 
 }  // namespace thunderhead::pipeline

@@ -11,7 +11,7 @@
 namespace thunderhead::pipeline {
 namespace {
 
-// Between two pieces of a slow copy.
+// Longest pause between two pieces of a slow copy.
 constexpr absl::Duration kSettled = absl::Seconds(2);
 
 absl::string_view AbslView(std::string_view text) { return {text.data(), text.size()}; }
@@ -22,7 +22,7 @@ absl::Status Wrong(std::string_view text, std::string_view why) {
                    " (open, age:SECONDS[,minsize:BYTES], next[,age:SECONDS] or marker:GLOB)"));
 }
 
-// The text that GLOB's star stands for in `name`; empty if it does not match.
+// Returns the text in `name` that GLOB's star stands for; empty if the name does not match.
 std::string_view StarOf(std::string_view glob, std::string_view name) {
   const std::size_t star = glob.find('*');
   const std::string_view before = glob.substr(0, star);

@@ -1,5 +1,6 @@
-// When a file that a model writes, or somebody copies, is complete. Plain values: what a folder
-// looks like goes in, what a file waits for comes out. A file that is ready must still open.
+// Decides when a file that a model writes, or that is being copied, is complete. Plain values: the
+// input is the state of a folder, the output is what a file waits for. A file that is ready must
+// still be opened to check it.
 #pragma once
 
 #include <cstdint>
@@ -13,34 +14,40 @@
 
 namespace thunderhead::pipeline {
 
-// A file of a folder, as seen by a look at it.
+// A file of a folder, as seen by one scan.
 struct SeenFile {
   std::string name;
   std::uint64_t bytes = 0;
   std::int64_t modified_ns = 0;  // since 1970
-  absl::Duration unchanged;      // for how long, by a clock that is not set
+  absl::Duration unchanged;      // how long, by a monotonic clock
 };
 
 class ReadinessPolicy {
  public:
-  // One of
-  //   open                         does not change for two seconds
-  //   age:SECONDS[,minsize:BYTES]  does not change for SECONDS, and has at least BYTES
-  //   next[,age:SECONDS]           a file of a later name is there, or as age
-  //   marker:GLOB                  a file is there whose name is GLOB with the end of this file's
-  //                                name (or of its name without its ending) for GLOB's one star
+  // Parses a policy, which says when a file is ready:
+  //
+  //   open                         the file has not changed for two seconds
+  //
+  //   age:SECONDS[,minsize:BYTES]  it has not changed for SECONDS and has at least BYTES
+  //
+  //   next[,age:SECONDS]           the folder has a file with a later name, or as for age
+  //
+  //   marker:GLOB                  the folder has a marker file whose name matches GLOB. GLOB has
+  //                                one star. It stands for the end of this file's name, with or
+  //                                without its extension.
+  //
   // INVALID_ARGUMENT for anything else.
   static absl::StatusOr<ReadinessPolicy> Parse(std::string_view text);
 
-  // Why `file` waits, for people; nothing if it is ready. `files` are the data files of its
-  // folder, `names` all names there.
+  // Returns why `file` is not ready, for display; none if it is ready. `files` are the data files
+  // of its folder, `names` all names there.
   std::optional<std::string> WaitsFor(const SeenFile& file, const std::vector<SeenFile>& files,
                                       const std::vector<std::string>& names) const;
 
-  // True for a name that marks a file, which is no data file itself.
+  // Returns true for the name of a marker file, which is not a data file.
   bool IsMarker(std::string_view name) const;
 
-  // How soon a look at a folder with unready files may bring something new.
+  // Returns the time until a new scan of a folder with unready files is worthwhile.
   absl::Duration Patience() const;
 
  private:

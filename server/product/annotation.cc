@@ -16,11 +16,11 @@
 namespace thunderhead::product {
 namespace {
 
-// In this order where it is installed; otherwise what fontconfig takes for it.
+// The first installed font of this list is used, or fontconfig's substitute.
 constexpr char kFont[] = "DejaVu Sans, Liberation Sans, Sans";
 constexpr double kLinesInAPicture = 30.0;
 constexpr double kMinText_px = 10.0;
-// In heights of a line.
+// In units of the line height.
 constexpr double kMargin = 0.6;
 constexpr double kEdge = 0.16;
 constexpr double kSwatch = 0.7;
@@ -28,7 +28,7 @@ constexpr double kSwatch = 0.7;
 constexpr double kLogoHeight = 1.0 / 6.0;
 constexpr double kLogoWidth = 1.0 / 4.0;
 
-// The picture as Cairo holds it: 32 bits a pixel, of which the highest eight are not used.
+// Returns the picture in Cairo's format: 32 bits per pixel, with the highest eight unused.
 CairoSurface SurfaceOf(const frame::RgbImage& image) {
   CairoSurface surface(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width_px, image.height_px));
@@ -74,7 +74,7 @@ class Pen {
   double Width_px() const { return width_px_; }
   double Height_px() const { return height_px_; }
 
-  // Below each other from `top_px` on; returns where the next may begin.
+  // Draws a line of text below `top_px`. Returns the top of the next line.
   double TextAt(double left_px, double top_px, double max_width_px, const std::string& text,
                 PangoWeight weight = PANGO_WEIGHT_NORMAL) {
     const Layout layout = LayoutOf(text, max_width_px, weight);
@@ -107,14 +107,14 @@ class Pen {
     cairo_fill(context_.get());
   }
 
-  // In the upper right corner; returns how much of the width it takes.
+  // Draws the logo in the upper right corner. Returns the width that it takes.
   double Mark(const Logo& logo) {
     cairo_surface_t* const surface = logo.Surface();
     const double width_px = cairo_image_surface_get_width(surface);
     const double height_px = cairo_image_surface_get_height(surface);
     const double scale =
         std::min({1.0, kLogoHeight * height_px_ / height_px, kLogoWidth * width_px_ / width_px});
-    // On whole pixels: a small logo stays as sharp as it is.
+    // The logo begins at a whole pixel, so that a small logo remains sharp.
     const double left_px = std::floor(width_px_ - Margin_px() - scale * width_px);
     cairo_save(context_.get());
     cairo_translate(context_.get(), left_px, std::round(Margin_px()));
@@ -126,7 +126,7 @@ class Pen {
     return width_px_ - left_px;
   }
 
-  // Cairo remembers the first thing that went wrong.
+  // Returns Cairo's first error, which Cairo keeps.
   absl::Status Status() const {
     const cairo_status_t status = cairo_status(context_.get());
     if (status == CAIRO_STATUS_SUCCESS) return absl::OkStatus();
@@ -139,7 +139,7 @@ class Pen {
     cairo_set_source_rgba(context_.get(), grey, grey, grey, alpha);
   }
 
-  // One line, as wide as it needs if `max_width_px` is 0.
+  // Lays out one line, as wide as necessary if `max_width_px` is 0.
   Layout LayoutOf(const std::string& text, double max_width_px, PangoWeight weight) const {
     Layout layout(pango_cairo_create_layout(context_.get()));
     const Font font(pango_font_description_from_string(kFont));
@@ -147,7 +147,7 @@ class Pen {
     pango_font_description_set_absolute_size(font.get(), 0.8 * line_px_ * PANGO_SCALE);
     pango_layout_set_font_description(layout.get(), font.get());
     pango_layout_set_single_paragraph_mode(layout.get(), TRUE);
-    // Invalid UTF-8, as in a file's attribute, becomes U+FFFD.
+    // Invalid UTF-8, for example from a file's attribute, becomes U+FFFD.
     gchar* const valid = g_utf8_make_valid(text.data(), static_cast<gssize>(text.size()));
     pango_layout_set_text(layout.get(), valid, -1);
     g_free(valid);
@@ -215,7 +215,7 @@ absl::Status Annotate(const Annotation& annotation, frame::RgbImage& image) {
   Pen pen(surface.get(), image.width_px, image.height_px);
   double room_px = pen.Width_px() - 2.0 * pen.Margin_px();
   if (annotation.logo != nullptr) room_px -= pen.Mark(*annotation.logo);
-  // A picture that is hardly wider than its logo keeps some letters of its title.
+  // A picture hardly wider than its logo keeps some letters of its title.
   room_px = std::max(room_px, 3.0 * pen.Line_px());
   const double below_title_px =
       pen.TextAt(pen.Margin_px(), pen.Margin_px(), room_px, annotation.title, PANGO_WEIGHT_BOLD);

@@ -1,5 +1,5 @@
-// Annotations burnt into a picture for those who see nothing else: texts by Pango, in the picture's
-// corners, white with a dark edge, so that they can be read on any sky.
+// Annotations drawn into a picture, for viewers who see only the picture. Pango draws the texts in
+// the picture's corners, white with a dark outline, so that they are readable on any sky.
 #pragma once
 
 #include <string>
@@ -12,25 +12,25 @@
 
 namespace thunderhead::product {
 
-// A colour and what it stands for.
+// A colour and its meaning.
 struct LegendEntry {
   std::string name;
   glm::vec3 color{1.0F};  // linear sRGB
 };
 
-// Texts are UTF-8; one that is too long for the picture ends in an ellipsis.
+// Texts are UTF-8. A text that is too long for the picture ends in an ellipsis.
 struct Annotation {
   std::string title;                // upper left
-  std::string run;                  // below it; may be empty
+  std::string run;                  // below the title; may be empty
   std::string valid_time;           // lower left
-  std::vector<LegendEntry> legend;  // lower right, the first entry on top
-  const Logo* logo = nullptr;       // upper right, at most a sixth of the picture high; may be null
+  std::vector<LegendEntry> legend;  // lower right, first entry on top
+  const Logo* logo = nullptr;  // upper right, at most a sixth of the picture's height; may be null
 };
 
-// Height of the text's line in a picture of that height.
+// Returns the height of a line of text in a picture of that height.
 double TextHeight_px(int picture_height_px);
 
-// Draws it. FAILED_PRECONDITION if there is no font on this machine.
+// Draws the annotation. FAILED_PRECONDITION if this machine has no font.
 absl::Status Annotate(const Annotation& annotation, frame::RgbImage& image);
 
 }  // namespace thunderhead::product

@@ -1,4 +1,4 @@
-// Objects of Cairo and Pango, owned.
+// Owning pointers for objects of Cairo and Pango.
 #pragma once
 
 #include <pango/pangocairo.h>

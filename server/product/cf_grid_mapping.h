@@ -1,4 +1,4 @@
-// A map projection as the Climate and Forecast conventions write it (CF-1.8, appendix F).
+// A map projection in the format of the Climate and Forecast conventions (CF-1.8, appendix F).
 #pragma once
 
 #include <map>
@@ -10,16 +10,16 @@
 
 namespace thunderhead::product {
 
-// Attributes of the variable that `grid_mapping` names.
+// The attributes of the variable that `grid_mapping` names.
 struct CfGridMapping {
-  // The conventions have no name for degrees that are drawn as evenly spaced metres: such a grid
-  // is written in the degrees.
+  // The conventions have no name for a grid in degrees whose cells are drawn as evenly spaced
+  // metres. Coordinates of such a grid are written in degrees.
   bool in_degrees = false;
   std::map<std::string, std::string> texts;
   std::map<std::string, std::vector<double>> numbers;
 };
 
-// The grid mapping of projections that storm files have. INVALID_ARGUMENT for others.
+// Returns the grid mapping of a projection that storm files use. INVALID_ARGUMENT for others.
 absl::StatusOr<CfGridMapping> GridMappingOf(const MapProjection& projection);
 
 }  // namespace thunderhead::product

@@ -9,7 +9,7 @@
 namespace thunderhead::product {
 namespace {
 
-// By the version that Debian 12 has, then by what a development package links to.
+// The version in Debian 12, then the name that a development package installs.
 constexpr std::array<const char*, 2> kNames = {"libgdal.so.32", "libgdal.so"};
 
 template <typename Function>
@@ -55,7 +55,7 @@ absl::StatusOr<GdalLibrary> Open() {
 }  // namespace
 
 absl::StatusOr<const GdalLibrary*> GdalLibrary::Get() {
-  // Never closed: GDAL ends with the process.
+  // The library is never closed; it stays loaded until the process ends.
   static const auto& library = *new absl::StatusOr<GdalLibrary>(Open());
   if (!library.ok()) return library.status();
   return &*library;

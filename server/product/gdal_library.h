@@ -1,6 +1,5 @@
-// GDAL, opened when somebody asks for a GeoTIFF: linked, it would bring a hundred libraries to
-// every start of the program. Its interface in C, whose functions have kept their form since
-// version 1.
+// GDAL, loaded for the first GeoTIFF. Linking it would load a hundred libraries at every start of
+// the program. It uses GDAL's C interface, whose functions have not changed since version 1.
 #pragma once
 
 #include <cpl_error.h>
@@ -12,9 +11,9 @@
 
 namespace thunderhead::product {
 
-// Named as GDAL names them, so that its manual is theirs.
+// Members have GDAL's names, so that its manual applies.
 struct GdalLibrary {
-  // Registers this format alone: others use netCDF-C and HDF5, which allow one thread at a time.
+  // Registers only this format. Others use netCDF-C and HDF5, which allow one thread at a time.
   decltype(&::GDALRegister_GTiff) RegisterGTiff = nullptr;
   decltype(&::GDALGetDriverByName) GetDriverByName = nullptr;
   decltype(&::GDALCreate) Create = nullptr;
@@ -31,8 +30,8 @@ struct GdalLibrary {
   decltype(&::CPLQuietErrorHandler) QuietErrorHandler = nullptr;
   decltype(&::CPLGetLastErrorMsg) GetLastErrorMsg = nullptr;
 
-  // Opened once, and kept. FAILED_PRECONDITION names the package if it is not installed. Safe from
-  // any thread.
+  // Loads the library once and keeps it. FAILED_PRECONDITION names the package if it is not
+  // installed. Safe from any thread.
   static absl::StatusOr<const GdalLibrary*> Get();
 };
 

@@ -11,7 +11,7 @@
 namespace thunderhead::product {
 namespace {
 
-// A file in GDAL's memory with its dataset; both go with it.
+// A file in GDAL's memory with its dataset. The destructor removes both.
 class TiffInMemory {
  public:
   explicit TiffInMemory(const GdalLibrary& gdal) : gdal_(gdal), name_(FreshName()) {
@@ -57,14 +57,14 @@ class TiffInMemory {
   }
 
   bool Write(const frame::RgbImage& image) {
-    // GDAL takes no const pixels, and only reads them here.
+    // GDAL's parameter is not const, but GDAL only reads the pixels here.
     auto* const pixels = const_cast<std::uint8_t*>(image.rgb.data());
     return gdal_.DatasetRasterIo(dataset_, GF_Write, 0, 0, image.width_px, image.height_px, pixels,
                                  image.width_px, image.height_px, GDT_Byte, 3, nullptr, 3,
                                  3 * image.width_px, 1) == CE_None;
   }
 
-  // Whole when it is closed.
+  // Returns the file, which is complete only after closing.
   std::string Take() {
     if (!Close()) return "";
     vsi_l_offset count = 0;

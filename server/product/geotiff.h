@@ -1,4 +1,4 @@
-// A top-down picture as a GeoTIFF by GDAL, in the model's own map projection.
+// Encodes a top-down picture as a GeoTIFF with GDAL, in the model's own map projection.
 #pragma once
 
 #include <map>
@@ -10,9 +10,9 @@
 
 namespace thunderhead::product {
 
-// The file's bytes: red, green and blue of 8 bits, losslessly compressed. `texts` go into its
-// metadata by their names. `place` has a projection. FAILED_PRECONDITION where there is no GDAL.
-// Safe from any thread.
+// Returns the file's bytes: red, green and blue of 8 bits each, with lossless compression. `texts`
+// become metadata under their names. `place` must have a projection. FAILED_PRECONDITION if GDAL is
+// not available. Safe from any thread.
 absl::StatusOr<std::string> EncodeGeoTiff(const frame::RgbImage& image, const MapPlace& place,
                                           const std::map<std::string, std::string>& texts);
 

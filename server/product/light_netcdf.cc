@@ -25,12 +25,13 @@ std::string Iso(absl::Time time) {
   return absl::FormatTime("%E4Y-%m-%d %H:%M:%S", time, absl::UTCTimeZone());
 }
 
-// The name of a global attribute, without what only our own files mean by it.
+// Returns the name of a global attribute in CF style: lower case, with underscores instead of dots.
 std::string AttributeName(const std::string& name) {
   return absl::AsciiStrToLower(absl::StrReplaceAll(name, {{".", "_"}}));
 }
 
-// Numbers of variables are known when they are declared, and written when all are.
+// Writes the file. The values of variables are collected at their declaration and written after all
+// declarations.
 class LightFile {
  public:
   LightFile(const LightMap& map, const std::string& what)
@@ -130,13 +131,13 @@ class LightFile {
     doubles_.emplace_back(variable, std::move(values));
   }
 
-  // By its standard name.
+  // Adds a time variable; its name is its standard name.
   void Time(const char* name, absl::Time time) {
     const absl::Time epoch = map_.run.value_or(map_.valid);
     const int variable = file_.Variable(name, NC_DOUBLE, {});
     file_.Text(variable, "standard_name", name);
     file_.Text(variable, "units", absl::StrCat("seconds since ", Iso(epoch)));
-    // As models do, and as CF's default calendar changes in 1582.
+    // Models use this calendar, and CF's default calendar changes in 1582.
     file_.Text(variable, "calendar", "proleptic_gregorian");
     doubles_.emplace_back(variable, std::vector{absl::ToDoubleSeconds(time - epoch)});
     coordinates_.emplace_back(name);
@@ -212,7 +213,7 @@ class LightFile {
 
   const LightMap& map_;
   NetcdfWriter file_;
-  // Identifiers of netCDF-C: x is declared first, and is the last dimension.
+  // Identifiers of netCDF-C. x is declared first and is the last dimension.
   std::vector<int> dimensions_;
   std::vector<std::string> coordinates_;
   bool mapped_ = false;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::uint32_t kMaxSize_px = 4096;
-// Places in IHDR, the first chunk of every PNG.
+// Offsets in IHDR, the first chunk of each PNG.
 constexpr std::size_t kWidthAt = 16;
 constexpr std::size_t kHeightAt = 20;
 
@@ -40,7 +40,7 @@ absl::StatusOr<Logo> Logo::Decode(std::string_view png, const std::string& what)
                                             kMaxSize_px, " x ", kMaxSize_px, " pixels"));
   };
   if (!png.starts_with(kSignature) || png.size() < kHeightAt + 4) return bad("is no PNG");
-  // Before memory is taken for what a few bytes may claim.
+  // The size is checked before Cairo allocates memory for it.
   const std::uint32_t width = NumberAt(png, kWidthAt);
   const std::uint32_t height = NumberAt(png, kHeightAt);
   if (std::max(width, height) > kMaxSize_px) {

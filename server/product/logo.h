@@ -1,4 +1,4 @@
-// A picture that is laid over products, such as the mark of who publishes them.
+// A picture that is drawn over products, such as the publisher's logo.
 #pragma once
 
 #include <memory>
@@ -7,15 +7,15 @@
 
 #include "absl/status/statusor.h"
 
-// Cairo's own name, so that who passes a logo on needs no header of Cairo.
+// Cairo's own name, so that code that only passes a logo on needs no Cairo header.
 struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 
 namespace thunderhead::product {
 
 class Logo {
  public:
-  // A PNG of at most 4096 x 4096 pixels, which may be transparent. `what` names it in errors:
-  // DATA_LOSS for anything else.
+  // Decodes a PNG of at most 4096 x 4096 pixels, which may be transparent. `what` names it in
+  // errors. DATA_LOSS for anything else.
   static absl::StatusOr<Logo> Decode(std::string_view png, const std::string& what);
 
   _cairo_surface* Surface() const { return surface_.get(); }

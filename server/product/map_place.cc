@@ -13,7 +13,7 @@ namespace thunderhead::product {
 absl::StatusOr<MapProjection> MapProjection::Open(const std::string& text) {
   MapProjection projection;
   projection.context_.reset(proj_context_create());
-  // Its messages go into the status.
+  // PROJ's messages are returned in the status instead.
   proj_log_level(projection.context_.get(), PJ_LOG_NONE);
   projection.transform_.reset(proj_create(projection.context_.get(), text.c_str()));
   projection.system_.reset(
@@ -46,7 +46,7 @@ Place MapProjection::PlaceOf(const glm::dvec2& plane_m) const {
 }
 
 std::string MapProjection::WellKnownText(PJ_WKT_TYPE type) const {
-  // PROJ owns it.
+  // PROJ owns the text.
   const char* const text = proj_as_wkt(context_.get(), system_.get(), type, nullptr);
   return text == nullptr ? "" : text;
 }

@@ -1,6 +1,6 @@
-// Where a top-down picture lies in its model's map projection, by PROJ. Plane coordinates are
-// metres east and north of the projection's origin, those of the storm metres from the middle of
-// the domain: a model's grid is regular in its projection, so one is the other moved.
+// The position of a top-down picture in its model's map projection, by PROJ. Plane coordinates are
+// metres east and north of the projection's origin. Storm coordinates are metres from the middle of
+// the domain. They differ only by a shift, because a model's grid is regular in its projection.
 #pragma once
 
 #include <proj.h>
@@ -19,22 +19,22 @@ struct Place {
   double longitude_deg = 0.0;
 };
 
-// Used by one thread.
+// A map projection. Used by one thread.
 class MapProjection {
  public:
-  // As PROJ writes it, such as "+proj=lcc +lat_1=30 ...". INVALID_ARGUMENT if PROJ does not know
-  // it.
+  // Opens a projection in PROJ's notation, such as "+proj=lcc +lat_1=30 ...". INVALID_ARGUMENT if
+  // PROJ does not know it.
   static absl::StatusOr<MapProjection> Open(const std::string& text);
 
-  // Metres in the plane; not finite for a place that is not on the map.
+  // Returns metres in the plane; not finite for a place outside the map.
   glm::dvec2 PlaneOf_m(const Place& place) const;
   Place PlaceOf(const glm::dvec2& plane_m) const;
 
-  // Its definition as well-known text: as GDAL reads it, or by ISO 19162.
+  // Return the definition as well-known text: in GDAL's version, or by ISO 19162.
   std::string GdalText() const;
   std::string IsoText() const;
 
-  // A parameter such as "lat_1"; empty if there is none.
+  // Return a parameter such as "lat_1". Text returns an empty string if it is missing, Number 0.
   std::string Text(const std::string& parameter) const;
   double Number(const std::string& parameter) const;
 
@@ -53,19 +53,20 @@ class MapProjection {
   std::map<std::string, std::string> parameters_;
 };
 
-// A picture with north up. Without a projection, metres are those from the middle of the domain.
+// The position of a picture with north up. Without a projection, metres are counted from the middle
+// of the domain.
 struct MapPlace {
   std::string projection;
-  glm::dvec2 upper_left_m{0.0};  // the corner, not a pixel's middle
+  glm::dvec2 upper_left_m{0.0};  // the corner, not a pixel's centre
   glm::dvec2 pixel_m{0.0};       // width and height
 
-  // Coordinates of the middle of a pixel, counted from the upper left.
+  // Returns the coordinates of a pixel's centre; pixels are counted from the upper left.
   glm::dvec2 MiddleOf_m(int column, int row) const {
     return {upper_left_m.x + (column + 0.5) * pixel_m.x, upper_left_m.y - (row + 0.5) * pixel_m.y};
   }
 };
 
-// The six lines of a world file, as GIS programs read it beside a picture.
+// Returns the six lines of a world file, which GIS programs read next to a picture.
 std::string WorldFile(const MapPlace& place);
 
 }  // namespace thunderhead::product

@@ -6,12 +6,13 @@
 namespace thunderhead::reference {
 namespace {
 
-// A horizontal ray through gaps of a periodic medium would never end, so it is assumed to leave
-// after this many periods. The probability that a scattered ray is as horizontal as that is about
-// 1e-6 at most.
+// A horizontal ray through gaps of a periodic medium would never end. It is therefore assumed to
+// leave after this many periods. The probability of a scattered ray that horizontal is about 1e-6
+// at most.
 constexpr double kMaxPeriods = 1e5;
 
-// `inverse` is one over each axis's direction.
+// Clips the interval to the medium's extent along one axis. `inverse` is one over each component of
+// the ray's direction.
 void ClipAxis(const Ray& ray, const glm::dvec3& inverse, int axis, const Medium& medium,
               RayInterval* interval) {
   const double origin = ray.origin_m[axis];
@@ -57,12 +58,13 @@ BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m, Optic
   for (int axis = 0; axis < 3; ++axis) {
     const double direction = ray.direction[axis];
     step_[axis] = direction > 0.0 ? 1 : (direction < 0.0 ? -1 : 0);
-    delta_m_[axis] = medium.BrickSize_m()[axis] * std::abs(inverse_[axis]);  // or infinite
+    // Infinite if the ray is perpendicular to the axis.
+    delta_m_[axis] = medium.BrickSize_m()[axis] * std::abs(inverse_[axis]);
     Enter(axis);
   }
 }
 
-// Finds the brick and its far face along `axis` at `at_m_`.
+// Finds the brick at `at_m_` and its far face along `axis`.
 void BrickWalk::Enter(int axis) {
   const double low_m = medium_.BrickLow_m()[axis];
   const double size_m = medium_.BrickSize_m()[axis];

@@ -1,5 +1,5 @@
-// Traverses the lattice of a medium's bricks along a ray (Amanatides and Woo 1987): the segments of
-// constant majorant, in order. Knows no light.
+// Traverses the lattice of a medium's bricks along a ray (Amanatides and Woo 1987). It yields the
+// segments of constant majorant in order. This code does not use light.
 #pragma once
 
 #include <limits>
@@ -9,31 +9,33 @@
 
 namespace thunderhead::reference {
 
-// Length of a ray that nothing ends.
+// Length of an unlimited ray.
 inline constexpr double kEndless_m = std::numeric_limits<double>::infinity();
 
 struct Ray {
   glm::dvec3 origin_m{0.0};
-  glm::dvec3 direction{0.0, 0.0, 1.0};  // unit
+  glm::dvec3 direction{0.0, 0.0, 1.0};  // unit vector
 
   glm::dvec3 At(double distance_m) const { return origin_m + distance_m * direction; }
 };
 
-// The part of a ray, in metres from its origin, that lies in a box; empty if end <= begin.
+// The part of a ray that lies in a box, in metres from the ray's origin. It is empty if end <=
+// begin.
 struct RayInterval {
   double begin_m = 0.0;
   double end_m = 0.0;
 };
 
-// The part of `ray` up to `limit_m` in the medium's box; in its range of heights if it is periodic.
+// Returns the part of `ray` up to `limit_m` in the medium's box. For a periodic medium, it is the
+// part in the box's range of heights.
 RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m);
 
-// A segment of a ray in one brick that is not empty.
+// A segment of a ray in a non-empty brick.
 struct Stretch {
   double begin_m = 0.0;
   double end_m = 0.0;
   double majorant_per_m = 0.0;
-  glm::ivec3 brick{0};  // x and y continue beyond the lattice if periodic
+  glm::ivec3 brick{0};  // x and y continue beyond the lattice if the medium is periodic
 };
 
 class BrickWalk {
@@ -41,7 +43,7 @@ class BrickWalk {
   // `medium` must outlive the walk.
   BrickWalk(const Medium& medium, const Ray& ray, double limit_m, Optics optics = Optics::kExact);
 
-  // Finds the next segment in a brick that is not empty; false at the end of the ray.
+  // Finds the next segment in a non-empty brick. Returns false at the end of the ray.
   bool Next(Stretch* stretch);
 
  private:
@@ -52,11 +54,11 @@ class BrickWalk {
   const Medium& medium_;
   Optics optics_;
   Ray ray_;
-  // One over the ray's direction; infinite along axes that it does not move along.
+  // One over the ray's direction. It is infinite along axes perpendicular to the ray.
   glm::dvec3 inverse_;
   double at_m_;
   double end_m_;
-  glm::ivec3 brick_{0};  // x and y continue beyond the lattice if periodic
+  glm::ivec3 brick_{0};  // x and y continue beyond the lattice if the medium is periodic
   glm::ivec3 step_{0};
   glm::dvec3 next_m_{0.0};   // distance at which the ray leaves the brick along each axis
   glm::dvec3 delta_m_{0.0};  // distance along the ray between two faces of each axis

@@ -11,17 +11,18 @@
 namespace thunderhead::reference {
 namespace {
 
-// Share of paths from the eye that also follow light that the medium sends to the air.
+// Share of paths from the eye that also trace light which the medium sends to the air.
 constexpr double kAirPathShare = 0.25;
 
-// The part of `ray` up to `distance_m` from the first of the boxes to the last; empty if end <=
-// begin.
+// Returns the part of `ray` up to `distance_m` from the first of the boxes to the last. It is empty
+// if end <= begin.
 RayInterval IntervalIn(const std::vector<Box>& boxes, const Ray& ray, double distance_m) {
   RayInterval all{kEndless_m, 0.0};
   for (const Box& box : boxes) {
     RayInterval in{0.0, distance_m};
     for (int axis = 0; axis < 3; ++axis) {
-      // A ray along a side divides by zero, and is then inside or outside for all its length.
+      // A ray along a side divides by zero. The infinite results then put the whole ray inside or
+      // outside.
       const double a = (box.low_m[axis] - ray.origin_m[axis]) / ray.direction[axis];
       const double b = (box.high_m[axis] - ray.origin_m[axis]) / ray.direction[axis];
       in.begin_m = std::max(in.begin_m, std::min(a, b));
@@ -39,9 +40,9 @@ class Segment {
   Segment(const Surroundings& surroundings, const Ray& ray, RandomStream* random)
       : surroundings_(surroundings), ray_(ray), random_(random) {}
 
-  // Takes the medium's shadow from the light of the air before `distance_m`, seen at one random
-  // place. The light that air has scattered before comes there from a random direction of the upper
-  // half: where that meets the medium, what comes is the medium's light in place of the sky's.
+  // Subtracts the medium's shadow from the light of the air before `distance_m`, estimated at one
+  // random place. Light that air has scattered before arrives there from a random direction of the
+  // upper hemisphere. If that direction meets the medium, the medium's light replaces the sky's.
   void ShadeAir(double distance_m) {
     if (!surroundings_.shaded_air.has_value()) return;
     const ShadedAir& air = *surroundings_.shaded_air;
@@ -115,7 +116,8 @@ class Segment {
     GoOn(EyeSegment::Then::kFlies, bounce.onward);
   }
 
-  // Half of the paths are reflected by the surface, half by what is below.
+  // Half of the paths are reflected by the surface, and half by the water below it. The throughput
+  // is doubled to compensate.
   void ReflectByWater(const glm::dvec3& point_m) {
     segment_.throughput *= 2.0;
     if (random_->Uniform() < 0.5) {
@@ -128,7 +130,7 @@ class Segment {
         physics::glsl::glint(glm::vec3(towards_eye), glm::vec3(surroundings_.towards_sun)));
     segment_.shaded.push_back({{point_m, surroundings_.towards_sun},
                                segment_.throughput * glint * surroundings_.SunAt(point_m.z)});
-    // A facet by the density of facets on level ground, exp(-tan^2 / kWaterSlopes).
+    // The facet is sampled by the density of facets on level ground, exp(-tan^2 / kWaterSlopes).
     const double slope =
         std::sqrt(-physics::glsl::kWaterSlopes * std::log(1.0 - random_->Uniform()));
     const double azimuth_rad = 2.0 * std::numbers::pi * random_->Uniform();

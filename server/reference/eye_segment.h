@@ -1,6 +1,7 @@
-// A path's first segment, from the eye to what it meets: the air in front of that, the ground, sky
-// and sun as the eye sees them. What only the medium can tell is left as questions, so that paths
-// of the processors (path_radiance.h) and of the device (device_paths/device_tracer.h) begin alike.
+// The first segment of a path, from the eye to the first object. It includes the air in front of
+// that object, and ground, sky and sun as the eye sees them. Light that depends on the medium is
+// returned as rays still to be traced. Paths on the CPU (path_radiance.h) and on the device
+// (device_paths/device_tracer.h) therefore begin with the same code.
 #pragma once
 
 #include <optional>
@@ -15,30 +16,33 @@ namespace thunderhead::reference {
 
 double LargestColor(const glm::dvec3& color);
 
-// Light that arrives through the medium: the radiance without it, times the transmittance along
-// `ray` to its end at infinity.
+// Light that arrives through the medium. It is `radiance`, the value without the medium, times the
+// transmittance along `ray` to infinity.
 struct ThroughMedium {
   Ray ray;
   glm::dvec3 radiance{0.0};
 };
 
-// A place at which light is reflected: what arrives there directly, and where the path goes on.
+// A reflection: the sunlight that arrives directly at its place, and the ray on which the path
+// continues.
 struct Bounce {
   ThroughMedium sunlight;
   Ray onward;
 };
 
-// By Lambertian ground at `point_m`; `carried` is the path's throughput after it.
+// Samples a reflection by Lambertian ground at `point_m`. `carried` is the path's throughput after
+// the reflection.
 Bounce ReflectDiffusely(const Surroundings& surroundings, const glm::dvec3& point_m,
                         const glm::dvec3& carried, RandomStream* random);
 
-// Where `ray` meets the ground; infinite if it does not.
+// Returns the distance at which `ray` meets the ground. It is infinite if the ray does not.
 double GroundDistance_m(const Surroundings& surroundings, const Ray& ray);
-// Above sea level, at a place.
+// Returns the height of the ground above sea level at a place.
 double GroundHeight_m(const Ground& ground, const glm::dvec3& point_m);
 
-// Light that air has scattered before, and which comes to a place on the eye's ray along `ray`: if
-// that meets the medium, `of_sky` less `per_radiance` times the medium's light is missing.
+// Light that air has scattered before, which arrives along `ray` at a place on the eye's ray. If
+// `ray` meets the medium, the missing light is `of_sky` minus `per_radiance` times the medium's
+// radiance.
 struct AirFromMedium {
   Ray ray;
   glm::dvec3 of_sky{0.0};
@@ -46,21 +50,21 @@ struct AirFromMedium {
 };
 
 struct EyeSegment {
-  glm::dvec3 radiance{0.0};           // whatever the medium does
+  glm::dvec3 radiance{0.0};           // independent of the medium
   std::vector<ThroughMedium> shaded;  // to be added
   std::optional<AirFromMedium> air;   // to be subtracted
-  glm::dvec3 throughput{1.0};         // of the path, where it goes on
+  glm::dvec3 throughput{1.0};         // of the rest of the path
   enum class Then {
     kEnds,
-    kScatters,  // by the medium, at `onward`'s origin, having come in its direction
-    kFlies      // from the ground
+    kScatters,  // scattered by the medium at `onward`'s origin, arriving in its direction
+    kFlies      // leaves the ground along `onward`
   };
   Then then = Then::kEnds;
   Ray onward;
 };
 
-// The segment of `ray`, which comes to the medium's particles after `collision_m`, or else meets
-// the ground or leaves at `ground_m` (GroundDistance_m).
+// Samples the segment of `ray`. The ray collides with the medium's particles at `collision_m`.
+// Without a collision it meets the ground or leaves at `ground_m` (from GroundDistance_m).
 EyeSegment FollowFromEye(const Surroundings& surroundings, const Ray& ray, double ground_m,
                          const std::optional<double>& collision_m, RandomStream* random);
 

@@ -26,7 +26,7 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 // Photons in one chunk of work.
 constexpr std::int64_t kPiece = 256;
 
-// Rounds of chunks grow until one takes this long; progress is reported between rounds.
+// Rounds of chunks grow until a round takes this long. Progress is reported between rounds.
 constexpr double kRound_ms = 200.0;
 
 enum Quantity {
@@ -40,13 +40,13 @@ enum Quantity {
   kQuantities
 };
 
-// Numbers of events, of one photon or in total. Integers, so the order in which threads add them
-// does not matter.
+// Numbers of events, of one photon or in total. They are integers, so the order in which threads
+// add them does not matter.
 using Counts = std::array<std::int64_t, kQuantities>;
 
 struct Sums {
   Counts counts{};
-  Counts squares{};  // of each photon's counts
+  Counts squares{};  // sums of the squares of each photon's counts
 
   void Add(const Counts& photon) {
     for (std::size_t i = 0; i < kQuantities; ++i) {
@@ -118,7 +118,8 @@ class Photon {
     const Scattering scattering = problem_.medium->ScatteringAt(ray_.origin_m, random_->Uniform());
     const double albedo = (scattering.weight.x + scattering.weight.y + scattering.weight.z) / 3.0;
     if (random_->Uniform() >= albedo) return End(kAbsorbed);
-    // A random colour: on average, the mean of the three phase functions.
+    // A random colour selects the phase function, so the mean over photons is the mean of the three
+    // functions.
     const auto color = static_cast<std::size_t>(3.0 * random_->Uniform());
     const double mu = scattering.phase->Sample(random_->Uniform(), color).mu;
     ray_.direction = Deflect(ray_.direction, mu, 2.0 * std::numbers::pi * random_->Uniform());
@@ -144,7 +145,8 @@ class Photon {
     return false;
   }
 
-  // Keeps coordinates small, and so precise.
+  // Moves the photon back into the periodic domain, which keeps coordinates small and therefore
+  // precise.
   void Wrap() {
     for (int axis = 0; axis < 2; ++axis) {
       const double low_m = problem_.domain_low_m[axis];
@@ -206,7 +208,8 @@ Piece TracePiece(const FluxProblem& problem, std::uint64_t seed, std::int64_t fi
   return piece;
 }
 
-// Traces `count` chunks from photon `first` on; skips those before whose first photon it must end.
+// Traces `count` chunks beginning with photon `first`. A chunk is skipped if `must_end` returns
+// true for its first photon.
 std::vector<Piece> TraceRound(const FluxProblem& problem, const FluxOptions& options,
                               std::int64_t first, int count,
                               const std::function<bool(std::int64_t begin)>& must_end) {

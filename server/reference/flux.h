@@ -1,7 +1,7 @@
-// Fluxes of sunlight through a domain, by tracing photons from the sun: domain means with standard
-// errors. Every photon is counted in exactly one place where it ends, so that those shares add up
-// to 1 to the last bit. Colours are averaged: albedo and phase function are the means over red,
-// green, blue.
+// Fluxes of sunlight through a domain, computed by tracing photons from the sun. The results are
+// domain means with standard errors. Every photon is counted at exactly one end point, so those
+// shares sum to exactly 1. Colours are averaged: albedo and phase function are the means over red,
+// green and blue.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,24 @@
 
 namespace thunderhead::reference {
 
-// The domain is a box around the medium's (equal to it in x and y if the medium is periodic).
-// Sunlight falls on its whole top face, and on nothing else: with open sides, a slanted beam leaves
-// the lower part of one side unlit. Photons that leave through an open side do not come back.
+// The input of a flux computation. The domain is a box around the medium's box. It equals the
+// medium's box in x and y if the medium is periodic. Sunlight falls only on the domain's whole top
+// face. With open sides, a slanted beam therefore leaves the lower part of one side unlit. Photons
+// that leave through an open side do not return.
 struct FluxProblem {
   std::shared_ptr<const Medium> medium;
   glm::dvec3 domain_low_m{0.0};
   glm::dvec3 domain_high_m{0.0};
-  glm::dvec3 towards_sun{0.0, 0.0, 1.0};  // unit, above the horizon
-  double ground_albedo = 0.0;             // Lambertian, at the domain's bottom
+  glm::dvec3 towards_sun{0.0, 0.0, 1.0};  // unit vector, above the horizon
+  double ground_albedo = 0.0;             // Lambertian ground at the domain's bottom
 
-  // The domain is the medium's own box.
+  // Creates a problem whose domain is the medium's own box.
   static FluxProblem Of(std::shared_ptr<const Medium> medium, const glm::dvec3& towards_sun);
 };
 
 struct FluxOptions {
   std::int64_t photons = 1'000'000;
-  double seconds = 0.0;  // time limit, except for the first photons; 0: none
+  double seconds = 0.0;  // time limit, which the first photons may exceed; 0: none
   std::uint64_t seed = 0;
   int threads = 0;  // 0: as many as the machine has
 };
@@ -45,21 +46,21 @@ struct FluxShare {
 struct FluxResult {
   FluxShare reflectance;    // leaves through the top
   FluxShare transmittance;  // arrives at the bottom, counted at each arrival: direct + diffuse
-  FluxShare transmittance_direct;   // never scattered or reflected before
-  FluxShare transmittance_diffuse;  // the rest
-  FluxShare absorptance;            // in the medium
+  FluxShare transmittance_direct;   // arrives without a scattering or reflection before
+  FluxShare transmittance_diffuse;  // arrives after one or more
+  FluxShare absorptance;            // absorbed in the medium
   FluxShare sides;                  // leaves through the sides
-  FluxShare ground_absorptance;     // transmittance less the share that the ground reflects
+  FluxShare ground_absorptance;     // transmittance minus the share that the ground reflects
   std::int64_t photons = 0;
 };
 
-// Called between groups of photons with the share done.
+// A callback that receives the finished share between groups of photons.
 using FluxObserver = std::function<void(double share)>;
 
-// Traces photons until `photons` are done, the time limit is reached or `stop` asks to stop (with
-// the result so far). For a given number of photons the result is the same, bit for bit, for any
-// number of threads. Fails if the sun is not above the horizon, the ground's albedo is not 0 to 1,
-// or no photon was traced.
+// Traces photons until `photons` are done, the time limit is reached or `stop` requests a stop.
+// When stopped, it returns the result so far. For a given number of photons the result is
+// bit-identical for any number of threads. Fails if the sun is not above the horizon, the ground's
+// albedo is not within 0 to 1, or no photon was traced.
 absl::StatusOr<FluxResult> ComputeFlux(const FluxProblem& problem, const FluxOptions& options,
                                        const FluxObserver& observer, const std::stop_token& stop);
 

@@ -15,7 +15,8 @@
 namespace thunderhead::reference {
 namespace {
 
-// Rounding of an interpolated value must not exceed the majorant.
+// Rounding could make an interpolated value exceed the exact maximum, so majorants include this
+// margin.
 constexpr double kMajorantMargin = 1.0 + 1e-6;
 
 absl::Status CheckGroup(const ScatteringGroup& group, std::size_t cells) {
@@ -132,7 +133,7 @@ int Medium::CellIndex(int axis, int cell) const {
   return std::clamp(cell, 0, grid_.cells[axis] - 1);
 }
 
-// All cells that points of the brick read.
+// Returns all cells that points of the brick read.
 Medium::CellRange Medium::CellsOfBrick(int axis, int brick) const {
   const int first = first_cell_[axis] + brick;
   return {first, linear_ ? first + 1 : first};
@@ -152,8 +153,9 @@ double Medium::LargestIn(const Lattice& lattice, const CellRange& x, const CellR
   return largest;
 }
 
-// A brick lies between the centres of neighbouring cells, where interpolation is one trilinear
-// function, or is a constant cell. The outermost may reach beyond the box.
+// Lays out the bricks. A brick lies between the centres of neighbouring cells, where interpolation
+// is one trilinear function, or it is a constant cell. The outermost bricks may extend beyond the
+// box.
 void Medium::BuildBricks() {
   constexpr double kSlack = 1e-6;
   const double centre = linear_ ? 0.5 : 0.0;
@@ -270,7 +272,7 @@ double Medium::MeanExtinction_per_m(const glm::ivec3& brick, const glm::dvec3& f
   };
   const glm::dvec3 from = (from_m - brick_low_m_) * cells_per_m_ - glm::dvec3(brick);
   const glm::dvec3 to = (to_m - brick_low_m_) * cells_per_m_ - glm::dvec3(brick);
-  // Simpson's rule is exact for a trilinear function, which is a cubic one along a line.
+  // Simpson's rule is exact here, because a trilinear function is cubic along a line.
   return std::max((at(from) + 4.0 * at(0.5 * (from + to)) + at(to)) / 6.0, 0.0);
 }
 
@@ -300,7 +302,8 @@ Scattering Medium::ScatteringAt(const glm::dvec3& point_m, double u, Optics opti
     left -= share;
   }
   THUNDERHEAD_CHECK(chosen != nullptr, "a point that scatters has a group that does");
-  // Albedo times the group's share of extinction, over the probability that it was chosen.
+  // The weight is albedo times the group's share of extinction, divided by the probability of
+  // choosing the group.
   return {chosen->phase.get(),
           chosen->albedo * (scattering / (extinction * chosen->choice_albedo))};
 }

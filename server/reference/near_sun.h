@@ -1,4 +1,4 @@
-// Where a drawn picture cannot be compared with the reference: next to the sun.
+// The part of a picture next to the sun, where it cannot be compared with the reference.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,16 @@
 
 namespace thunderhead::reference {
 
-// For each pixel, rows from top to bottom, whether any of it looks at the sun's disc or nearer to
-// the sun than `peak_cut_deg` (MediumOptions::peak_cut_deg). The disc is drawn apart, and so much
-// brighter than all else that a difference at its edge hides all others; around it renderers show
-// the aureole, up to a thousand times brighter than the storm, which the reference's cut leaves
-// out.
+// Returns for each pixel, in rows from top to bottom, whether any of it is too close to the sun to
+// compare. That is on the sun's disc or nearer to the sun than `peak_cut_deg`
+// (MediumOptions::peak_cut_deg). The disc is drawn separately, and it is so bright that a
+// difference at its edge would hide all others. Around it, renderers show the aureole, up to a
+// thousand times brighter than the storm. The reference's cut omits the aureole.
 std::vector<bool> NearSun(const Camera& camera, const glm::dvec3& towards_sun,
                           const glm::ivec2& size_px, double peak_cut_deg);
 
-// Share of a picture's pixels that must be away from the sun for the rest to stand for it.
+// The smallest share of a picture's pixels that must be away from the sun for the rest to represent
+// the picture.
 inline constexpr double kLeastAwayFromSun = 0.1;
 
 }  // namespace thunderhead::reference

@@ -12,8 +12,9 @@
 
 namespace thunderhead::reference {
 
-// Threads of its own, which have the caller's priority. Those of oneTBB have that of their first
-// user and are shared by all: a low priority would hold up the encoding of pictures.
+// It starts new threads, which inherit the caller's priority. oneTBB's threads are common to all
+// callers and keep the priority of their first user. A low priority would then slow down the
+// encoding of pictures.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   const int most = tbb::info::default_concurrency();
   const int used = std::min(threads > 0 ? std::min(threads, most) : most, count);
@@ -35,7 +36,7 @@ void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
     try {
       for (int i = 1; i < used; ++i) others.emplace_back(take);
     } catch (const std::system_error&) {
-      // The system has no room for another thread: those that there are do it all.
+      // The system cannot create another thread, so the existing threads do all the work.
     }
     take();
   }

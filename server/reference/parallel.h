@@ -6,11 +6,12 @@
 
 namespace thunderhead::reference {
 
-// Runs work(0) to work(count - 1) in any order and returns when all are done. `threads` 0 means as
-// many as the machine has, which is also the maximum.
+// Runs work(0) to work(count - 1) in any order and returns when all are done. With `threads` 0 it
+// uses as many threads as the machine has, which is also the maximum.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work);
 
-// The same for many small tasks, of which a thread takes a block at a time: work(begin, end).
+// Runs many small tasks in the same way. A thread takes a block of them at a time: work(begin,
+// end).
 void ParallelForBlocks(int threads, std::size_t count, std::size_t block,
                        const std::function<void(std::size_t, std::size_t)>& work);
 

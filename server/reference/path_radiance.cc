@@ -19,7 +19,7 @@ glm::dvec3 Arriving(const Medium& medium, const ThroughMedium& light, RandomStre
   return light.radiance * EstimateTransmittance(medium, light.ray, kEndless_m, random, optics);
 }
 
-// One path from where it has left the eye behind: the radiance so far, and its throughput.
+// One path after its first segment, with its radiance so far and its throughput.
 class Path {
  public:
   Path(const Medium& medium, const Surroundings& surroundings, RandomStream* random,
@@ -31,7 +31,7 @@ class Path {
         hero_(static_cast<std::size_t>(3.0 * random->Uniform())),
         throughput_(throughput) {}
 
-  // The light that comes along `ray`.
+  // Returns the light that arrives along `ray`.
   glm::dvec3 Follow(const Ray& ray) {
     ray_ = ray;
     while (Survive()) {
@@ -40,14 +40,14 @@ class Path {
     return radiance_;
   }
 
-  // The light that the medium scatters at `point_m` to `direction`'s opposite.
+  // Returns the light that arrived along `direction` and is scattered by the medium at `point_m`.
   glm::dvec3 FollowFrom(const glm::dvec3& point_m, const glm::dvec3& direction) {
     ray_ = {point_m, direction};
     return Scatter(point_m) ? Follow(ray_) : radiance_;
   }
 
  private:
-  // One free flight and the event at its end; false when the path ends.
+  // Samples one free flight and the event at its end. Returns false when the path ends.
   bool Advance() {
     const double ground_m = GroundDistance_m(surroundings_, ray_);
     const std::optional<double> collision_m =
@@ -64,7 +64,8 @@ class Path {
     if (options_.max_scatterings > 0 && collisions_ >= options_.max_scatterings) return false;
     throughput_ *= scattering.weight;
     if (!Survive() || !GoOnAtLength()) return false;
-    // From here on all light counts as light of the similar medium, this collision's sunlight, too.
+    // From here on, all light counts as light of the similar medium, including the sunlight of this
+    // collision.
     if (options_.similar_after > 0 && collisions_ >= options_.similar_after) {
       optics_ = Optics::kSimilar;
     }
@@ -79,7 +80,7 @@ class Path {
     return true;
   }
 
-  // Next-event estimation of light that arrives directly at the collision.
+  // Adds the light that arrives directly at the collision, by next-event estimation.
   void ScatterLight(const SampledPhase& phase, const glm::dvec3& point_m,
                     const DirectionalLight& light) {
     const glm::dvec3 value = phase.Value(glm::dot(ray_.direction, light.towards));
@@ -90,17 +91,18 @@ class Path {
     }
   }
 
-  // Colours whose phase functions differ share one path, sampled from the hero colour's. Its weight
-  // for a colour is the path's density by that colour's functions over the mean of all three:
-  // Wilkie et al. 2014, Hero Wavelength Spectral Sampling, eq. 8. It is at most 3, whereas the
-  // product of each scattering's ratio would have no bound.
+  // Samples the new direction. Colours with different phase functions share one path, which is
+  // sampled from the hero colour's function. The path's weight for a colour is its density by that
+  // colour's functions divided by the mean density of all three. The source is Wilkie et al. 2014,
+  // Hero Wavelength Spectral Sampling, eq. 8. The weight is at most 3, whereas the product of each
+  // scattering's ratio would have no bound.
   double TurnBy(const PhaseSample& sample) {
     spectral_ *= sample.weight;
     spectral_ *= 3.0 / (spectral_.x + spectral_.y + spectral_.z);
     return sample.mu;
   }
 
-  // Throughput of the rest of the path, by colour.
+  // Returns the throughput of the rest of the path, by colour.
   glm::dvec3 Carried() const { return throughput_ * spectral_; }
 
   bool Reflect(double ground_m) {
@@ -143,7 +145,7 @@ class Path {
   int next_roulette_ = kLongPath;
   std::size_t hero_;  // the colour whose phase functions are sampled
   glm::dvec3 spectral_{
-      1.0};  // the path's weight by colour, as the hero's phase functions are sampled
+      1.0};  // the path's weight by colour, because the hero's phase functions are sampled
   glm::dvec3 radiance_{0.0};
   glm::dvec3 throughput_;
 };

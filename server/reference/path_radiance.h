@@ -1,7 +1,7 @@
-// The radiance along a ray by one random path: null-collision free flights, sunlight at every
-// collision, sky and ground where the path meets them, Russian roulette. Unbiased, unless it goes
-// on in a similar medium: its mean is the solution of the radiative transfer equation; nothing is
-// clamped.
+// Estimates the radiance along a ray with one random path. It uses null-collision free flights,
+// sunlight at every collision, sky and ground where the path meets them, and Russian roulette. The
+// estimate is unbiased unless the path continues in a similar medium. Its mean is the solution of
+// the radiative transfer equation, and nothing is clamped.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -13,18 +13,18 @@ namespace thunderhead::reference {
 
 struct PathEstimate {
   glm::dvec3 radiance{0.0};
-  bool met_medium = false;  // before anything else
+  bool met_medium = false;  // true: the path met the medium before anything else
 };
 
 struct PathOptions {
-  // Light scattered by the medium more often is left out; 0: no limit.
+  // Light that the medium scatters more often is omitted. 0: no limit.
   int max_scatterings = 0;
-  // After this many scatterings a path goes on in Optics::kSimilar, which the medium must have; 0:
-  // never. What it then finds is biased.
+  // After this many scatterings a path continues in Optics::kSimilar, which the medium must have.
+  // The light found there is biased. 0: never.
   int similar_after = 0;
 };
 
-// One estimate of the radiance that arrives at `ray`'s origin from its direction.
+// Returns one estimate of the radiance that arrives at `ray`'s origin from its direction.
 PathEstimate EstimateRadiance(const Medium& medium, const Surroundings& surroundings,
                               const Ray& ray, RandomStream* random,
                               const PathOptions& options = {});

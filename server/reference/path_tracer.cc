@@ -15,11 +15,11 @@ namespace thunderhead::reference {
 namespace {
 
 constexpr int kTile_px = 16;
-// With fewer samples the error estimate is too uncertain to stop by.
+// With fewer samples the error estimate is too uncertain as a stopping criterion.
 constexpr int kFewestForError = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The limit that has been reached, if any.
+// Returns the limit that has been reached, if any.
 std::optional<RefineEnd> EndAt(const RefineLimits& limits, const ImageProgress& progress) {
   const int samples = progress.samples_per_pixel;
   if (limits.samples_per_pixel > 0 && samples >= limits.samples_per_pixel) {
@@ -117,8 +117,8 @@ double PathTracer::RelativeError() const {
   return std::sqrt(squares / values) / (radiance / values);
 }
 
-// Passes grow with the number of samples, so that checking the result stays cheap, up to a limit
-// that lets a viewer see progress.
+// Returns the sample count at which the next pass ends. Passes grow with the number of samples,
+// which keeps checking the result cheap. They stay short enough for a viewer to see progress.
 int PathTracer::PassTarget(const RefineLimits& limits) const {
   constexpr int kMaxInPass = 16;
   const int have = FewestSamples();

@@ -1,6 +1,6 @@
 // A picture of a medium, refined progressively: each pixel's mean radiance and standard error. The
-// result after a number of samples is the same, bit for bit, for any number of threads and however
-// the samples were divided among calls. Knows no GL, files or messages.
+// result after a number of samples is bit-identical for any number of threads and any division of
+// the samples among calls. This code does not use GL, files or messages.
 #pragma once
 
 #include <cstdint>
@@ -23,30 +23,31 @@ namespace thunderhead::reference {
 struct PathTracerOptions {
   std::uint64_t seed = 0;
   int threads = 0;  // 0: as many as the machine has
-  // Light scattered by the medium more often is left out; 0: no limit.
+  // Light that the medium scatters more often is omitted. 0: no limit.
   int max_scatterings = 0;
 };
 
-// Refinement ends at the first limit reached; without limits it goes on until stopped.
+// Limits of a refinement, which ends at the first limit reached. Without limits it continues until
+// stopped.
 struct RefineLimits {
-  int samples_per_pixel = 0;    // in all, over every call; 0: no limit
-  double seconds = 0.0;         // of this call; 0: no limit. One sample a pixel is always finished
-  double relative_error = 0.0;  // see ImageProgress; 0: no limit. Needs 16 samples at least
-  double pause_s = 0.0;         // of this call; 0: no limit. May leave pixels without a sample
+  int samples_per_pixel = 0;    // in total over all calls; 0: no limit
+  double seconds = 0.0;         // of this call; 0: no limit; one sample a pixel is always finished
+  double relative_error = 0.0;  // see ImageProgress; 0: no limit; needs at least 16 samples
+  double pause_s = 0.0;         // of this call; 0: no limit; may leave pixels without a sample
   // The clock of `seconds` and `pause_s`. It must outlive the call.
   const base::TimeSource* time = &base::SteadyTime();
 };
 
 struct ImageProgress {
-  int samples_per_pixel = 0;  // that every pixel has
-  double seconds = 0.0;       // of this call
-  // The root of the mean squared standard error over pixels and colours, over their mean radiance;
-  // infinite below two samples a pixel.
+  int samples_per_pixel = 0;  // the smallest number over all pixels
+  double seconds = 0.0;       // duration of this call
+  // The root mean square of the standard error over pixels and colours, divided by their mean
+  // radiance. It is infinite below two samples a pixel.
   double relative_error = 0.0;
-  double samples_per_second = 0.0;  // paths, of this call
+  double samples_per_second = 0.0;  // paths per second, in this call
 };
 
-// Called between passes on the thread that called Refine.
+// A callback between passes, on the thread that called Refine.
 using ImageObserver = std::function<void(const ImageProgress&)>;
 
 enum class RefineEnd { kSamples, kSeconds, kRelativeError, kStopped, kPaused };
@@ -61,18 +62,18 @@ class PathTracer {
   PathTracer(std::shared_ptr<const Medium> medium, Surroundings surroundings, const Camera& camera,
              const glm::ivec2& size_px, const PathTracerOptions& options);
 
-  // Adds samples until a limit is reached or `stop` asks to stop, which may leave some pixels with
-  // more samples than others; their means are still unbiased, and another call continues from
+  // Adds samples until a limit is reached or `stop` requests a stop. A stop can leave some pixels
+  // with more samples than others. Their means are still unbiased, and the next call continues from
   // there. `observer` may be empty. Calls must not overlap.
   RefineResult Refine(const RefineLimits& limits, const ImageObserver& observer,
                       const std::stop_token& stop);
 
-  // With its standard error, infinite where a pixel has fewer than two samples, and the share of
-  // samples that met the medium first as opacity.
+  // Returns the picture with its standard error, which is infinite for a pixel with fewer than two
+  // samples. The opacity is the share of samples that met the medium first.
   picture::LinearPicture Snapshot() const;
 
  private:
-  // Mean and sum of squared differences from it (Welford 1962).
+  // The mean and the sum of squared differences from it (Welford 1962).
   struct Pixel {
     glm::dvec3 mean{0.0};
     glm::dvec3 squares{0.0};

@@ -1,6 +1,6 @@
-// Random numbers by counter: Philox 4x32-10 (Salmon et al. 2011, "Parallel random numbers: as easy
-// as 1, 2, 3"). A number depends only on its key and its index in the sequence, so results are the
-// same for any number of threads. Knows nothing of light.
+// Counter-based random numbers: Philox 4x32-10 (Salmon et al. 2011, "Parallel random numbers: as
+// easy as 1, 2, 3"). A number depends only on its key and its index in the sequence, so results are
+// the same for any number of threads. This code does not use light.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace thunderhead::reference {
 using PhiloxBlock = std::array<std::uint32_t, 4>;
 using PhiloxKey = std::array<std::uint32_t, 2>;
 
-// Ten rounds of Philox on `counter`.
+// Applies ten rounds of Philox to `counter`.
 inline PhiloxBlock Philox4x32(PhiloxBlock counter, PhiloxKey key) {
   for (int round = 0; round < 10; ++round) {
     const std::uint64_t product_0 = std::uint64_t{0xD2511F53U} * counter[0];
@@ -27,17 +27,18 @@ inline PhiloxBlock Philox4x32(PhiloxBlock counter, PhiloxKey key) {
   return counter;
 }
 
-// The numbers of one path: path `sample` of pixel or photon `item`. Successive calls are successive
-// dimensions.
+// The random numbers of one path: path `sample` of pixel or photon `item`. Successive calls return
+// successive dimensions.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t item, std::uint32_t sample)
       : key_{Low(seed), High(seed)}, counter_{0, sample, Low(item), High(item)} {}
 
-  // Uniform over (0, 1), in steps of 2^-32; never 0 or 1.
+  // Returns a number uniform over (0, 1), in steps of 2^-32. It is never 0 or 1.
   double Uniform() { return (Word() + 0.5) * 0x1p-32; }
 
-  // Exponential with mean 1. Uses 53 bits: optically thin media need very small values.
+  // Returns an exponential number with mean 1. It uses 53 bits, because optically thin media need
+  // very small values.
   double Exponential() {
     const std::uint64_t high = Word();
     const std::uint64_t bits = ((high << 32U) | Word()) >> 11U;

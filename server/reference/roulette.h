@@ -1,4 +1,4 @@
-// shaders/paths/roulette.glsl for C++.
+// Compiles shaders/paths/roulette.glsl as C++.
 #pragma once
 
 namespace thunderhead::reference {

@@ -1,6 +1,6 @@
-// Phase functions that paths can sample: Henyey and Greenstein's in closed form, any other by a
-// table of its inverse cumulative distribution. Evaluation and sampling use exactly the same
-// function, so that both estimate the same light. Knows no medium.
+// Phase functions that paths can sample. Henyey and Greenstein's is sampled in closed form, any
+// other by a table of its inverse cumulative distribution. Evaluation and sampling use exactly the
+// same function, so both estimate the same light. This code does not use a medium.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace thunderhead::reference {
 
-// A cosine of scattering angle sampled from one colour's phase function. `weight` is the ratio of
-// each colour's function to that one: 1 unless they differ.
+// A cosine of the scattering angle, sampled from one colour's phase function. `weight` is the ratio
+// of each colour's function to that one. It is 1 if the colours have the same function.
 struct PhaseSample {
   double mu = 1.0;
   glm::dvec3 weight{1.0};
@@ -23,28 +23,28 @@ struct PhaseSample {
 
 class SampledPhase {
  public:
-  // A phase function of the cosine of the scattering angle: finite, at least 0, and somewhere
+  // A phase function of the cosine of the scattering angle. It is finite, at least 0, and somewhere
   // above 0 over [-1, 1].
   using Function = std::function<double(double mu)>;
 
-  // `asymmetry` lies inside (-1, 1).
+  // `asymmetry` must lie inside (-1, 1).
   static SampledPhase HenyeyGreenstein(double asymmetry);
-  // Normalised here, to mean 1 over the sphere. Steps of angle are 0.0005 degrees at 0.01 degrees
-  // and 0.04 degrees at 180.
+  // Normalises `function` to mean 1 over the sphere and tabulates it. Steps of the angle are 0.0005
+  // degrees at 0.01 degrees and 0.04 degrees at 180.
   static SampledPhase Tabulated(const Function& function);
-  // One function for each colour: red, green, blue.
+  // Tabulates one function for each colour: red, green, blue.
   static SampledPhase Tabulated(const std::array<Function, 3>& by_color);
   static SampledPhase Of(const physics::PhaseFunction& phase);
 
-  // The phase function; its mean over the sphere is 1.
+  // Returns the phase function, whose mean over the sphere is 1.
   glm::dvec3 Value(double mu) const;
 
-  // The mean cosine of the scattering angle, over colours if they differ.
+  // Returns the mean cosine of the scattering angle, averaged over colours if they differ.
   double Asymmetry() const;
 
-  // Its table for one colour, if it has one: values and cumulative distribution at the ends of
-  // intervals of x = 1 - mu, and for as many steps of the latter the interval at which the search
-  // for them starts.
+  // The table for one colour. It holds values and cumulative distribution at the ends of intervals
+  // of x = 1 - mu. For equal steps of the cumulative distribution, `guide` holds the interval at
+  // which a search starts.
   struct Table {
     const std::vector<double>& x;
     const std::vector<double>& values;
@@ -52,13 +52,13 @@ class SampledPhase {
     const std::vector<std::uint32_t>& guide;
   };
   int Tables() const { return x_.empty() ? 0 : (colored_ ? 3 : 1); }
-  // `color` is below Tables().
+  // Returns the table of a colour, which must be below Tables().
   Table TableOf(std::size_t color) const {
     return {x_, values_[color], cumulative_[color], guide_[color]};
   }
 
-  // Inverse of the cumulative distribution of the scattering angle of `color` (0 to 2) at `u`,
-  // uniform over (0, 1).
+  // Samples the scattering angle of `color` (0 to 2) by the inverse of its cumulative distribution
+  // at `u`, uniform over (0, 1).
   PhaseSample Sample(double u, std::size_t color) const;
 
  private:
@@ -67,14 +67,15 @@ class SampledPhase {
   void Accumulate(std::size_t color);
   std::size_t IntervalOf(double u, std::size_t color) const;
 
-  // Henyey and Greenstein's parameter; not used if there is a table.
+  // Henyey and Greenstein's parameter, not used if there is a table.
   double asymmetry_ = 0.0;
   bool colored_ = false;
-  // The table: piecewise linear in x = 1 - mu between nodes, which lie at angles pi (i / last)^2.
+  // The table, which is piecewise linear in x = 1 - mu between nodes. The nodes lie at angles pi (i
+  // / last)^2.
   std::vector<double> x_;
-  // By colour; only the first unless colored_.
+  // By colour. Only the first is used unless colored_.
   std::array<std::vector<double>, 3> values_;
-  std::array<std::vector<double>, 3> cumulative_;    // 0 to 1
+  std::array<std::vector<double>, 3> cumulative_;    // from 0 to 1
   std::array<std::vector<std::uint32_t>, 3> guide_;  // interval at which the search for u starts
 };
 

@@ -26,13 +26,13 @@
 #include "volume/terrain.h"
 
 namespace thunderhead::reference {
-// Of a sun of the scene's irradiance.
+// The light of the scene's sun and sky. The sun has the scene's irradiance.
 struct SceneLight {
   SceneLight(const scene::Scene& scene, const glm::vec3& towards_sun, float ground_m)
       : atmosphere(static_cast<float>(scene.sky.turbidity),
                    static_cast<float>(scene.sky.ground_albedo)),
         sky(atmosphere, towards_sun, {ground_m, ground_m}) {
-    // Above it sunlight no longer changes.
+    // Above this height sunlight no longer changes.
     constexpr double kHighestSun_m = 4e4;
     for (int i = 0; i * Surroundings::kSunStep_m <= kHighestSun_m; ++i) {
       const physics::AirPlace place{static_cast<float>(i * Surroundings::kSunStep_m),
@@ -43,7 +43,7 @@ struct SceneLight {
   }
 
   physics::Atmosphere atmosphere;
-  physics::ClearSky sky;                  // from the ground, as it lights the storm
+  physics::ClearSky sky;                  // seen from the ground, as the sky lights the storm
   std::vector<glm::dvec3> sun_by_height;  // Surroundings::sun_by_height
 };
 
@@ -51,13 +51,13 @@ namespace {
 
 struct GridBox {
   volume::RegularGrid grid;
-  glm::ivec3 first_cell{0};  // in the domain
+  glm::ivec3 first_cell{0};  // offset of the first cell in the domain
   glm::dvec3 low_m{0.0};
   glm::dvec3 high_m{0.0};
 };
 
-// The cells to use, and the box. In a border of empty cells linear extinction falls to zero at
-// their centres.
+// Returns the cells to use and their box. In a border of empty cells, linear extinction falls to
+// zero at the cell centres.
 GridBox BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options) {
   const volume::RegularGrid& domain = fields.grid;
   volume::CellBox occupied = fields.condensate;
@@ -97,7 +97,7 @@ void AddField(const volume::RegularGrid& domain, const GridBox& box,
 
 using Values = std::vector<float>;
 
-// With detail, 1/m, of each drawn field at the middles of a grid's cells.
+// Returns the extinction in 1/m, with detail, of each drawn field at the cell centres of a grid.
 std::vector<Values> DetailedExtinctions(const scene::Scene& scene,
                                         const volume::HydrometeorFields& fields,
                                         const volume::RegularGrid& grid) {
@@ -126,7 +126,7 @@ void AddScaled(Values values, float factor, Values* sum) {
   }
 }
 
-// The optics that all fields of a group share.
+// The optics that are common to all fields of a group.
 struct GroupLook {
   physics::PhaseFunction phase;
   glm::dvec3 albedo{1.0};
@@ -138,7 +138,7 @@ GroupLook LookOf(const scene::DrawnField& field) {
   return {field.phase, static_cast<double>(field.albedo) * glm::dvec3(field.color)};
 }
 
-// A group's optics after delta scaling: `extinction` is a factor.
+// A group's optics after delta scaling. `extinction` is a factor.
 struct CutOptics {
   std::shared_ptr<const SampledPhase> phase;
   glm::dvec3 albedo{1.0};
@@ -163,7 +163,7 @@ CutOptics CutPeak(const GroupLook& look, double peak_cut_deg) {
   return optics;
 }
 
-// Shared by the functions of Surroundings.
+// Data that the functions of Surroundings have in common.
 struct Around {
   Around(const scene::Scene& scene, const glm::vec3& towards_sun, const scene::View& seen_from,
          float ground_m, std::shared_ptr<const SceneLight> of_scene)
@@ -175,7 +175,7 @@ struct Around {
         scale(scene.sun.irradiance * scene.sky.brightness),
         turbidity(static_cast<float>(scene.sky.turbidity)) {}
 
-  // As the eye sees it.
+  // Returns the sky as the eye sees it.
   physics::ClearSky::Seen Seen(const glm::dvec3& direction) const {
     physics::ClearSky::Seen seen = seen_sky.At(glm::vec3(view.local_from_world * direction));
     seen.radiance *= static_cast<float>(scale);
@@ -183,19 +183,20 @@ struct Around {
   }
 
   std::shared_ptr<const SceneLight> light;
-  physics::ClearSky seen_sky;  // from the eye
+  physics::ClearSky seen_sky;  // sky seen from the eye
   scene::View view;
   double brightness;
   double scale;
   float turbidity;
 };
 
-// Air between the eye and an object: attenuated light is replaced by the sky's.
+// Returns the air between the eye and an object. It attenuates the object's light and adds the
+// airlight of the sky's radiance.
 Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind behind) {
   namespace air = physics::glsl;
   const physics::ClearSky::Seen sky = around.Seen(ray.direction);
   const glm::vec3 sky_depth = air::depth_of_air_mass(around.turbidity, sky.air_mass);
-  // The sky's ray ends at the ground.
+  // The sky's ray already ends at the ground.
   if (behind == Behind::kGround) return {glm::exp(-sky_depth), sky.radiance};
   const scene::View& view = around.view;
   const double sine = (view.local_from_world * ray.direction).z;
@@ -209,12 +210,14 @@ Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind be
           glm::dvec3(air::airlight_before(transmittance, sky.radiance, sky_depth))};
 }
 
-// In the Earth's shadow hardly any light may be left.
+// Upper limit of a ratio of gathered light, because hardly any light may be left in the Earth's
+// shadow.
 constexpr float kMostGathered = 2.0F;
 
-// Light that a metre of lit air at `distance_m` on a ray from the eye sends there: its part of what
-// AirBefore has, shared out as sun and sky make it shine. AirBefore spreads the sky's light over
-// the ray as its extinction is spread; next to the sun there is more of it near the eye, in haze.
+// Returns the light that a metre of lit air at `distance_m` on a ray sends to the eye. It is that
+// metre's part of the airlight of AirBefore, divided by how strongly sun and sky light it.
+// AirBefore distributes the sky's light along the ray in proportion to extinction. Next to the sun,
+// haze near the eye contributes more.
 AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                     const glm::dvec3& towards_sun) {
   namespace air = physics::glsl;
@@ -240,13 +243,14 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   const glm::vec3 of_sky = scale * scattered * around.light->atmosphere.DiffuseMeanRadiance(place);
   const glm::vec3 seen = glm::min(gathered / glm::max(of_sun + of_sky, glm::vec3(1e-20F)),
                                   kMostGathered * transmittance);
-  // The medium's light has the sun's irradiance in it.
+  // The medium's light already includes the sun's irradiance.
   return {glm::dvec3(seen * of_sun), glm::dvec3(seen * of_sky),
           glm::dvec3(seen * static_cast<float>(around.brightness) * scattered)};
 }
 
-// The ground where rays from the eye meet it, null where it is the same everywhere. A ray shows a
-// point of it, no footprint; but borders and rings are as wide as pixels demand.
+// Returns the ground where rays from the eye meet it, or null if it is the same everywhere. A ray
+// shows a point of the ground without a footprint. Only borders and rings are as wide as pixels
+// require.
 std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& scene,
                                                           const volume::HydrometeorFields& fields,
                                                           const scene::View& view) {
@@ -299,7 +303,7 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
 
 std::size_t MediumBytes(const volume::HydrometeorFields& fields, bool similar) {
   constexpr std::size_t kOfField = sizeof(float);
-  constexpr std::size_t kOfAll = 2 * sizeof(float);  // the sum and its bound
+  constexpr std::size_t kOfAll = 2 * sizeof(float);  // bytes of the sum and its bound
   return fields.grid.CellCount() * (kOfField * fields.fields.size() + (similar ? 2 : 1) * kOfAll);
 }
 
@@ -334,7 +338,7 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
     detailed = DetailedExtinctions(scene, fields, description.grid);
   }
   std::vector<GroupLook> looks;
-  std::vector<CutOptics> cuts;  // of each look
+  std::vector<CutOptics> cuts;  // optics after the cut of each look
   std::size_t drawn = 0;
   for (const scene::DrawnField& field : scene::DrawnFieldsOf(scene, fields)) {
     GroupLook look = LookOf(field);

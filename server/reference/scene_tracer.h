@@ -1,5 +1,5 @@
-// Traces pictures of a scene that changes, at different sizes: parts that a change does not affect,
-// above all the medium, are kept. Knows no sessions.
+// Traces pictures of a changing scene at different sizes. It keeps parts that a change does not
+// affect, above all the medium. This code does not use sessions.
 #pragma once
 
 #include <memory>
@@ -17,15 +17,15 @@ namespace thunderhead::reference {
 
 class SceneTracer {
  public:
-  // `peak_cut_deg` as MediumOptions has it.
+  // `peak_cut_deg` is MediumOptions::peak_cut_deg.
   SceneTracer(double peak_cut_deg, const PathTracerOptions& options);
 
-  // Begins a picture of `size_px`, which may differ from the scene's size, without any samples.
+  // Begins a picture of `size_px` without any samples. The size may differ from the scene's size.
   absl::Status Begin(const scene::Scene& scene,
                      const std::shared_ptr<const volume::HydrometeorFields>& fields,
                      const glm::ivec2& size_px);
 
-  // As PathTracer's; a picture must have begun.
+  // Refines like PathTracer::Refine. Begin must have been called.
   RefineResult Refine(const RefineLimits& limits, const std::stop_token& stop);
   picture::LinearPicture Snapshot() const;
 

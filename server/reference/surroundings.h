@@ -1,6 +1,6 @@
-// The surroundings of a medium: sun, sky, ground, and the air in front of distant objects. Plain
-// values and functions; knows no scene. Radiance and irradiance are per colour, in any consistent
-// unit.
+// The surroundings of a medium: sun, sky, ground, and the air in front of distant objects. They are
+// plain values and functions that do not use a scene. Radiance and irradiance are per colour, in
+// any consistent unit.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@ namespace thunderhead::reference {
 
 // A place of the ground as an eye sees it.
 struct SeenGround {
-  glm::dvec3 albedo{0.0};  // Lambertian
-  double water = 0.0;      // the share of it that is rough water in place of that (physics/water.h)
+  glm::dvec3 albedo{0.0};  // Lambertian albedo
+  double water = 0.0;      // the share of rough water, which replaces the albedo (physics/water.h)
 };
 
-// Infinite Lambertian ground: a horizontal plane, or one that falls by d^2 curvature / 2 at a
-// distance d from `touch_m`. Seen from above only.
+// Infinite Lambertian ground, seen only from above. It is a horizontal plane, or it falls by d^2
+// curvature / 2 at a distance d from `touch_m`.
 struct Ground {
-  double height_m = 0.0;     // at that place
+  double height_m = 0.0;     // at `touch_m`
   glm::dvec3 albedo{0.0};    // for light that arrives through the medium
-  glm::dvec3 radiance{0.0};  // emitted upwards in addition
-  glm::dvec2 touch_m{0.0};   // that place
+  glm::dvec3 radiance{0.0};  // radiance emitted upwards in addition
+  glm::dvec2 touch_m{0.0};   // where the ground is horizontal
   double curvature_per_m = 0.0;
-  // For rays from the eye; `albedo` if not set.
+  // Ground for rays from the eye. If it is not set, they see `albedo`.
   std::function<SeenGround(const glm::dvec2& place_m)> seen;
 };
 
@@ -51,8 +51,8 @@ struct Air {
 // Radiance that a metre of lit air on a ray adds to what its eye sees.
 struct AirLight {
   glm::dvec3 of_sun{0.0};
-  glm::dvec3 of_sky{0.0};        // of light that air has scattered before
-  glm::dvec3 per_radiance{0.0};  // of even light of radiance 1 from everywhere
+  glm::dvec3 of_sky{0.0};        // light that air has scattered before
+  glm::dvec3 per_radiance{0.0};  // for uniform light of radiance 1 from all directions
 };
 
 // The air that the medium shades.
@@ -61,23 +61,23 @@ struct ShadedAir {
   std::function<AirLight(const Ray& ray, double distance_m)> light;
 };
 
-// A light besides the sun. It lights the medium only, and only the medium shades it.
+// A light in addition to the sun. It lights only the medium, and only the medium shades it.
 struct DirectionalLight {
   glm::dvec3 towards{0.0, 0.0, 1.0};
-  glm::dvec3 irradiance{0.0};  // on a plane facing it
+  glm::dvec3 irradiance{0.0};  // on a plane facing the light
 };
 
-// The sun as an eye sees it directly. Its light comes from one direction everywhere else.
+// The sun as an eye sees it directly. For everything else, its light comes from one direction.
 struct SunDisc {
-  double cosine = 1.0;       // of its angular radius
-  glm::dvec3 radiance{0.0};  // evenly bright
+  double cosine = 1.0;       // cosine of its angular radius
+  glm::dvec3 radiance{0.0};  // uniform over the disc
 };
 
 struct Surroundings {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
-  glm::dvec3 sun_irradiance{0.0};  // on a plane facing the sun; all from one direction
-  // The same at heights of 0, kSunStep_m ... above sea level, linear between; empty: the same
-  // everywhere.
+  glm::dvec3 sun_irradiance{0.0};  // on a plane facing the sun; from a single direction
+  // The sun's irradiance at heights of 0, kSunStep_m ... above sea level, linear in between. If it
+  // is empty, the irradiance is the same everywhere.
   std::vector<glm::dvec3> sun_by_height{};
   static constexpr double kSunStep_m = 100.0;
   glm::dvec3 SunAt(double height_m) const {
@@ -89,17 +89,18 @@ struct Surroundings {
                     step - static_cast<double>(below));
   }
   std::vector<DirectionalLight> lights;
-  // Radiance that comes from a direction; black if not set.
+  // Returns the radiance that arrives from a direction. Not set: black.
   std::function<glm::dvec3(const glm::dvec3& direction)> sky;
-  // The sky as seen from the eye; `sky` if not set.
+  // Returns the sky as seen from the eye. Not set: `sky`.
   std::function<glm::dvec3(const glm::dvec3& direction)> seen_sky;
-  // Black if not set.
+  // Not set: black.
   std::optional<SunDisc> disc;
   std::optional<Ground> ground;
-  // Air between the eye and the ground or the medium; clear if not set. The sky needs none: its
-  // light is the air's.
+  // Returns the air between the eye and the ground or the medium. Not set: clear. The sky needs no
+  // air, because its light is the air's light.
   std::function<Air(const Ray& ray, double distance_m, Behind behind)> air;
-  // Takes the medium's shadow from the light of that air and of the seen sky; lit if not set.
+  // Subtracts the medium's shadow from the light of that air and of the seen sky. Not set: all air
+  // is lit.
   std::optional<ShadedAir> shaded_air;
 };
 

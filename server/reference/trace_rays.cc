@@ -12,7 +12,7 @@
 namespace thunderhead::reference {
 namespace {
 
-// Some milliseconds.
+// A piece takes some milliseconds.
 constexpr std::size_t kRaysInPiece = 64;
 
 }  // namespace

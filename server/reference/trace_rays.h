@@ -1,4 +1,4 @@
-// Mean radiance along any rays, not only a picture's.
+// Estimates the mean radiance along any rays, not only those of a picture.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,13 @@
 
 namespace thunderhead::reference {
 
-// A PathOptions::similar_after that is worth its bias: an error takes a third to a tenth of the
-// time, storms are off by half a percent and wide layers by 1.7 %
+// A value of PathOptions::similar_after whose bias is acceptable. It reduces the time for a given
+// error to between a third and a tenth. Storms are off by half a percent and wide layers by 1.7 %
 // (docs/decisions/0056-similar-medium.md).
 inline constexpr int kSimilarAfter = 4;
 
-// Why tracing must end; OK while it may go on. Asked every few milliseconds, by any thread.
+// Returns why tracing must end, or OK while it may continue. It is called every few milliseconds,
+// from any thread.
 using IsWanted = std::function<absl::Status()>;
 
 struct TraceRaysOptions {
@@ -31,14 +32,14 @@ struct TraceRaysOptions {
   IsWanted wanted = nullptr;  // null: always
 };
 
-// Radiance that arrives along each of `rays`: the mean of `paths_per_ray` estimates. The same, bit
-// for bit, for any number of threads. Fails only as `wanted` does.
+// Returns the radiance that arrives along each of `rays`, the mean of `paths_per_ray` estimates. It
+// is bit-identical for any number of threads. It fails only if `wanted` does.
 absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
                                                   const Surroundings& surroundings,
                                                   const std::vector<Ray>& rays,
                                                   const TraceRaysOptions& options);
 
-// TraceRays in a medium, by the processors or whoever computes the same (device_paths/).
+// Performs TraceRays in a medium, on the CPU or on a device that computes the same (device_paths/).
 using RayTracer = std::function<absl::StatusOr<std::vector<glm::dvec3>>(
     const Surroundings&, const std::vector<Ray>&, const TraceRaysOptions&)>;
 

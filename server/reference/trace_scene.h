@@ -1,4 +1,4 @@
-// Traces a scene's picture, from its fields to pixels. Knows no files.
+// Traces a scene's picture, from its fields to pixels. This code does not use files.
 #pragma once
 
 #include <stop_token>
@@ -18,19 +18,19 @@ struct TracedScene {
   RefineResult result;
 };
 
-// Options to leave out parts of the light, for finding the cause of a picture's error.
+// Options that omit parts of the light, for finding the cause of a picture's error.
 struct TraceOptions {
   double peak_cut_deg = kPeakCut_deg;  // MediumOptions::peak_cut_deg
   int max_scatterings = 0;             // PathTracerOptions::max_scatterings
   bool sun = true;                     // false: only the sky gives light
-  // False: as if there were no air. The sky is black, and the sun shines with the irradiance that
-  // it has above the atmosphere. The ground stays.
+  // False removes the air. The sky is black, and the sun shines with its irradiance above the
+  // atmosphere. The ground stays.
   bool air = true;
   int detail_voxels_per_cell = 0;  // MediumOptions::detail_voxels_per_cell
 };
 
-// The picture that renderers approximate: with their ground, and each field's own phase function or
-// the one that the scene's mode gives to all.
+// Traces the picture that renderers approximate. It has their ground and, depending on the scene's
+// mode, each field's own phase function or one for all.
 absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields,
                                        const TraceOptions& options, const RefineLimits& limits,

@@ -49,7 +49,8 @@ double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_
 }
 
 glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad) {
-  // Two vectors across `direction`; adding its z's sign to z keeps the divisor away from 0.
+  // Two vectors perpendicular to `direction`. Adding the sign of its z to z keeps the divisor away
+  // from 0.
   const double sign = std::copysign(1.0, direction.z);
   const double a = -1.0 / (sign + direction.z);
   const double b = direction.x * direction.y * a;

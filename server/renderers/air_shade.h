@@ -1,10 +1,13 @@
-// Air that the storm shades: the light that is missing from what the air sends to the eye, on each
-// ray of a coarse picture up to each of a number of distances. The sun is shaded as the ground is
-// (common/storm_shadow.glsl). Light that the air has scattered before reaches a place from the part
-// of the sky that the storm leaves open. From the part that it hides, a place gets the light of a
-// layer of the storm's depth in its shadow; elsewhere what the storm's faces reflect there, more on
-// the sun's side. The part of the sky that the storm hides is found once for a medium.
-// Owns GL objects: use it on the context's thread.
+// The air that the storm shades. It computes the light missing from the air's radiance, on each ray
+// of a coarse picture up to each of several distances. The sun is shaded as the ground is
+// (common/storm_shadow.glsl).
+//
+// Light that the air has scattered before reaches a place from the part of the sky that the storm
+// leaves open. From the hidden part, a place in the storm's shadow gets the light of a layer of the
+// storm's depth. Other places get the light that the storm's faces reflect, which is more on the
+// sun's side. The hidden part of the sky is computed once for a medium.
+//
+// The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstdint>
@@ -29,28 +32,28 @@ class AirShade {
  public:
   explicit AirShade(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
 
-  // Takes the light of the air by height, for a sun whose elevation has this sine; `sky_irradiance`
-  // is that of the clear sky on the ground, for a sun of irradiance 1.
+  // Sets the light of the air by height. `sun_sine` is the sine of the sun's elevation. The clear
+  // sky's irradiance on the ground is `sky_irradiance`, for a sun of irradiance 1.
   void SetLight(const physics::Atmosphere& atmosphere, double sun_sine,
                 const glm::vec3& sky_irradiance);
 
-  // Finds how much of the sky `medium` hides, unless it is known. An empty medium hides nothing.
+  // Computes how much of the sky `medium` hides, unless it is known. An empty medium hides nothing.
   absl::Status HideSky(const ResidentMedium& medium, const scene::Scene& scene, double ground_m);
 
-  // Finds the missing light for a view, under the shadow that `ground` has. `box` is around what
-  // casts it; `picture_px` is the size of the picture that it is to suit. SetLight and HideSky come
-  // first.
+  // Computes the missing light for a view, under the shadow that `ground` has. The object that
+  // casts the shadow is inside `box`. The resolution suits a picture of the size `picture_px`. Call
+  // SetLight and HideSky first.
   absl::Status Cast(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                     const volume::WorldBox& box, const glm::ivec2& picture_px);
-  // Nothing is missing.
+  // Removes all shade.
   void Clear() { present_ = false; }
   bool Present() const { return present_; }
 
   // Sets the uniforms and textures of common/air_shade.glsl and common/sky_hidden.glsl, for
-  // coordinates from the eye.
+  // coordinates relative to the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
 
-  // Those of common/sky_hidden.glsl alone but faces_sunlight; HideSky comes first.
+  // Sets those of common/sky_hidden.glsl only, except faces_sunlight. Call HideSky first.
   void BindSkyHidden(const gl::Program& program, const scene::View& view) const;
 
   std::size_t Bytes() const {
@@ -58,17 +61,18 @@ class AirShade {
   }
 
  private:
-  // Distances along the rays between which air is shaded.
+  // Sets the distances along the rays between which air is shaded.
   void SetDistances(const scene::View& view, const scene::ShadedAir& air);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   bool present_ = false;
   gl::Texture2D light_;
-  // Of sunlight of irradiance 1.
+  // Irradiance on level ground, for sunlight of irradiance 1. The first value is that of sun and
+  // sky, the second that of the sky alone.
   glm::vec3 level_irradiance_{0.0F};
   glm::vec3 level_skylight_{0.0F};
   std::vector<glm::vec3> sunlight_;  // by height
-  glm::vec3 faces_sunlight_{0.0F};   // of the scene's sun, at the middle of the storm's height
+  glm::vec3 faces_sunlight_{0.0F};   // of the scene's sun, at half the storm's height
   gl::Texture3D sky_hidden_;
   gl::Texture3D storm_faces_;
   std::uint64_t hidden_by_ = 0;  // ResidentMedium::Id

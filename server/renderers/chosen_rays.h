@@ -1,6 +1,6 @@
-// Rays of chosen places in a picture, one beside the other as the pixels of a small target: blocks
-// of four by two, which software GL draws together, hold neighbours of the list. Owns GL objects:
-// use it on the context's thread.
+// Rays of chosen places in a picture, packed as the pixels of a small target. Blocks of four by two
+// pixels, which software GL draws together, hold neighbours of the list. The class owns GL objects,
+// so use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,18 @@ namespace thunderhead::renderers {
 
 class ChosenRays {
  public:
-  // Places as common/ray_place.glsl has them.
+  // Sets the rays' places, in the coordinates of common/ray_place.glsl.
   void Choose(const std::vector<glm::vec2>& places);
-  // The rays of all pixels of a picture, in blocks of neighbours (post/unpacked.frag): a small
-  // picture itself lies in few of the tiles of 64 x 64 that software GL deals out to its threads.
+  // Chooses the rays of all pixels of a picture, in blocks of neighbours (post/unpacked.frag). A
+  // small picture would lie in only a few of the tiles of 64 x 64 that software GL distributes to
+  // its threads.
   void ChooseAll(const glm::ivec2& size_px);
 
-  // Where the ray of the place of that index is drawn, in a target of Size().
+  // Returns the pixel for the ray of the place with that index, in a target of Size().
   static glm::ivec2 PixelOf(std::size_t index);
-  // The size of targets: it only grows, so that these are not made anew for each picture.
+  // Returns the size of targets. It only grows, so that targets are not recreated for each picture.
   glm::ivec2 Size() const { return places_.Size(); }
-  // The part of it that rays are in.
+  // Returns the part of the target that holds rays.
   gl::PixelRect Rect() const { return rect_; }
   void Bind() const;
   std::size_t Bytes() const { return places_.Bytes(); }

@@ -1,4 +1,4 @@
-// A frame's content as a technique reports it. Knows no GL.
+// A frame's content as a technique reports it. This code does not use GL.
 #pragma once
 
 #include <vector>
@@ -11,17 +11,18 @@
 namespace thunderhead::renderers {
 
 struct Content {
-  std::vector<physics::Hydrometeor> fields;  // drawn
-  double occupied_share = 0.0;               // of the domain's volume
-  int balls = 0;                             // metaballs
-  double fit_error = 0.0;                    // of those, root mean square over the extinction's own
-  int ellipsoids = 0;                        // of a cumulus
-  scene::Ground ground;                      // as drawn
+  std::vector<physics::Hydrometeor> fields;  // the drawn fields
+  double occupied_share = 0.0;               // share of the domain's volume
+  int balls = 0;                             // number of metaballs
+  // Root mean square error of the metaballs, relative to that of the extinction.
+  double fit_error = 0.0;
+  int ellipsoids = 0;    // number of ellipsoids of a cumulus
+  scene::Ground ground;  // the ground as drawn
   std::vector<scene::NotShown> not_shown;
 };
 
-// Adds the parts of `scene` that its technique, which shows `shows`, leaves out. `content` has its
-// fields and ground.
+// Adds the parts of `scene` that its technique, with the capabilities `shows`, does not show.
+// `content` must have its fields and ground.
 void AddNotShown(const scene::Scene& scene, const scene::Capabilities& shows, Content* content);
 
 }  // namespace thunderhead::renderers

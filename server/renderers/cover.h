@@ -1,6 +1,6 @@
-// Which pixels of a picture a storm may cover: the tiles that its occupied bricks project to. The
-// passes that look for the storm draw there only, and what is cheaper without it draws elsewhere.
-// On the device the tiles are a depth buffer, so that the test is done before any shader runs.
+// The pixels of a picture that a storm may cover: the tiles onto which its occupied bricks project.
+// Passes that look for the storm draw only there, and cheaper passes without it draw elsewhere. On
+// the device the tiles are a depth buffer, so that the test runs before any shader.
 #pragma once
 
 #include <memory>
@@ -26,14 +26,15 @@ struct Boxes {
 using gl::Around;
 using gl::PixelRect;
 
-// Where boxes of one size are seen in a picture of `size_px`, with `margin_px` around.
+// Projects boxes of one size onto a picture of `size_px`, with a margin of `margin_px`.
 class BoxProjection {
  public:
-  // `view` must outlive it.
+  // `view` must outlive the projection.
   BoxProjection(const glm::dvec3& half_extent_m, const scene::View& view, const glm::ivec2& size_px,
                 double margin_px);
 
-  // Nothing for a box behind the eye, the whole picture for one around or beside it.
+  // Returns nothing for a box behind the eye. Returns the whole picture for a box that extends to
+  // both sides of the eye's plane.
   std::optional<PixelRect> Of(const glm::dvec3& middle_m) const;
 
  private:
@@ -48,11 +49,11 @@ class BoxProjection {
   const scene::View& view_;
   glm::ivec2 size_px_;
   double margin_px_;
-  glm::dvec3 half_m_;  // along the view's axes
+  glm::dvec3 half_m_;  // half extent along the view's axes
 };
 
-// Rectangles that do not overlap and hold every pixel that meets one of `boxes`, with `margin_px`
-// around.
+// Returns rectangles that do not overlap and contain every pixel that meets one of `boxes`, with a
+// margin of `margin_px`.
 std::vector<PixelRect> CoveredRects(const Boxes& boxes, const scene::View& view,
                                     const glm::ivec2& size_px, double margin_px);
 
@@ -63,7 +64,8 @@ class Cover {
   absl::Status Draw(const Boxes& boxes, const scene::View& view, const glm::ivec2& size_px,
                     double margin_px);
 
-  // The depth attachment of targets that are to be limited; a new texture when the size changes.
+  // Returns the depth attachment for targets that the cover limits. It is a new texture after the
+  // size changed.
   const gl::Texture2D& Depth() const { return depth_; }
   std::size_t Bytes() const { return depth_.Bytes(); }
 
@@ -76,8 +78,8 @@ class Cover {
 // A picture that a cover may limit.
 class CoveredTarget {
  public:
-  // `cover`, if any, is of this size. With distances, a second colour attachment holds one float a
-  // pixel.
+  // Resizes the picture. `cover`, if any, must have this size. With distances, a second colour
+  // attachment holds one float a pixel.
   void Resize(GLenum format, const glm::ivec2& size_px, const Cover* cover,
               bool with_distances = false);
   const gl::Texture2D& Texture() const { return texture_; }
@@ -88,13 +90,14 @@ class CoveredTarget {
   gl::Texture2D texture_;
   gl::Texture2D distances_;
   GLenum format_ = 0;
-  GLuint depth_ = 0;  // the cover's
+  GLuint depth_ = 0;  // the cover's depth texture
   gl::Framebuffer target_;
 };
 
 enum class Where { kCovered, kElsewhere };
 
-// While it lives, drawing is limited to this part of covered targets; without a cover it is not.
+// While an object of this class lives, drawing is limited to this part of covered targets. Without
+// a cover, drawing is not limited.
 class LimitedTo {
  public:
   LimitedTo(Where where, const Cover* cover);

@@ -8,7 +8,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// A seed that is tried and left costs memory only for a while.
+// Limits the noises kept after use, so that trying out seeds does not use up memory.
 constexpr std::size_t kMaxKept = 8;
 
 gl::Texture3D Repeating(GLenum internal_format, int side, GLenum format,

@@ -1,5 +1,5 @@
-// Noises on the device, each baked once for its octaves and seed and kept while in use or
-// recent. Owns GL objects: use it on the context's thread.
+// Noises on the device. Each is computed once for its octaves and seed, and kept while in use or
+// recently used. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@
 namespace thunderhead::renderers {
 
 struct DetailNoise {
-  physics::DetailTile tile;           // of a medium: the first level
-  std::vector<gl::Texture3D> levels;  // repeat; each after the first is half as fine
+  physics::DetailTile tile;           // for a medium: the first level
+  std::vector<gl::Texture3D> levels;  // repeating; each level is half as fine as the one before
 
-  std::size_t Bytes() const;  // on the device
+  std::size_t Bytes() const;  // bytes on the device
 };
 
 class DetailNoises {
  public:
-  // Noise of a medium: physics::DetailTile, down to one texel.
+  // Returns the noise of a medium: physics::DetailTile, with levels down to one texel.
   std::shared_ptr<const DetailNoise> Get(int octaves, std::uint32_t seed);
-  // Noise of a surface: physics::TurbulenceTile, one level.
+  // Returns the noise of a surface: physics::TurbulenceTile, with one level.
   std::shared_ptr<const DetailNoise> Roughness(int octaves, std::uint32_t seed);
 
  private:
@@ -37,7 +37,7 @@ class DetailNoises {
 
   std::shared_ptr<const DetailNoise> Find(Kind kind, int octaves, std::uint32_t seed);
 
-  std::vector<Entry> entries_;  // the one asked for last comes last
+  std::vector<Entry> entries_;  // the most recently requested is last
 };
 
 }  // namespace thunderhead::renderers

@@ -1,6 +1,6 @@
-// The ground under a storm: where view rays meet it, and the storm's shadow on it. Level ground is
-// a plane (or the round Earth's surface) and costs next to nothing; terrain is a height map that
-// rays are marched over. Owns GL objects: use it on the context's thread.
+// The ground under a storm: its intersection with view rays, and the storm's shadow on it. Level
+// ground is a plane (or the round Earth's surface) and costs almost nothing. Terrain is a height
+// map through which rays are marched. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace thunderhead::renderers {
 
 // The variant of common/ground.glsl.
 struct GroundVariant {
-  gl::DefineValue relief;  // terrain that is not level
+  gl::DefineValue relief;  // the terrain is not level
 
   gl::Defines Defines() const { return {{"RELIEF", relief}}; }
 };
@@ -30,40 +30,40 @@ class Ground {
  public:
   explicit Ground(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
 
-  // Takes the terrain of these fields.
+  // Sets the terrain of these fields.
   void SetTerrain(const volume::HydrometeorFields& fields);
 
-  // Computes the shadow of `medium`, if it is not empty, under the settings' sun.
+  // Computes the shadow of `medium` under the settings' sun, if the medium is not empty.
   absl::Status CastShadow(const ResidentMedium& medium, const RenderSettings& settings);
-  // Takes the shadow of something else, as common/storm_shadow.glsl has it, over `frame` around
-  // `middle_m`.
+  // Takes the shadow of another object, in the format of common/storm_shadow.glsl, over `frame`
+  // around `middle_m`.
   void TakeShadow(gl::Texture2D shadow, const LightFrame& frame, const glm::dvec3& middle_m);
-  // The same of a texture that stays the caller's and is there as long as it is drawn.
+  // Uses a shadow texture of the caller, who must keep it while it is drawn.
   void ShareShadow(const gl::Texture2D* shadow, const LightFrame& frame,
                    const glm::dvec3& middle_m);
   void ClearShadow() { has_shadow_ = false; }
   bool HasShadow() const { return has_shadow_; }
-  // Puts a correction's ground on the device unless it is there; null is none.
+  // Uploads a correction's ground unless it is already on the device. Null removes the correction.
   void SetCorrection(const std::shared_ptr<const LightCorrection>& correction);
-  // True if there is one.
+  // Returns true if there is a correction.
   bool Corrected() const { return correction_ != nullptr; }
 
-  // Height of its lowest point above sea level.
+  // Returns the height of the ground's lowest point above sea level.
   double Lowest_m() const { return lowest_m_; }
   GroundVariant Variant() const { return {.relief = relief_}; }
-  // True if ground may stand between the eye and a storm. Level ground falls away from below the
-  // storm, so that it hides nothing from an eye above the world's plane.
+  // Returns true if ground may stand between the eye and a storm. Level ground falls away from
+  // below the storm, so it hides nothing from an eye above the world's plane.
   bool MayHide(const scene::View& view) const {
     return relief_ || (view.ground_curvature_per_m > 0.0 && view.eye_m.z < lowest_m_);
   }
 
-  // Distance of the ground along each pixel's ray, where rays through media end; or along each
-  // chosen one, for a picture of their size.
+  // Draws the distance of the ground along each pixel's ray, where rays through media end. With
+  // `chosen`, it draws the distances along these rays, and `size` must be their size.
   absl::Status DrawDistance(const scene::View& view, const glm::ivec2& size,
                             const ChosenRays* chosen = nullptr);
   const gl::Texture2D& Distance() const { return distances_[drawn_distance_].distance_m; }
 
-  // Sets the uniforms and textures of common/ground.glsl for coordinates from the eye.
+  // Sets the uniforms and textures of common/ground.glsl for coordinates relative to the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
   // Sets those of common/storm_shadow.glsl.
   void BindShadow(const gl::Program& program, const scene::View& view) const;
@@ -88,13 +88,13 @@ class Ground {
   gl::Texture2D terrain_;
 
   bool has_shadow_ = false;
-  const gl::Texture2D* shared_shadow_ = nullptr;  // in place of shadow_
+  const gl::Texture2D* shared_shadow_ = nullptr;  // replaces shadow_
   gl::Texture2D shadow_;
   gl::Framebuffer shadow_target_;
   glm::dvec3 shadow_middle_m_{0.0};
-  glm::dvec3 shadow_right_{0.0};  // 1 across its half width
+  glm::dvec3 shadow_right_{0.0};  // reaches 1 at the shadow's half width
   glm::dvec3 shadow_up_{0.0};
-  glm::dvec3 shadow_down_{0.0};  // 1 across its half depth, away from the sun
+  glm::dvec3 shadow_down_{0.0};  // reaches 1 at its half depth, away from the sun
 
   std::shared_ptr<const LightCorrection> correction_;
   gl::Texture2D skylight_factor_;
@@ -104,7 +104,7 @@ class Ground {
     gl::Framebuffer target;
   };
   std::array<Distances, 2> distances_;  // the second is for chosen rays
-  std::size_t drawn_distance_ = 0;      // last
+  std::size_t drawn_distance_ = 0;      // index of the last one drawn
 };
 
 }  // namespace thunderhead::renderers

@@ -1,5 +1,5 @@
-// The ground's cover on the device: a map of the storm's land use, or the pattern of fields; coasts
-// and borders; and the rings. Owns GL objects: use it on the context's thread.
+// The ground's cover on the device: a map of the storm's land use or the pattern of fields, coasts
+// and borders, and the rings. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace thunderhead::renderers {
 
 // The variant of common/ground_cover.glsl.
 struct GroundCoverVariant {
-  gl::DefineValue cover;  // as scene::GroundCover counts
+  gl::DefineValue cover;  // the value of scene::GroundCover
   gl::DefineValue borders;
   gl::DefineValue rings;
 
@@ -25,23 +25,23 @@ struct GroundCoverVariant {
 
 class GroundCover {
  public:
-  // Takes the land of these fields, uploaded when it is first drawn.
+  // Sets the land of these fields, which is uploaded when it is first drawn.
   void SetLand(const volume::HydrometeorFields& fields);
 
-  // Puts on the device what `scene` shows of these fields, those of SetLand.
+  // Uploads the cover that `scene` shows of these fields, which must be those of SetLand.
   void Prepare(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
   GroundCoverVariant Variant() const;
 
-  // Sets the uniforms and textures of common/ground_cover.glsl but that of the sky for coordinates
-  // from the eye; `height_px` is the picture's.
+  // Sets the uniforms and textures of common/ground_cover.glsl for coordinates relative to the eye,
+  // except that of the sky. `height_px` is the picture's height.
   void Bind(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
             int height_px) const;
 
   std::size_t Bytes() const { return fields_.Bytes() + land_.Bytes() + borders_.Bytes(); }
 
  private:
-  // Puts the map that is drawn on the device, if one is.
+  // Uploads the border map if one is drawn.
   void PrepareBorders(const volume::HydrometeorFields& fields);
 
   scene::Ground drawn_;
@@ -51,7 +51,7 @@ class GroundCover {
   gl::Texture2D land_;
   volume::RegularGrid grid_;
   glm::vec3 land_mean_{0.0F};
-  std::shared_ptr<const volume::BorderMap> border_map_;  // null: none is drawn
+  std::shared_ptr<const volume::BorderMap> border_map_;  // null: no borders are drawn
   gl::Texture2D borders_;
 };
 

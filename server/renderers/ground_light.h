@@ -1,6 +1,7 @@
-// The light that reaches the ground under a storm, for what lights the storm from below: sunlight
-// through the storm's shadow, skylight past it and what the storm's faces reflect, as the picture
-// of the ground has them (post/composite.frag). Owns GL objects: use it on the context's thread.
+// The light that reaches the ground under a storm, which lights the storm from below. It consists
+// of sunlight through the storm's shadow, skylight past the storm, and light that the storm's faces
+// reflect. The picture of the ground has the same light (post/composite.frag). The class owns GL
+// objects, so use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -23,8 +24,9 @@ class GroundLight {
   explicit GroundLight(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Around `storm`, whose shadow `ground` has and whose share of the sky `surroundings` know. Open
-  // ground's, around more than some 380 km.
+  // Computes the light around `storm`. `ground` must have its shadow, and `surroundings` the share
+  // of the sky that it hides. For storms wider than about 380 km, it returns the light of open
+  // ground.
   absl::StatusOr<LitGround> Find(const Ground& ground, const SkyAndGround& surroundings,
                                  const volume::WorldBox& storm, const Illumination& light);
 
@@ -32,7 +34,7 @@ class GroundLight {
 
  private:
   std::shared_ptr<gl::ProgramCache> programs_;
-  gl::Texture3D map_;  // one layer
+  gl::Texture3D map_;  // has one layer
 };
 
 }  // namespace thunderhead::renderers

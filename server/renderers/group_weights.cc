@@ -12,8 +12,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// The paper's display normalisation: the logarithm of the cut phase function over its dynamic
-// range over all colours, 0 to 1.
+// Returns the paper's display normalisation: the logarithm of the cut phase function over its
+// dynamic range over all colours, 0 to 1.
 glm::vec2 DisplayNormalisation(const physics::PhaseFunction& phase, double cut_cosine) {
   glm::dvec3 lowest = physics::PhaseColors(phase, cut_cosine);
   glm::dvec3 highest = lowest;

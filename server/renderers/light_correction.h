@@ -1,6 +1,6 @@
-// Factors for the storm's radiance in a light volume's picture, by place and direction, fitted to
-// the reference (accuracy/correction_fit.h): a plain value. Each ray looks its factor up once, at
-// the mean place of what it sees. Knows no GL.
+// Factors for the storm's radiance in a light volume's picture, by place and direction. They are
+// fitted to the reference (accuracy/correction_fit.h). Each ray looks up its factor once, at the
+// mean place of what it shows. The type is a plain value and does not use GL.
 #pragma once
 
 #include <array>
@@ -13,13 +13,15 @@
 namespace thunderhead::renderers {
 
 struct LightCorrection {
-  // Texels over the medium's box, x fastest.
+  // Number of texels over the medium's box, with x varying fastest.
   glm::ivec3 size{0};
-  // For red, green and blue: the factor for a ray of direction d is dot(texel, (1, d)).
+  // Coefficients for red, green and blue. The factor for a ray of direction d is dot(texel, (1,
+  // d)).
   std::array<std::vector<glm::vec4>, 3> texels;
 
-  // Factors for skylight on level ground, which the storm hides in part and to which it adds its
-  // own: red, green and blue of texels over a rectangle of the world, x fastest.
+  // Factors for skylight on level ground, which the storm partly hides and to which it adds its own
+  // light. They are red, green and blue of texels over a rectangle of the world, with x varying
+  // fastest.
   glm::ivec2 ground_size{0};
   std::vector<glm::vec4> ground;
   glm::dvec2 ground_low_m{0.0};

@@ -8,7 +8,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Two unit vectors that make a right-handed frame with `axis`.
+// Returns two unit vectors that form a right-handed frame with `axis`.
 std::array<glm::dvec3, 2> Across(const glm::dvec3& axis) {
   const glm::dvec3 other =
       std::abs(axis.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(0.0, 1.0, 0.0);

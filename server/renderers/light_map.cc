@@ -22,8 +22,8 @@ std::array<double, 9> Harmonics(const glm::dvec3& n) {
           n.x * n.x - n.y * n.y};
 }
 
-// Weight of each function: the inverse of the mean of its square over the sphere, times the factor
-// of its order under convolution with the cosine: 1, 2/3 and 1/4.
+// Weight of each function: the inverse of the mean of its square over the sphere, times a factor of
+// its order. That factor, from the convolution with the cosine, is 1, 2/3 and 1/4.
 constexpr std::array<double, 9> kWeights = {
     1.0, 2.0, 2.0, 2.0, 15.0 / 4.0, 15.0 / 4.0, 5.0 / 16.0, 15.0 / 4.0, 15.0 / 16.0};
 

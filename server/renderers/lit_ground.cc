@@ -13,14 +13,15 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Of the discs, R^4 / (R^2 + h^2)^2 are smaller than R: here 1/6, 1/2 and 5/6.
+// Radii of the three discs, relative to the height h. A share of R^4 / (R^2 + h^2)^2 of all discs
+// has a radius below R. For these radii that share is 1/6, 1/2 and 5/6.
 constexpr std::array<float, 3> kDiscRadii = {0.830F, 1.554F, 3.238F};
 
-// The level of the map for a disc of a height of one of its texels.
+// The level of the map for each disc at a height of one texel of the map.
 const std::array<float, 3> kDiscLevels = {std::log2(kDiscRadii[0]), std::log2(kDiscRadii[1]),
                                           std::log2(kDiscRadii[2])};
 
-// A wall gets half of its light from the ground from within this distance, in heights.
+// A wall receives half of its light from the ground from within this distance, in heights.
 constexpr double kWallSees = 1.732;
 
 }  // namespace
@@ -55,9 +56,10 @@ LitGround::Level LitGround::HalfOf(const Level& fine) {
   return half;
 }
 
-// Interpolated between texels' centres, at a place in the map's texels.
+// Interpolates between texel centres at a place in the map's texels.
 float LitGround::Dark(const Level& level, const glm::vec2& texel) {
-  // From the middle of the rim's first texel. In this order what is no number becomes 0.
+  // Coordinates are relative to the centre of the border's first texel. This order of min and max
+  // turns NaN into 0.
   const glm::vec2 place =
       glm::min(glm::max(glm::vec2(0.0F), texel * level.scale + 0.5F), glm::vec2(level.size) + 1.0F);
   const glm::ivec2 first(place);
@@ -70,7 +72,7 @@ float LitGround::Dark(const Level& level, const glm::vec2& texel) {
 float LitGround::DarkWithin(const glm::vec2& texel, float level) const {
   const auto last = static_cast<float>(levels_.size() - 1);
   if (level >= last) {
-    // A disc wider than the map has in it the dark of the whole map, in proportion.
+    // A disc wider than the map contains the darkness of the whole map, in proportion to the areas.
     const float shrunk = std::exp2(last - level);
     return Dark(levels_.back(), texel) * shrunk * shrunk;
   }

@@ -23,8 +23,10 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 8192;
-constexpr double kLevelsOfBillows = 4.0;  // that tell octaves apart; the coarsest is all but even
-// Light is given to cells: what they cannot tell apart must not flicker from one to the next.
+// Number of levels in which octaves are distinguishable; the coarsest is almost uniform.
+constexpr double kLevelsOfBillows = 4.0;
+// Light is stored at cells, so detail that cells cannot resolve must not flicker from one to the
+// next.
 constexpr double kLightFootprintInCells = 1.0;
 
 std::vector<DetailLayer> LayersOf(const Medium& medium, const volume::AirMotion& motion,
@@ -38,7 +40,7 @@ std::vector<DetailLayer> LayersOf(const Medium& medium, const volume::AirMotion&
   return layers;
 }
 
-// One value a group as shaders take them, four to a vector.
+// Packs one value a group for shaders, four to a vector.
 std::vector<glm::vec4> Packed(const std::vector<double>& by_group, double factor) {
   std::vector<glm::vec4> packed((by_group.size() + 3) / 4, glm::vec4(0.0F));
   for (std::size_t i = 0; i < by_group.size(); ++i) {
@@ -58,7 +60,8 @@ struct Computed {
   volume::WaterPathEffort effort = volume::WaterPathEffort::kFull;
 };
 
-// Of all of the process's media: sessions of the same storm, in whichever context they are drawn.
+// Returns the memo of all media of the process, because several sessions and contexts may draw the
+// same storm.
 volume::WaterPathMemo& RememberedWaterPaths() {
   constexpr std::size_t kMostBytes = 32U << 20U;
   static volume::WaterPathMemo memo(kMostBytes);
@@ -82,7 +85,7 @@ Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& mediu
   return computed;
 }
 
-// On fewer cells if a texture cannot hold all.
+// Computes the medium on fewer cells if a texture cannot hold all.
 Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium& medium,
                           DetailNoises* noises, volume::WaterPathEffort effort) {
   GLint max_texels = 0;
@@ -92,7 +95,7 @@ Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium&
   return ComputedOf(volume::Coarsened(fields, factor), medium, noises, effort);
 }
 
-// Around what is occupied; the first brick begins at `corner_m`.
+// Returns boxes around the occupied bricks. The first brick begins at `corner_m`.
 Boxes BoxesOf(const volume::BrickMap& bricks, const glm::dvec3& brick_m,
               const glm::dvec3& corner_m) {
   const volume::BrickCubes cubes = volume::OccupiedCubesOf(bricks, kMaxBoxes);
@@ -115,7 +118,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
   details_ = LayersOf(content_, fields.motion, noises);
-  // Half floats of each group, and the detail's control, on their way to the device.
+  // Memory for half floats of each group and the detail's control during the upload.
   const base::MemoryReservation on_the_way = gl::DeviceMemory::ReserveBeside(
       fields.grid.CellCount() * (2 * content_.groups.size() + sizeof(volume::DetailTexel)));
   Computed computed = ComputedThatFits(fields, content_, noises, effort);
@@ -197,7 +200,8 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
     sizes.emplace_back(layer.Tile_m() / extent_m);
-    // The corner's own part is not reduced modulo the tile: the tile of fibres has another size.
+    // The corner's own part is not reduced modulo the tile, because the tile of fibres has another
+    // size.
     corners.emplace_back((glm::dvec3(layer.drift_m, 0.0) - bounds_.grid.low_corner_m) / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
@@ -222,7 +226,7 @@ void ResidentMedium::BindPixel(const gl::Program& program, const scene::View& vi
              glm::length(nearest_m));
 }
 
-// Takes the level that suits the nearest part of the medium.
+// Selects the level that suits the nearest part of the medium.
 void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& footprint,
                                 double nearest_m) const {
   std::vector<float> left_out;
@@ -239,7 +243,8 @@ void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& foo
     levels[static_cast<std::size_t>(level)].Bind(shaders::kDetailNoiseUnit +
                                                  static_cast<GLuint>(i));
     left_out.push_back(static_cast<float>(std::min(level / kLevelsOfBillows, 1.0)));
-    // From a footprint of a texel of that level on, up to where its last octave is as fine.
+    // The fade begins at a footprint of one texel of that level. It ends where the footprint equals
+    // its last octave.
     const double level_texel_m = texel_m * std::ldexp(1.0, level);
     const double reach = std::ldexp(1.0, static_cast<int>(kLevelsOfBillows)) - 1.0;
     fades_at_start.push_back(
@@ -253,7 +258,7 @@ void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& foo
 
 double ResidentMedium::OccupiedShare() const {
   if (Empty()) return 0.0;
-  // Bricks reach beyond the box.
+  // Bricks extend beyond the box.
   const glm::dvec3 sides = brick_m_ / (2.0 * HalfExtent_m());
   return std::min(occupied_count_ * sides.x * sides.y * sides.z, 1.0);
 }

@@ -9,10 +9,10 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Steps are 0.03 degrees at the 22 degree halo, 0.07 at the rainbow, and the first is 1e-5.
+// Steps are 0.03 degrees at the 22 degree halo and 0.07 at the rainbow. The first step is 1e-5.
 constexpr int kTexels = 4096;
 
-// The inverse of glsl::phase_curve_place.
+// Returns the inverse of glsl::phase_curve_place.
 double CosineAt(double place) {
   const double share = place * place;
   const double half_angle = std::atan2(share, 1.0 - share);

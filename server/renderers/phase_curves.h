@@ -1,5 +1,5 @@
-// The phase functions of a medium's groups as shaders/common/phase.glsl looks them up: formulas and
-// tables alike, a row a group. Knows no renderer.
+// The phase functions of a medium's groups for shaders/common/phase.glsl. Formulas and tables are
+// both stored as curves, one row a group. This code does not use a renderer.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace thunderhead::renderers {
 class PhaseCurves {
  public:
   PhaseCurves() = default;
-  // One row for each of `phases`, at least one.
+  // Creates one row for each of `phases`, at least one.
   explicit PhaseCurves(const std::vector<physics::PhaseFunction>& phases);
 
   // Binds the texture to the unit that common/phase.glsl names.

@@ -1,6 +1,6 @@
-// Work on the CPU that drawing some scenes needs once and that takes seconds, such as fitting
-// metaballs. It is done beside the thread that draws, which would otherwise keep every session
-// waiting. Safe from any thread. Knows no GL.
+// Work on the CPU that some scenes need once before drawing and that takes seconds, such as fitting
+// metaballs. It runs outside the drawing thread, because it would otherwise block every session. It
+// is safe to use from any thread and does not use GL.
 #pragma once
 
 #include <memory>
@@ -17,12 +17,12 @@ class Preparation {
 
   virtual ~Preparation() = default;
 
-  // False if the scene never waits for anything, from whatever fields.
+  // Returns false if the scene never needs preparation, whatever its fields.
   virtual bool IsNeeded(const scene::Scene& scene) const = 0;
 
-  // True if drawing `scene` from `fields` (of its storm and time) has nothing to wait for.
+  // Returns true if drawing `scene` from `fields` (of its storm and time) has nothing to wait for.
   virtual bool IsDone(const scene::Scene& scene, const Fields& fields) = 0;
-  // Blocks until it has.
+  // Blocks until the preparation is done.
   virtual absl::Status Prepare(const scene::Scene& scene, const Fields& fields) = 0;
 };
 

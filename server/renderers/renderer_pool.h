@@ -1,6 +1,6 @@
-// Scene renderers for viewers of different scenes: each keeps the stages of what it drew last, so
-// that viewers who alternate do not undo each other's. Owns GL objects: use it on the context's
-// thread.
+// Scene renderers for viewers of different scenes. Each keeps the stages of what it drew last, so
+// alternating viewers do not discard each other's results. The class owns GL objects, so use it on
+// the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -15,32 +15,31 @@ namespace thunderhead::renderers {
 
 class RendererPool {
  public:
-  // Keeps at most `max_renderers`, and drops the least recently used ones while all together take
-  // more than `max_bytes` on the device.
+  // Keeps at most `max_renderers`. Drops the least recently used ones while all together take more
+  // than `max_bytes` on the device.
   explicit RendererPool(std::size_t max_renderers = 4,
                         std::size_t max_bytes = std::size_t{1} << 30U)
       : RendererPool(std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()),
                      std::make_shared<gl::ProgramCache>(), max_renderers, max_bytes) {}
-  // The renderers draw with the techniques of `registry`; programs are linked in `programs`.
+  // The renderers draw with the techniques of `registry`. `programs` links the programs.
   RendererPool(std::shared_ptr<const TechniqueRegistry> registry,
                std::shared_ptr<gl::ProgramCache> programs, std::size_t max_renderers = 4,
                std::size_t max_bytes = std::size_t{1} << 30U);
 
-  // Draws with the renderer that keeps most of what the scene needs. The frame lives until the next
-  // Draw.
+  // Draws with the renderer that can reuse most for the scene. The frame lives until the next Draw.
   absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene,
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
 
-  // Rays of the frame drawn last, as SceneRenderer::DrawChosen.
+  // Draws rays of the last frame, like SceneRenderer::DrawChosen.
   absl::StatusOr<ChosenFrame> DrawChosen(const std::vector<glm::vec2>& places) {
     return renderers_.front().renderer->DrawChosen(places);
   }
 
-  // Drops the least recently used renderer but the one that drew last, or draws now; false if there
-  // is none.
+  // Drops the least recently used renderer, but never the one that drew last or is drawing. Returns
+  // false if there is none.
   bool DropOldest();
-  // Drops those that have not drawn for this time; the frame may be gone with them.
+  // Drops renderers that have not drawn for this time. That may invalidate the frame.
   void DropUnusedFor(double seconds);
 
  private:

@@ -1,5 +1,6 @@
-// From a scene and a storm's fields to a linear frame: keeps each stage's result and reruns from
-// the first stage that a change dirties. Owns GL objects: use it on the context's thread.
+// Renders a scene and a storm's fields to a linear frame. It keeps each stage's result and reruns
+// from the first stage that a change dirties. The class owns GL objects, so use it on the context's
+// thread.
 #pragma once
 
 #include <map>
@@ -20,22 +21,23 @@
 
 namespace thunderhead::renderers {
 
-// The storm before air, ground and sky, in the pixels of the eye buffer. None if there is none.
+// The storm before air, ground and sky are added, in the pixels of the eye buffer. The textures are
+// null if there is no storm.
 struct SeenStorm {
-  const gl::Texture2D* radiance = nullptr;  // and in alpha the transmittance to the background
-  // The mean distance of what is seen, times the opacity; none if the technique does not know it.
+  const gl::Texture2D* radiance = nullptr;  // alpha is the transmittance to the background
+  // The mean distance of what is seen, times the opacity. Null if the technique does not know it.
   const gl::Texture2D* opacity_distance_m = nullptr;
-  // Corrections of light are looked up by the place at that distance in this box.
+  // Corrections of light are looked up in this box, by the place at that distance.
   volume::WorldBox box;
 };
 
 struct LinearFrame {
-  // Float, the storm's opacity in alpha; lives until the next Draw.
+  // A float texture with the storm's opacity in alpha. It lives until the next Draw.
   const gl::Texture2D* radiance = nullptr;
-  // `radiance` has DrawQuality::coarse_px: chosen rays may add to it.
+  // `radiance` has the size DrawQuality::coarse_px, and chosen rays may be added to it.
   bool coarse = false;
-  SeenStorm storm;    // as long-lived
-  StageTimes stages;  // those that ran
+  SeenStorm storm;    // lives as long as the frame
+  StageTimes stages;  // the stages that ran
   Content content;
   int slices = 0;
   std::size_t device_bytes = 0;
@@ -43,8 +45,10 @@ struct LinearFrame {
 
 // Chosen rays of a frame.
 struct ChosenFrame {
-  const gl::Texture2D* radiance = nullptr;  // as LinearFrame's, where ChosenRays::PixelOf says
-  glm::ivec2 part_px{0};                    // that rays are in, from the lowest left pixel
+  // Like LinearFrame's, at the pixels of ChosenRays::PixelOf.
+  const gl::Texture2D* radiance = nullptr;
+  // Size of the part that holds rays, from the lowest left pixel.
+  glm::ivec2 part_px{0};
   StageTimes stages;
 };
 
@@ -53,62 +57,62 @@ class SceneRenderer {
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
   using Registry = std::shared_ptr<const TechniqueRegistry>;
 
-  // Programs are linked in `programs`; the techniques are those of `registry`, whose work on the
-  // CPU (metaballs) several renderers may share.
+  // `programs` links the programs. The techniques are those of `registry`. Several renderers may
+  // share its work on the CPU (metaballs).
   explicit SceneRenderer(
       std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>(),
       Registry registry = std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()));
 
-  // The first stage that Draw would rerun, at the quality of the last one.
+  // Returns the first stage that Draw would rerun, at the quality of the last call.
   scene::Stage FirstStage(const scene::Scene& scene, const Fields& fields) const;
 
-  // Draws `scene` from the fields of its storm and time. INVALID_ARGUMENT for a technique that is
-  // not registered or cannot be drawn.
+  // Draws `scene` from the fields of its storm and time. Returns INVALID_ARGUMENT if the technique
+  // is not registered or cannot be drawn.
   absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene, const Fields& fields,
                                    const DrawQuality& quality);
 
-  // Draws the rays of chosen places of the frame drawn last, which must be coarse; the result lives
-  // until the next. Places run from (-1, -1), left and bottom, to (1, 1).
+  // Draws the rays of chosen places of the last frame, which must be coarse. The result lives until
+  // the next call. Places range from (-1, -1), left and bottom, to (1, 1).
   absl::StatusOr<ChosenFrame> DrawChosen(const std::vector<glm::vec2>& places);
 
-  // The frame drawn last, which must be neither coarse nor with the sun (DrawQuality::sun_seen),
-  // with a black storm in its place: the air and what is behind. The next Draw draws the view
+  // Draws the last frame with a black storm, which leaves the air and the background. The last
+  // frame must not be coarse or show the sun (DrawQuality::sun_seen). The next Draw draws the view
   // again.
   absl::StatusOr<LinearFrame> DrawBehind();
 
-  // On the device.
+  // Returns the bytes on the device.
   std::size_t Bytes() const;
 
  private:
-  // True if the last frame was coarse.
+  // Returns true if the last frame was coarse.
   bool DrewCoarse() const {
     return drawn_settings_.has_value() && drawn_settings_->detail_size.has_value();
   }
-  // True where the technique and the device draw chosen rays of the scene.
+  // Returns true if the technique and the device can draw chosen rays of the scene.
   bool DrawsChosen() const;
-  // The scene's technique, made if it was not used before.
+  // Returns the scene's technique, which is created on first use.
   absl::StatusOr<Technique*> Choose(const scene::Scene& scene);
   scene::Stage FirstStageAt(const scene::Scene& scene, const Fields& fields,
                             const DrawQuality& quality) const;
   absl::Status MakeContent(const scene::Scene& scene, const Fields& fields, bool quick_water_paths,
                            StageTimes* times);
-  // Nothing but lights besides the sun differs up to the stage of light.
+  // Returns true if only lights other than the sun differ up to the light stage.
   bool OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const;
-  // Notes what is kept for the next picture: all but the view.
+  // Records the inputs of the kept results, which are all except the view.
   void Keep(const scene::Scene& scene, const Fields& fields, const DrawQuality& quality);
-  // Draws the view, whose light is carried. Returns the eye buffer's cover, if any.
+  // Draws the view after the light was computed. Returns the eye buffer's cover, if any.
   absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings& settings,
                                            StageTimes* times);
-  // The storm's shadow and, unless rays are drawn `packed`, the distance of ground that hides a
-  // part of the storm.
+  // Draws the storm's shadow. Unless rays are drawn `packed`, it also draws the distance of ground
+  // that hides a part of the storm.
   absl::Status DrawGround(RenderSettings* settings, bool packed, StageTimes* times);
   absl::Status ShadeAir(const scene::Scene& scene, const RenderSettings& settings,
                         StageTimes* times);
   const gl::Texture2D& Eye() const;
-  // Around what was drawn.
+  // Returns the box around what was drawn.
   volume::WorldBox Box() const;
-  // Marks where the medium may be in a picture of `size_px`, if the technique draws it nowhere
-  // else; `margin_px` is how far it is spread there.
+  // Marks where the medium may be in a picture of `size_px`, if the technique draws only there.
+  // `margin_px` is how far the drawn medium spreads.
   absl::StatusOr<const Cover*> CoverOf(const scene::View& view, const glm::ivec2& size_px,
                                        double margin_px, Cover* cover);
   absl::Status Composite(const scene::Scene& scene, const RenderSettings& settings,
@@ -116,9 +120,9 @@ class SceneRenderer {
   // Adds the sun to a composed frame.
   absl::Status AddSun(const scene::Scene& scene, const scene::View& view,
                       const SunGlow::Picture& picture);
-  // Draws the rays of chosen_, of the picture that `settings` describe.
+  // Draws the rays of chosen_, from the picture that `settings` describes.
   absl::Status DrawRays(const scene::Scene& scene, RenderSettings settings, StageTimes* times);
-  // Draws all rays of a coarse picture as chosen ones, and puts them in their places.
+  // Draws all rays of a coarse picture as chosen ones, and copies them to their places.
   absl::Status DrawPacked(const scene::Scene& scene, const RenderSettings& settings,
                           StageTimes* times);
   LinearFrame Report(const scene::Scene& scene, const volume::HydrometeorFields& fields) const;
@@ -126,9 +130,9 @@ class SceneRenderer {
   Workspace workspace_;
   Registry registry_;
   std::map<std::string, std::unique_ptr<Technique>, std::less<>> techniques_;
-  Technique* technique_ = nullptr;  // of the last Draw
-  Cover eye_cover_;                 // of the medium in the eye buffer
-  Cover picture_cover_;             // and in a picture of another size
+  Technique* technique_ = nullptr;  // technique of the last Draw
+  Cover eye_cover_;                 // cover of the medium in the eye buffer
+  Cover picture_cover_;             // of the medium in a picture of another size
   CoveredTarget linear_;
   ChosenRays chosen_;
   CoveredTarget chosen_linear_;
@@ -140,14 +144,14 @@ class SceneRenderer {
   std::optional<scene::Scene> drawn_scene_;
   std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
   DrawQuality drawn_quality_;
-  bool view_is_drawn_ = false;  // else drawing it was cancelled
-  // Of the light as it is.
+  bool view_is_drawn_ = false;  // false: drawing the view was cancelled
+  // Settings of the current light.
   double drawn_light_tolerance_ = kLightTolerance;
   double drawn_light_layer_ = 1.0;
   bool drawn_light_in_turns_ = false;
-  std::optional<RenderSettings> drawn_settings_;  // of the last frame's view
+  std::optional<RenderSettings> drawn_settings_;  // settings of the last frame's view
   int drawn_slices_ = 0;
-  bool sunlight_changed_ = true;  // since the frame before
+  bool sunlight_changed_ = true;  // since the previous frame
 };
 
 }  // namespace thunderhead::renderers

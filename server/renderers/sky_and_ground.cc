@@ -16,8 +16,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Heights that the sky is computed for, so that a moving camera makes a table now and then only:
-// about 150 m apart near the ground, 6 % far above it. Between them tables are mixed.
+// Heights for which the sky is computed, so that a moving camera rarely needs a new table. They are
+// about 150 m apart near the ground and 6 % far above it. Tables are interpolated in between.
 constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;
 constexpr std::size_t kMaxTables = 32;
@@ -28,11 +28,11 @@ constexpr gl::PieceCost kCompositePixel{"composite", 500.0};
 struct CompositeVariant {
   GroundVariant ground;
   GroundCoverVariant ground_cover;
-  gl::DefineValue corrected;  // the ground's skylight, by renderers::LightCorrection
-  gl::DefineValue shaded;     // air and skylight, by AirShade
-  gl::DefineValue front;      // there may be something in the eye buffer
+  gl::DefineValue corrected;  // corrects the ground's skylight by renderers::LightCorrection
+  gl::DefineValue shaded;     // shades air and skylight by AirShade
+  gl::DefineValue front;      // the eye buffer may contain something
   gl::DefineValue distances;  // its distance is known
-  gl::DefineValue chosen;     // the rays of ChosenRays
+  gl::DefineValue chosen;     // draws the rays of ChosenRays
 
   gl::Defines Defines() const {
     return gl::Joined(gl::Joined(ground.Defines(), ground_cover.Defines()),
@@ -44,7 +44,7 @@ struct CompositeVariant {
   }
 };
 
-// Radiance per irradiance of level ground, on average.
+// Returns the mean radiance per irradiance of level ground.
 glm::vec3 GroundReflectance(const scene::Scene& scene) {
   return scene::PlainReflectance(scene) * std::numbers::inv_pi_v<float>;
 }
@@ -56,7 +56,7 @@ double HeightOfStep(int step) { return kSkyStep_m * std::expm1(step / kSkySteps)
 void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
                           const Ground& ground) {
   towards_sun_ = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
-  // Sums over directions start there, so that they do not depend on earlier scenes.
+  // Sums over directions start at this azimuth, so that they do not depend on earlier scenes.
   const auto sine = static_cast<float>(towards_sun_.z);
   const glm::vec3 eastern_sun(std::sqrt(std::max(1.0F - sine * sine, 0.0F)), 0.0F, sine);
   const Key key{towards_sun_.z, scene.sky.turbidity, scene.sky.ground_albedo, ground.Lowest_m()};
@@ -75,7 +75,7 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     ground_sky_is_new_ = true;
     tables_.clear();
   }
-  // Used by diffusion transport alone.
+  // Only diffusion transport uses it.
   const scene::MediumSettings* medium = scene::MediumSettingsOf(scene.rendering.technique);
   const bool diffuses = medium != nullptr && medium->transport == scene::Transport::kDiffusion;
   if (diffuses && !around_sun_.has_value()) {
@@ -127,10 +127,10 @@ const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
   return tables_.emplace(step, seen.Table()).first->second;
 }
 
-// Splits skylight into a beam from the sun, of irradiance x, and the rest of the sky, of radiance
-// a + b (1 - sine of the elevation), so that a surface that faces the sun receives as much as from
-// the sky. a = 3 I - 2 M and b = 6 (M - I) for the rest's irradiance from above over pi, I, and its
-// mean M. Returns x.
+// Splits skylight into a beam from the sun and the rest of the sky. The beam has the irradiance x,
+// and the rest the radiance a + b (1 - sine of the elevation). A surface that faces the sun
+// receives as much from the two as from the sky. If I is the rest's irradiance from above over pi
+// and M its mean, then a = 3 I - 2 M and b = 6 (M - I). Returns x.
 glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;
@@ -138,8 +138,8 @@ glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   constexpr float kSolidAngle = 2.0F * kPi / (kElevations * kAzimuths);
   if (sun.z <= 0.0F) return glm::vec3(0.0F);
   glm::vec3 facing(0.0F);
-  float even = 0.0F;     // what a sky of radiance 1 sends
-  float falling = 0.0F;  // and one of 1 - sine of the elevation
+  float even = 0.0F;     // radiance from a sky of radiance 1
+  float falling = 0.0F;  // radiance from a sky of 1 - sine of the elevation
   for (int i = 0; i < kElevations; ++i) {
     const float sine = (static_cast<float>(i) + 0.5F) / kElevations;
     const float cosine = std::sqrt(1.0F - sine * sine);
@@ -156,7 +156,7 @@ glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   const glm::vec3 mean = sky_light_.mean_radiance;
   const glm::vec3 without = (3.0F * level - 2.0F * mean) * even + 6.0F * (mean - level) * falling;
   const float per_x = 1.0F + ((1.0F - 3.0F * sun.z) * even + (6.0F * sun.z - 3.0F) * falling) / kPi;
-  // No more than leaves the rest bright everywhere.
+  // The limit keeps the rest of the sky bright everywhere.
   const glm::vec3 most = glm::min(kPi * mean, 0.5F * kPi * level / sun.z);
   return glm::clamp((facing - without) / std::max(per_x, 0.1F), glm::vec3(0.0F), most);
 }
@@ -179,7 +179,8 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
         irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
   }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
-  // Of ground without the storm's shadow, which LitGround adds for those who can take it.
+  // The ground's light is that without the storm's shadow. LitGround adds the shadow for renderers
+  // that support it.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);
@@ -225,7 +226,7 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   program.Set(uniform::local_from_world, glm::mat3(view.local_from_world));
   program.Set(uniform::towards_sun, glm::vec3(towards_sun_));
   program.Set(uniform::towards_sun_local, glm::vec3(view.local_from_world * towards_sun_));
-  // The eye's own, not that of the height that the table was made for.
+  // The horizon is that of the eye, not of the height for which the table was computed.
   program.Set(uniform::horizon_sine,
               physics::HorizonSine(altitude_m, static_cast<float>(drawn_.ground_m)));
   program.Set(uniform::sky_scale, sky_scale);

@@ -1,6 +1,6 @@
-// The surroundings of a storm: sky and ground, which light it and stand behind it, and the air in
-// front of it. Keeps results that depend on the sun and the air until these change. Owns GL
-// objects: use it on the context's thread.
+// The surroundings of a storm: sky and ground, which light it and form its background, and the air
+// in front of it. Results that depend on the sun and the air are kept until these change. The class
+// owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <map>
@@ -30,44 +30,45 @@ class SkyAndGround {
   explicit SkyAndGround(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)), air_shade_(programs_) {}
 
-  // Brings the sky up to date with the scene's sun and air, the ground's height and the eye's. Call
-  // it before the others.
+  // Updates the sky for the scene's sun and air, and for the heights of the ground and the eye.
+  // Call it before the others.
   void Update(const scene::Scene& scene, const scene::View& view, const Ground& ground);
 
-  // As the eye of `view` sees it through the air.
+  // Returns the sun as the eye of `view` sees it through the air.
   SunGlow::Sun SunFrom(const scene::Scene& scene, const scene::View& view) const;
 
   Illumination IlluminationOf(const scene::Scene& scene) const;
 
-  // The light of sky and ground on a white surface, as LightMapOf gives it.
+  // Returns the light of sky and ground on a white surface, from LightMapOf.
   std::vector<glm::vec3> LightMap(const scene::Scene& scene) const;
 
-  // Finds what share of the sky `medium` hides, unless it is known.
+  // Computes the share of the sky that `medium` hides, unless it is known.
   absl::Status HideSky(const scene::Scene& scene, const Ground& ground,
                        const ResidentMedium& medium) {
     return air_shade_.HideSky(medium, scene, ground.Lowest_m());
   }
-  // Sets the uniforms and the texture of common/sky_hidden.glsl; HideSky comes first.
+  // Sets the uniforms and the texture of common/sky_hidden.glsl. Call HideSky first.
   void BindSkyHidden(const gl::Program& program, const scene::View& view) const {
     air_shade_.BindSkyHidden(program, view);
   }
 
-  // Air and skylight without a storm's shadow.
+  // Removes the storm's shadow from air and skylight.
   void LightAllAir() { air_shade_.Clear(); }
-  // Shades them by what is in `box`, whose shadow the ground has, as finely as suits a picture of
-  // `size_px`; `medium` may be empty.
+  // Shades air and skylight by the object in `box`, whose shadow the ground must have. The
+  // resolution suits a picture of `size_px`. `medium` may be empty.
   absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                         const volume::WorldBox& box, const ResidentMedium& medium,
                         const glm::ivec2& size_px);
 
   // The eye buffer, drawn before sky and ground.
   struct Front {
-    const gl::Texture2D& eye;                    // as Technique::Eye
-    const gl::Texture2D* distances_m = nullptr;  // as Technique::Distances_m
-    volume::WorldBox box;                        // around it; may be empty
+    const gl::Texture2D& eye;                    // from Technique::Eye
+    const gl::Texture2D* distances_m = nullptr;  // from Technique::Distances_m
+    volume::WorldBox box;                        // around what was drawn; may be empty
   };
-  // Draws `front` in front of sky and covered ground, all through the air, to `target`. `cover`, if
-  // any, is the target's: nothing was drawn beyond it. With `chosen`, if any, for these rays.
+  // Draws `front` in front of sky and covered ground to `target`, all seen through the air.
+  // `cover`, if any, is that of the target: nothing was drawn beyond it. With `chosen`, it draws
+  // these rays.
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                          const GroundCover& ground_cover, const Front& front,
                          const CoveredTarget& target, const Cover* cover, const ChosenRays* chosen);
@@ -78,17 +79,17 @@ class SkyAndGround {
 
  private:
   void SetEyeSky(double altitude_m);
-  // The sky that water reflects.
+  // Binds the sky that water reflects.
   void BindGroundSky();
-  // The sky's table from one of the heights that it is computed for.
+  // Returns the sky's table for one of the heights for which it is computed.
   const std::vector<glm::vec4>& TableOfStep(int step);
-  glm::vec3 AroundSun(const glm::vec3& sun) const;  // of `sky_`, which is turned to it
+  glm::vec3 AroundSun(const glm::vec3& sun) const;  // `sky_` must be turned to `sun`
   void BindAir(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
                const Ground& ground, const volume::WorldBox& box) const;
 
-  // Inputs of the sky's light; with the sun's azimuth it only turns.
+  // Inputs of the sky's light. The sun's azimuth is not one, because it only rotates the light.
   struct Key {
-    double sun_sine = 0.0;  // of its elevation
+    double sun_sine = 0.0;  // of the sun's elevation
     double turbidity = 0.0;
     double ground_albedo = 0.0;
     double ground_m = 0.0;
@@ -99,13 +100,13 @@ class SkyAndGround {
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
   std::optional<physics::Atmosphere> atmosphere_;
-  std::optional<physics::ClearSky> sky_;  // from the ground
+  std::optional<physics::ClearSky> sky_;  // seen from the ground
   physics::SkyLight sky_light_;
   Key drawn_;
   glm::dvec3 towards_sun_{0.0, 0.0, 1.0};
-  std::optional<glm::vec3> around_sun_;           // of Illumination, for a sun of irradiance 1
-  std::map<int, std::vector<glm::vec4>> tables_;  // by step
-  double eye_height_m_ = -1.0;                    // that the table on the device is for
+  std::optional<glm::vec3> around_sun_;           // for Illumination, for a sun of irradiance 1
+  std::map<int, std::vector<glm::vec4>> tables_;  // tables by step
+  double eye_height_m_ = -1.0;                    // of the table on the device
   gl::Texture2D sky_table_;
   bool ground_sky_is_new_ = false;
   gl::Texture2D ground_sky_table_;

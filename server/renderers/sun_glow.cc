@@ -24,13 +24,13 @@ constexpr double kDiscPixel_ns = 200.0;
 
 using physics::Aureole;
 
-constexpr double kDiscReach_rad = 2.0 * physics::kSunRadius_rad;  // with its spread edge
+constexpr double kDiscReach_rad = 2.0 * physics::kSunRadius_rad;  // including its spread edge
 
 bool IsDark(const SunGlow::Sun& sun) {
   return std::max({sun.irradiance.r, sun.irradiance.g, sun.irradiance.b}) <= 0.0F;
 }
 
-// The angle across a pixel in the picture's middle.
+// Returns the angle across a pixel in the picture's middle.
 double PixelAngle_rad(const scene::View& view, const glm::ivec2& size_px) {
   return std::max(2.0 * view.tan_half_height / size_px.y, 1e-5);
 }
@@ -48,7 +48,8 @@ PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene:
     return glm::dot(view.forward, direction) >= std::cos(angle_rad) ? whole : PixelRect{};
   }
   constexpr int kRim = 64;
-  constexpr double kGrazing = 0.02;  // of the view's plane, where projections have no bound
+  // Smallest forward component for the projection, which has no bound at the view's plane.
+  constexpr double kGrazing = 0.02;
   const glm::dvec3 helper =
       std::abs(direction.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
   const glm::dvec3 right = glm::normalize(glm::cross(direction, helper));
@@ -59,7 +60,7 @@ PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene:
   double least_forward = 1.0;
   for (int i = 0; i < kRim; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / kRim;
-    // So far out that the polygon holds the cone.
+    // The corners are so far out that the polygon contains the cone.
     const double reach = std::tan(angle_rad) / std::cos(std::numbers::pi / kRim);
     const glm::dvec3 rim =
         glm::normalize(direction + reach * (std::cos(turn) * right + std::sin(turn) * up));
@@ -120,7 +121,7 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
                                  const scene::View& view, Ground* ground, const Picture& picture) {
   if (IsDark(sun)) return absl::OkStatus();
   const GroupWeights weights(medium.Content(), settings);
-  // Without a cut all scattered light is drawn already.
+  // Without a cut, all scattered light is already drawn.
   const bool cuts = weights.phase_cut > 0.0F;
   const double cut_rad = cuts ? glm::radians(settings.theta_f_deg) / 2.0 : 0.0;
   const double reach_rad = std::max(2.0 * cut_rad, kDiscReach_rad);

@@ -1,7 +1,7 @@
-// The sun as a viewer sees it: its disc, and in a medium the aureole of light that is scattered
-// within the cut forward peaks, which the medium's techniques count as unscattered
-// (physics/aureole.h). Added to the linear frame around the sun; a view that is turned away costs
-// nothing. Owns GL objects: use it on the context's thread.
+// The sun as a viewer sees it: its disc and, in a medium, the aureole. The aureole is light
+// scattered within the cut forward peaks, which the medium's techniques count as unscattered
+// (physics/aureole.h). It is added to the linear frame around the sun. A view away from the sun
+// costs nothing. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -23,8 +23,8 @@
 
 namespace thunderhead::renderers {
 
-// The pixels of a picture of `size_px` that may show a place within `angle_rad` of a direction;
-// nothing if none does.
+// Returns the pixels of a picture of `size_px` that may show a place within `angle_rad` of a
+// direction. The rectangle is empty if none does.
 PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene::View& view,
                      const glm::ivec2& size_px);
 
@@ -34,28 +34,28 @@ class SunGlow {
 
   struct Sun {
     glm::dvec3 towards{0.0, 0.0, 1.0};
-    glm::vec3 irradiance{0.0F};  // at the eye
+    glm::vec3 irradiance{0.0F};  // irradiance at the eye
   };
   struct Picture {
     const gl::Framebuffer& target;  // the linear frame
     glm::ivec2 size_px{1};
-    const ChosenRays* chosen = nullptr;  // that the frame is of, in place of the picture's pixels
+    const ChosenRays* chosen = nullptr;  // the rays of the frame, in place of the picture's pixels
   };
 
-  // The disc and the aureole seen through `medium`, which is drawn with `settings`, `slices`
-  // samples along a ray; it may be empty. `ground`'s distances are drawn anew.
+  // Adds the disc and the aureole seen through `medium`, which may be empty. The medium is drawn
+  // with `settings` and `slices` samples along a ray. `ground`'s distances are redrawn.
   absl::Status AddThrough(const ResidentMedium& medium, const scene::MediumSettings& settings,
                           int slices, const Sun& sun, const scene::View& view, Ground* ground,
                           const Picture& picture);
 
-  // The disc alone, behind what `eye` has (Technique::Eye).
+  // Adds only the disc, behind the content of `eye` (Technique::Eye).
   absl::Status AddBehind(const gl::Texture2D& eye, const Sun& sun, const scene::View& view,
                          const Ground& ground, const Picture& picture);
 
   std::size_t Bytes() const { return table_.Bytes(); }
 
  private:
-  // Finds the aureoles of the medium's groups, unless they are known.
+  // Computes the aureoles of the medium's groups, unless they are known.
   void Tabulate(const Medium& medium, double cut_rad);
   absl::Status Add(const gl::Program& program, const gl::PieceCost& pixel, const PixelRect& rect,
                    const Picture& picture);
@@ -64,10 +64,10 @@ class SunGlow {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
-  std::vector<physics::PhaseFunction> tabulated_;  // by group
+  std::vector<physics::PhaseFunction> tabulated_;  // phase functions by group
   double tabulated_cut_rad_ = -1.0;
   gl::Texture3D table_;
-  std::vector<float> shares_;  // by group
+  std::vector<float> shares_;  // shares by group
 };
 
 }  // namespace thunderhead::renderers

@@ -6,7 +6,7 @@
 
 namespace thunderhead::renderers {
 
-// `middle_height_m` is the height above sea level of the shader's origin.
+// Sets the uniforms. `middle_height_m` is the height above sea level of the shader's origin.
 void BindSunlight(const gl::Program& program, const Illumination& illumination,
                   double middle_height_m);
 

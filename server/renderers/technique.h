@@ -1,6 +1,6 @@
-// One way to draw a scene: the interface that the scene renderer drives, stage by stage, and the
-// factory that the registry of techniques (renderers/technique_registry.h) keeps of each. Its
-// settings are in scene/techniques/. docs/extending.md walks through a new one.
+// A technique for drawing a scene. This file has the interface that the scene renderer calls stage
+// by stage, and the factory of each technique in the registry (renderers/technique_registry.h). A
+// technique's settings are in scene/techniques/. docs/extending.md explains how to add one.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ namespace thunderhead::renderers {
 
 using StageTimes = std::vector<scene::StageTime>;
 
-// Parts that the techniques of one scene renderer share; they must not outlive it.
+// Parts that the techniques of one scene renderer share. The techniques must not outlive it.
 struct Workspace {
   explicit Workspace(std::shared_ptr<gl::ProgramCache> cache)
       : programs(std::move(cache)), ground(programs), surroundings(programs) {}
@@ -42,64 +42,69 @@ struct Workspace {
 
   std::shared_ptr<gl::ProgramCache> programs;
   DetailNoises noises;
-  ResidentMedium medium;  // the scene's, for techniques that draw a medium
+  ResidentMedium medium;  // the scene's medium, for techniques that draw one
   Ground ground;
   GroundCover ground_cover;
   SkyAndGround surroundings;
 };
 
-// The stages are called in order, from the first that is dirty; those after MakeContent only while
-// there is something to draw.
+// A technique. Its stages are called in order, beginning with the first dirty one. Those after
+// MakeContent are called only if there is something to draw.
 class Technique {
  public:
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
 
   virtual ~Technique() = default;
 
-  // True if it draws the workspace's medium, which is made and kept for it.
+  // Returns true if the technique draws the workspace's medium, which is then created and kept for
+  // it.
   virtual bool DrawsMedium() const { return false; }
-  // Makes whatever else it draws; INVALID_ARGUMENT for settings that it does not take.
+  // Creates everything else that the technique draws. Returns INVALID_ARGUMENT for unsupported
+  // settings.
   virtual absl::Status MakeContent(const scene::Scene& scene, const Fields& fields,
                                    StageTimes* times);
-  // True if there is nothing to draw.
+  // Returns true if there is nothing to draw.
   virtual bool Empty() const = 0;
-  // Around what is drawn.
+  // Returns the box around what is drawn.
   virtual volume::WorldBox Box() const = 0;
 
-  // Lights what is drawn. The ground's shadow is the technique's to give (Ground::TakeShadow) if
-  // CastsShadow, else it is that of the workspace's medium.
+  // Lights what is drawn. If CastsShadow is true, the technique must set the ground's shadow
+  // (Ground::TakeShadow). Otherwise the shadow is that of the workspace's medium.
   virtual absl::Status CarryLight(const scene::Scene& scene, const Fields& fields,
                                   const RenderSettings& settings, StageTimes* times) = 0;
   virtual bool CastsShadow() const { return false; }
 
-  // Draws what the eye sees before sky and ground: rgb is radiance, a the transmittance to the
+  // Draws the eye's view before sky and ground: rgb is radiance, a the transmittance to the
   // background.
   virtual absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
                                 StageTimes* times) = 0;
-  // True if what is drawn is the workspace's medium itself: nothing away from its occupied bricks.
+  // Returns true if the technique draws only the workspace's medium, so that nothing is outside its
+  // occupied bricks.
   virtual bool KeepsToCover() const { return false; }
-  // True if DrawView draws RenderSettings::chosen.
+  // Returns true if DrawView supports RenderSettings::chosen.
   virtual bool DrawsChosen() const { return false; }
-  // The result of the last DrawView.
+  // Returns the result of the last DrawView.
   virtual const gl::Texture2D& Eye() const = 0;
-  // Its mean distance from the eye, weighted by what each part of the ray shows, times its opacity:
-  // one channel, of Eye's size. Null if that is not known: the middle of Box is taken.
+  // Returns its mean distance from the eye, weighted by each part's contribution to the ray, times
+  // its opacity. The texture has one channel and Eye's size. Null means unknown, and the middle of
+  // Box is used instead.
   virtual const gl::Texture2D* Distances_m() const { return nullptr; }
 
   virtual Content Describe(const scene::Scene& scene,
                            const volume::HydrometeorFields& fields) const = 0;
-  // On the device, without the workspace.
+  // Returns the bytes on the device, without the workspace.
   virtual std::size_t Bytes() const = 0;
 };
 
-// The content of a technique that draws the workspace's medium, leaping over empty bricks or not.
+// Returns the content of a technique that draws the workspace's medium. `leaps` means that it skips
+// empty bricks.
 Content DescribeMedium(const ResidentMedium& medium, const volume::HydrometeorFields& fields,
                        bool leaps);
-// Around the workspace's medium.
+// Returns the box around the workspace's medium.
 volume::WorldBox BoxOf(const ResidentMedium& medium);
 
-// Runs `work` and appends its wall time, GL included, but not the time that its pieces waited for
-// their turns.
+// Runs `work` and appends its wall time, including GL. Time that its pieces waited for their turns
+// is not counted.
 template <typename Work>
 absl::Status Timed(gl::Pieces& pieces, scene::FrameStage stage, StageTimes* times,
                    const Work& work) {
@@ -117,9 +122,9 @@ class TechniqueFactory {
 
   virtual std::string_view Name() const = 0;
   virtual scene::Capabilities Capabilities() const = 0;
-  // Null for a technique that is not drawn but traced (Capabilities::images is false).
+  // Returns null for a technique that is traced instead of drawn (Capabilities::images is false).
   virtual std::unique_ptr<Technique> Make(Workspace& workspace) const = 0;
-  // Null if its scenes never wait for anything.
+  // Returns null if the technique's scenes never need preparation.
   virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }
 };
 

@@ -9,7 +9,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Asks the preparation of the scene's own technique.
+// Calls the preparation of the scene's own technique.
 class ByTechnique final : public Preparation {
  public:
   using Preparations = std::map<std::string, std::shared_ptr<Preparation>, std::less<>>;

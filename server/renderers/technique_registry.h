@@ -1,4 +1,4 @@
-// The techniques that can draw, by name: the program's own, and those that it is extended by.
+// The techniques that can draw, by name: the program's own, and those added as extensions.
 #pragma once
 
 #include <memory>
@@ -13,22 +13,22 @@ namespace thunderhead::renderers {
 
 class TechniqueRegistry {
  public:
-  // With the program's own techniques; what they prepare on the CPU is kept in the registry.
+  // Creates a registry with the program's own techniques. It keeps their preparations on the CPU.
   static TechniqueRegistry BuiltIn();
 
-  // ALREADY_EXISTS if there is one of its name.
+  // Adds a technique. Returns ALREADY_EXISTS if there is one with its name.
   absl::Status Add(std::shared_ptr<const TechniqueFactory> technique);
 
-  // Null if there is none of that name.
+  // Returns null if there is no technique with that name.
   const TechniqueFactory* Find(std::string_view name) const;
 
-  // In the order in which to offer them.
+  // Returns the techniques in the order in which to offer them.
   const std::vector<std::shared_ptr<const TechniqueFactory>>& All() const { return techniques_; }
 
-  // The names and capabilities of all, in that order.
+  // Returns the names and capabilities of all techniques, in that order.
   std::vector<scene::TechniqueInfo> Infos() const;
 
-  // For the scenes of every technique; null if none ever waits.
+  // Returns the preparation for the scenes of every technique, or null if none needs one.
   std::shared_ptr<Preparation> PreparationOfScenes() const;
 
  private:

@@ -1,7 +1,7 @@
-// Plain values over a pipe, in the layout of this machine: both ends are of the same build. Large
-// arrays go through memory that both ends share, one after another, and only their sizes through
-// the pipe. What is received is never believed: no array is larger than its allowance, and no wait
-// longer than its time.
+// Sends plain values over a pipe in the layout of this machine, because both ends are of the same
+// build. Large arrays go through memory that both ends share, one after another, and only their
+// sizes go through the pipe. The receiver does not trust the sender: no array may exceed its
+// allowance, and no wait its timeout.
 #pragma once
 
 #include <chrono>
@@ -20,17 +20,17 @@
 
 namespace thunderhead::sandbox {
 
-// True for what travels as its bytes.
+// A type that is sent as its bytes.
 template <typename Value>
 concept Plain = std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>;
 
-// The place of each large array in the shared memory, which both ends work out for themselves.
+// The place of each large array in the shared memory. Both ends compute the places independently.
 class SharedPlaces {
  public:
   explicit SharedPlaces(std::size_t size) : size_(size) {}
 
-  // The offset of the next array, of `bytes` bytes. Nothing if it goes through the pipe: it is
-  // small, or the memory that is left is too small for it.
+  // Returns the offset of the next array, of `bytes` bytes. Returns nothing if the array goes
+  // through the pipe, because it is small or the remaining memory is too small for it.
   std::optional<std::size_t> Next(std::size_t bytes);
 
  private:
@@ -38,16 +38,16 @@ class SharedPlaces {
   std::size_t used_ = 0;
 };
 
-// Has the kernel provide the pages of that memory at once, which takes less time than one by one at
-// their first use. Where it cannot, they come one by one.
+// Makes the kernel provide the pages of that memory at once, which is faster than one by one at
+// their first use. If the kernel cannot do that, the pages come one by one.
 enum class Use { kReading, kWriting };
 void Populate(std::span<const std::byte> memory, Use use);
 
-// Has the kernel provide the memory of a large array that is about to be written, in pages of 2 MB
-// where it can.
+// Makes the kernel provide the memory of a large array that is about to be written, in pages of 2
+// MB if possible.
 void PrepareForArray(std::span<std::byte> memory);
 
-// The end that writes; what cannot be written, as nobody reads any more, is dropped.
+// The end that writes. It drops what cannot be written because the reader has gone.
 class Sender {
  public:
   explicit Sender(int pipe, std::span<std::byte> shared = {})
@@ -67,7 +67,8 @@ class Sender {
   template <typename Values>
   void Array(const Values& values) {
     const std::size_t bytes = values.size() * sizeof(values[0]);
-    // The array before its size: whoever gets the size may read the array.
+    // The array is written before its size, because the receiver may read the array once it has the
+    // size.
     const std::optional<std::size_t> place = places_.Next(bytes);
     if (place.has_value()) {
       const std::span<std::byte> to = shared_.subspan(*place, bytes);
@@ -84,12 +85,12 @@ class Sender {
   SharedPlaces places_;
 };
 
-// The end that reads. After a failure every value is that of its type's zero.
+// The end that reads. After a failure every value is its type's zero.
 class Receiver {
  public:
   enum class Failure { kNone, kEnded, kTooLarge, kTooLate, kSilent };
 
-  // Waits for `patience` in all, by `time`; takes arrays of `allowance` bytes in all.
+  // Waits for `patience` in total, by `time`, and accepts arrays of `allowance` bytes in total.
   Receiver(int pipe, std::chrono::milliseconds patience, std::uint64_t allowance,
            const base::TimeSource& time = base::SteadyTime(),
            std::span<const std::byte> shared = {})
@@ -100,8 +101,9 @@ class Receiver {
         shared_(shared),
         places_(shared.size()) {}
 
-  // Gives up with kSilent once nothing has come for `longest`, unless `is_excused` says that the
-  // other end waits for something itself. Then it may be silent for `longest` again.
+  // Limits the silence of the other end. If nothing has come for `longest`, the receiver fails with
+  // kSilent, unless `is_excused` says that the other end is itself waiting for something. Then
+  // another period of `longest` begins.
   void LimitSilence(std::chrono::nanoseconds longest, std::function<bool()> is_excused) {
     longest_silence_ = longest;
     is_excused_ = std::move(is_excused);
@@ -122,7 +124,7 @@ class Receiver {
   Failure Why() const { return failure_; }
   bool AnythingCame() const { return anything_came_; }
 
-  // Marks data as invalid that could be received.
+  // Marks received data as invalid.
   void Refuse() {
     if (Ok()) failure_ = Failure::kTooLarge;
   }
@@ -141,7 +143,8 @@ class Receiver {
     if (!Ok()) return;
     using Value = typename Values::value_type;
     if (const auto place = places_.Next(count * each); place.has_value()) {
-      // Copied before it is looked at, as the reader could still change it.
+      // The array is copied before it is checked, because the sender can still change the shared
+      // memory.
       Populate(shared_.subspan(*place, count * each), Use::kReading);
       values.reserve(count);
       PrepareForArray({reinterpret_cast<std::byte*>(values.data()), count * each});

@@ -9,10 +9,10 @@
 namespace thunderhead::sandbox {
 namespace {
 
-// A description reads no fields, and the catalogue waits for it.
+// Timeout of a description. It reads no fields, and the catalogue waits for it.
 constexpr std::chrono::milliseconds kDescriptionTime{60'000};
 
-// How long a file that made its reader fail is left alone while it stays the same.
+// How long an unchanged file is not read again after it made its reader fail.
 constexpr std::chrono::minutes kPause{10};
 
 class ConfinedRecordReader final : public storm_files::RecordReader {

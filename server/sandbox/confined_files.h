@@ -1,5 +1,5 @@
-// Storm files, each described and read by a confined process of its own, so that one that
-// takes over, crashes or exhausts its reader costs one error.
+// Storm files, each described and read by a separate confined process. A file that takes over,
+// crashes or exhausts its reader causes only one error.
 #pragma once
 
 #include <chrono>
@@ -30,11 +30,11 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
  public:
   explicit ConfinedFiles(const ConfinedOptions& options = {});
 
-  // OK if this machine can confine a reader.
+  // Returns OK if this machine can confine a reader.
   absl::Status Probe();
 
   absl::StatusOr<storm_files::StormFile> Describe(const std::string& path);
-  // `of` is the file's description.
+  // Reads a record. `of` is the file's description.
   absl::StatusOr<volume::HydrometeorFields> Read(
       const storm_files::StormFile& of, std::size_t record,
       const std::optional<storm_files::VerticalGrid>& grid,
@@ -43,14 +43,14 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
                                                              std::size_t record);
 
  private:
-  // A file that made its reader fail, which would probably do so again.
+  // A file that made its reader fail, and would probably do so again.
   struct Offender {
     base::FileStamp stamp;
     base::TimeSource::Clock::time_point when;
     absl::Status failure;
   };
 
-  // Asks a reader unless the file has made one fail lately and is still the same.
+  // Asks a reader, unless the unchanged file has made one fail recently.
   absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Readers::Take& take);
 
@@ -60,7 +60,8 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   std::map<std::string, Offender> offenders_;
 };
 
-// `formats` with every file left to confined readers, which have the formats of the program.
+// Returns `formats` such that confined readers read every file. The readers use the program's
+// formats.
 storm_files::StormFormats Confined(storm_files::StormFormats formats,
                                    const std::shared_ptr<ConfinedFiles>& files);
 

@@ -37,15 +37,15 @@ std::uint64_t AddressSpace() {
 absl::Status Limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0) return Impossible("getrlimit", errno);
-  // A limit that is lower already stays.
+  // A limit that is already lower stays.
   limit.rlim_max = std::min(limit.rlim_max, hard);
   limit.rlim_cur = std::min(limit.rlim_max, soft);
   if (setrlimit(resource, &limit) != 0) return Impossible("setrlimit", errno);
   return absl::OkStatus();
 }
 
-// Allocation, threads, waiting, the pipes that are open, the clock, and to end. With conditions:
-// memory that is never code, clone for threads, signals to itself, limits only to be read.
+// Allows allocation, threads, waiting, open pipes, the clock and exit. Conditions apply to memory
+// (never executable), clone (only threads), signals (only to itself) and limits (only read).
 int AllowReading(scmp_filter_ctx filter) {
   // A condition on one argument of a call: its index, the comparison, and the values.
   using Argument = scmp_arg_cmp;
@@ -94,15 +94,16 @@ int AllowReading(scmp_filter_ctx filter) {
   }
   if (error == 0) error = allow(SCMP_SYS(tgkill), Argument{0, SCMP_CMP_EQ, self});
   if (error == 0) error = allow(SCMP_SYS(prlimit64), Argument{2, SCMP_CMP_EQ, 0});
-  // The C library then takes clone, whose flags can be looked at.
+  // The C library then falls back to clone, whose flags the filter can check.
   if (error == 0) {
     error = seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
   }
   return error;
 }
 
-// A call that is not allowed fails with EPERM, which libraries report as an error; it does not end
-// the process: another version of the C library may try something first and do without.
+// Installs the filter. A call that is not allowed fails with EPERM, which libraries report as an
+// error. It does not end the process, because another version of the C library may try a call and
+// continue without it.
 absl::Status FilterCalls() {
   const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)),
                                                                 seccomp_release);
@@ -119,16 +120,17 @@ absl::Status FilterCalls() {
 }  // namespace
 
 absl::Status Confine(const Allowance& allowance) {
-  // Each thread's arena would take 64 MiB of address space.
+  // With more arenas, each thread's arena would take 64 MiB of address space.
   mallopt(M_ARENA_MAX, 1);
   const rlim_t memory = AddressSpace() + allowance.memory_bytes;
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_AS, memory, memory));
-  // The signal of the soft limit is SIGXCPU, which says what happened.
+  // The signal of the soft limit is SIGXCPU, which identifies the cause.
   THUNDERHEAD_RETURN_IF_ERROR(
       Limit(RLIMIT_CPU, allowance.processor_s, rlim_t{allowance.processor_s} + 1));
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_CORE, 0, 0));
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_FSIZE, 0, 0));
-  // Descriptors below 1, of which there are none left; poll takes as many as this limit says.
+  // This allows only descriptors below 1, none of which is left. poll accepts as many descriptors
+  // as this limit.
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_NOFILE, 1, 1));
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return Impossible("no_new_privs", errno);
   prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);

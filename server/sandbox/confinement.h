@@ -1,6 +1,7 @@
-// Takes from this process all that it does not need to read bytes that it already has: new files,
-// sockets, processes, privileges, code, and memory and processor time beyond a limit. There is no
-// way back. Linux's seccomp and resource limits; no root, no namespace.
+// Removes from this process everything that it does not need to read bytes that it already has. It
+// loses new files, sockets, processes, privileges, code, and memory and processor time beyond a
+// limit. This cannot be undone. It uses Linux's seccomp and resource limits, and needs neither
+// root nor namespaces.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +11,11 @@
 namespace thunderhead::sandbox {
 
 struct Allowance {
-  std::uint64_t memory_bytes = 0;  // beyond what the process has now
+  std::uint64_t memory_bytes = 0;  // memory in addition to what the process has now
   std::uint32_t processor_s = 0;
 };
 
-// FAILED_PRECONDITION if the kernel cannot do it; the process is then not confined, or half.
+// Returns FAILED_PRECONDITION if the kernel cannot do it. The process may then be partly confined.
 absl::Status Confine(const Allowance& allowance);
 
 }  // namespace thunderhead::sandbox

@@ -1,5 +1,5 @@
-// Messages between this program and the reader of a storm file, each as one list of its members
-// for both directions: `archive` is a Sender or a Receiver.
+// Messages between this program and the reader of a storm file. Each is one list of its members for
+// both directions: `archive` is a Sender or a Receiver.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@ enum class Wanted : std::uint8_t { kProbe, kDescription, kVerticalGrid, kFields 
 
 struct Request {
   Wanted wanted = Wanted::kProbe;
-  std::string version;  // of the program that asks
+  std::string version;  // version of the program that asks
   std::string path;     // for messages: the file itself is an open descriptor
   std::uint64_t record = 0;
   std::optional<storm_files::VerticalGrid> grid;
-  std::uint64_t memory_bytes = 0;  // that reading may take, the file itself left out
-  std::uint64_t shared_bytes = 0;  // of the shared memory, an open descriptor; 0: there is none
+  std::uint64_t memory_bytes = 0;  // limit for reading, without the file itself
+  std::uint64_t shared_bytes = 0;  // size of the shared memory, an open descriptor; 0: none
   std::uint32_t processor_s = 0;
 };
 
-// Replies: any number of the first two, then one of the others.
+// Kinds of replies. Any number of the first two may come, then one of the others.
 enum class Reply : std::uint8_t { kProgress, kLog, kError, kProbed, kDescription, kGrid, kFields };
 
-// A line of the reader's log, or, of Reply::kError, a status.
+// A line of the reader's log or, for Reply::kError, a status.
 struct Note {
   std::int32_t code = 0;  // spdlog's level, or absl's status code
   std::string text;
@@ -68,11 +68,11 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
   archive(grid);
 }
 
-// The functions below take each value apart into all of its members, so that one with a new member
-// does not compile until the member is sent as well.
+// The functions below split each value into all of its members. A type with a new member therefore
+// does not compile until the member is sent, too.
 
-// All but what the program itself knows: the path, the reader, and which file it is. Times travel
-// as seconds and nanoseconds since 1970.
+// Sends all members except those that the program knows itself: the path, the reader, and which
+// file it is. Times are sent as seconds and nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
   auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg, longitude_deg,
@@ -158,7 +158,7 @@ void Visit(Archive& archive, volume::RegularGrid& grid) {
   archive(low_corner_m);
 }
 
-// All but the borders, which the store adds.
+// Sends all members except the borders, which the store adds.
 template <typename Archive>
 void Visit(Archive& archive, volume::HydrometeorFields& fields) {
   auto& [grid, of_hydrometeors, terrain_height_m, land, borders, motion, air, condensate] = fields;

@@ -15,7 +15,7 @@
 namespace thunderhead::sandbox {
 namespace {
 
-// Far beyond any storm, and near enough for arithmetic in single precision.
+// These limits are far beyond any storm, but small enough for arithmetic in single precision.
 constexpr int kMaxCells = 2'000'000;  // along one axis
 constexpr double kFarthest_m = 1e9;
 
@@ -42,8 +42,8 @@ bool AreCells(const glm::ivec3& cells) {
          std::max({cells.x, cells.y, cells.z}) <= kMaxCells;
 }
 
-// Asks about each of a block of values without a branch, so that the compiler asks about several at
-// once.
+// Returns whether `question` is true for all values. It is evaluated for a block of values without
+// a branch, so that the compiler can process several at once.
 template <typename Question>
 bool AllOf(std::span<const float> values, const Question& question) {
   constexpr std::size_t kBlock = 4096;
@@ -72,7 +72,7 @@ absl::Status CheckGrid(const volume::RegularGrid& grid) {
   return absl::OkStatus();
 }
 
-// Every cell with particles has a radius.
+// Returns whether every cell with particles has a radius.
 bool CoverParticles(const volume::ParticleSizes& sizes, const std::vector<float>& concentration) {
   if (sizes.Empty()) return true;
   if (sizes.first_cell > concentration.size() ||

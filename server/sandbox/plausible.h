@@ -1,4 +1,4 @@
-// Checks on values from the reader of a storm file, which other rooms rely on: a reader that a
+// Checks values from the reader of a storm file, which other libraries rely on. A reader that a
 // file has taken over may send anything.
 #pragma once
 
@@ -9,11 +9,11 @@
 
 namespace thunderhead::sandbox {
 
-// INVALID_ARGUMENT names the member at fault.
+// Each function returns INVALID_ARGUMENT, naming the member at fault, if a value is implausible.
 absl::Status CheckPlausible(const storm_files::StormFile& file);
 absl::Status CheckPlausible(const storm_files::VerticalGrid& grid);
-// `file` is the description of the file that the fields are of; another number of columns means
-// that the file was replaced, or that the reader lies.
+// `file` is the description of the fields' file. A different number of columns means that the file
+// was replaced, or that the reader lies.
 absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
                             const storm_files::StormFile& file);
 

@@ -13,13 +13,13 @@ namespace thunderhead::sandbox {
 std::optional<ProcessState> StateOf(pid_t process) {
   std::ifstream file(absl::StrCat("/proc/", process, "/stat"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  // The name comes before, in parentheses, and may itself hold any character.
+  // The name comes before, in parentheses, and may contain any character.
   const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos) return std::nullopt;
   std::istringstream rest(text.substr(name_end + 1));
   char state = 0;
   rest >> state;
-  // ppid, pgrp, session, tty_nr, tpgid, flags, minflt and cminflt.
+  // The skipped fields are ppid, pgrp, session, tty_nr, tpgid, flags, minflt and cminflt.
   std::string skipped;
   for (int i = 0; i < 8; ++i) rest >> skipped;
   std::uint64_t major_faults = 0;

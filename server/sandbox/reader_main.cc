@@ -35,7 +35,7 @@
 namespace thunderhead::sandbox {
 namespace {
 
-// Keeps what formats log, for the server to log it: this process has no log of its own.
+// A log sink that keeps what formats log. The server logs it, because this process has no log.
 class KeptLog final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   std::vector<Note> Take() {
@@ -56,7 +56,7 @@ class KeptLog final : public spdlog::sinks::base_sink<std::mutex> {
   std::vector<Note> notes_;
 };
 
-// The file as memory: after this, no file need be opened.
+// Maps the file into memory. After this, no file needs to be opened.
 absl::StatusOr<std::span<const std::byte>> MapFile() {
   struct stat information = {};
   if (fstat(kFileDescriptor, &information) != 0) {
@@ -72,7 +72,7 @@ absl::StatusOr<std::span<const std::byte>> MapFile() {
   return std::span(static_cast<const std::byte*>(bytes), size);
 }
 
-// The memory for large arrays; none if it cannot be had.
+// Maps the memory for large arrays, or returns none if that fails.
 std::span<std::byte> MapShared(std::size_t size) {
   if (size == 0) return {};
   void* const bytes =
@@ -82,7 +82,7 @@ std::span<std::byte> MapShared(std::size_t size) {
   return {static_cast<std::byte*>(bytes), size};
 }
 
-// If memory runs out, the kernel is to end this process and not the one that has asked.
+// Makes the kernel end this process, and not the server, if memory runs out.
 void OfferToEndFirst() {
   const int file = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (file < 0) return;
@@ -92,7 +92,7 @@ void OfferToEndFirst() {
 
 constexpr std::uint64_t kLargestRequest = 64 << 10;
 
-// Longer than the server lets a reader rest, which ends it then.
+// Longer than the time for which the server keeps an idle reader. The server then ends it.
 constexpr std::chrono::minutes kLongestRest{10};
 
 class Reader {
@@ -109,7 +109,7 @@ class Reader {
  private:
   template <typename Value>
   void Send(Reply reply, Value& value) {
-    // Arrays are put where the first of each answer has its place.
+    // Each answer starts a new Sender, so that its arrays start at the first place.
     Sender server(STDOUT_FILENO, shared_);
     for (Note& note : log_->Take()) {
       server(Reply::kLog);
@@ -182,7 +182,7 @@ void Reader::Tell(const absl::Status& error) {
 }  // namespace
 
 int ReadStormFile(const storm_files::StormFormats& formats) {
-  // Nobody waits for what is read after the server's end.
+  // After the server's end no one waits for the result.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);
   Request request;
@@ -191,14 +191,15 @@ int ReadStormFile(const storm_files::StormFormats& formats) {
   // A request of another version has another layout.
   if (!from_server.Ok() || request.version != base::Version()) return 1;
   const std::span<std::byte> shared = MapShared(request.shared_bytes);
-  // The other end takes arrays from there without asking.
+  // The other end reads arrays from that memory without asking.
   if (shared.size() != request.shared_bytes) return 1;
   Reader reader(formats, shared);
   absl::Status status = reader.Prepare(request);
   while (status.ok()) {
     status = base::Guarded([&] { return reader.Answer(request); });
     if (!status.ok()) break;
-    // Nobody waits for it any more, and the next request may never come.
+    // The answer has been sent, and the next request may never come, so unused memory is returned
+    // now.
     malloc_trim(0);
     Receiver next(STDIN_FILENO, kLongestRest, kLargestRequest);
     Visit(next, request);

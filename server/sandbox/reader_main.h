@@ -1,5 +1,5 @@
 // The program thunderhead-reader: the confined process that reads one storm file and nothing else.
-// The program starts it (started_reader.h) with the open file and memory for large arrays as the
+// The server starts it (started_reader.h) with the open file and memory for large arrays as the
 // descriptors below. It takes requests on its standard input, one after another, and answers on its
 // standard output.
 #pragma once
@@ -14,8 +14,8 @@ inline constexpr char kReaderName[] = "thunderhead-reader";
 inline constexpr int kFileDescriptor = 3;
 inline constexpr int kSharedDescriptor = 4;
 
-// Returns the exit status. The caller ends the process by _exit, as destructors of what a
-// hostile file may have overwritten must not run.
+// Runs the reader and returns the exit status. The caller must end the process by _exit, because a
+// hostile file may have overwritten objects whose destructors would then run.
 int ReadStormFile(const storm_files::StormFormats& formats);
 
 }  // namespace thunderhead::sandbox

@@ -31,7 +31,7 @@ constexpr std::string_view kReaderFailed = "READER_FAILED";
 constexpr char kWhatToDo[] =
     "; the file may be damaged or hostile: have it written again, or take it away";
 
-// Counts and logs; the error is for who asked.
+// Counts and logs a failure of a reader, and returns the error for the caller.
 absl::Status Failed(const std::string& path, const char* reason, absl::Status status) {
   telemetry::Counted().reader_failures.Of(reason).Add();
   status = absl::Status(status.code(), absl::StrCat(path, ": its reader ", status.message()));
@@ -55,7 +55,7 @@ absl::Status WasSilent(const std::string& path, milliseconds silence) {
           " (--read-deadline of `serve`), and it did not wait for its storage", kWhatToDo)));
 }
 
-// Why a reader ended without a result.
+// Returns the error for a reader that ended without a result.
 absl::Status EndedEarly(const std::string& path, int signal, milliseconds time) {
   if (signal == SIGXCPU) return TookTooLong(path, time);
   if (signal == SIGKILL) {
@@ -86,12 +86,12 @@ void Log(const Note& note) {
   spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", OneLine(note.text));
 }
 
-// More than any machine has stands for no limit.
+// A value larger than any machine's memory means that there is no limit.
 std::uint64_t MemoryOf(const ReaderLimits& limits) {
   return limits.memory_bytes > 0 ? limits.memory_bytes : std::uint64_t{1} << 46;
 }
 
-// A status that the reader made of what the file says.
+// Returns the status that the reader derived from the file.
 absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   const auto code = static_cast<absl::StatusCode>(note.code);
   std::string text = OneLine(note.text);
@@ -99,7 +99,7 @@ absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
     case absl::StatusCode::kResourceExhausted:
       absl::StrAppend(&text, " (reading a storm file may take ", MemoryOf(limits) >> 20,
                       " MiB; --sandbox-memory of `serve` sets that)");
-      // The limit is of this one reader, so waiting until others end does not help.
+      // The limit is for this reader only, so waiting until others end does not help.
       return base::WithDetails(absl::ResourceExhaustedError(text), {.permanent = true});
     case absl::StatusCode::kInvalidArgument:
     case absl::StatusCode::kNotFound:
@@ -112,7 +112,7 @@ absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   }
 }
 
-// The error of a reader whose answer could not be received.
+// Returns the error for a reader whose answer could not be received.
 absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& child,
                    const ReaderLimits& limits) {
   switch (from_reader.Why()) {
@@ -127,7 +127,8 @@ absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& 
   }
 }
 
-// Hears the reader out. Its notes are limited, as it could talk for ever.
+// Receives the reader's whole answer. The number of its notes is limited, because it could send
+// them endlessly.
 absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted,
                     const storm_files::ReadCheckpoint& checkpoint, const Readers::Take& take,
                     const ReaderLimits& limits) {
@@ -159,7 +160,7 @@ absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted
   return Nonsense(path, "its kind");
 }
 
-// How long a reader that has answered waits for another request about its file.
+// How long a reader that has answered is kept for another request about its file.
 constexpr std::chrono::seconds kRest{2};
 
 }  // namespace
@@ -182,7 +183,7 @@ std::unique_ptr<StartedReader> RestingReader::Take(const std::string& path) {
 
 void RestingReader::Put(std::unique_ptr<StartedReader> reader) {
   reader->Arrays().Empty();
-  std::unique_ptr<StartedReader> before;  // ended after the lock
+  std::unique_ptr<StartedReader> before;  // ended after the lock is released
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(reader_, std::move(reader));
@@ -190,7 +191,7 @@ void RestingReader::Put(std::unique_ptr<StartedReader> reader) {
     try {
       if (!thread_.joinable()) thread_ = std::thread([this] { EndInTime(); });
     } catch (const std::system_error&) {
-      // The system has no room for another thread, so nobody would end it.
+      // The system cannot start another thread, so the reader is ended now.
       before = std::exchange(reader_, nullptr);
     }
   }
@@ -240,8 +241,8 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
     if (has_rested && ended && !from_reader.AnythingCame()) return std::nullopt;
     return Judge(request.path, from_reader, reader->Process(), limits);
   }
-  // The kernel counts the processor time of all its requests together; so many that the next has
-  // enough left.
+  // The kernel counts the processor time of all its requests together. A reader is kept only while
+  // the next request has enough of it left.
   const bool is_young = time_.Now() - reader->Began() < limits_.time / 4;
   if (status.ok() && request.wanted != Wanted::kProbe && is_young) {
     resting_.Put(std::move(reader));
@@ -259,7 +260,7 @@ absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
     std::optional<absl::Status> status =
         Ask(std::move(rested), true, request, wanted, patience, checkpoint, take);
     if (status.has_value()) return *status;
-    // It has ended meanwhile, without a word.
+    // The kept reader has ended meanwhile, without an answer.
   }
   std::string program = program_;
   if (program.empty()) {
@@ -281,7 +282,7 @@ absl::StatusOr<std::string> ReaderProgram() {
         absl::StrCat(path, ", which reads storm files, is not there", kRemedy));
   }
   const std::optional<base::FileStamp> now = base::StampOf(path);
-  // Its status also changes when a backup gives the file another name, so that does not count.
+  // The change time is ignored, because a backup that links the file under another name changes it.
   if (now.has_value() && now->Id() == first->Id() && now->size_bytes == first->size_bytes &&
       now->modified_ns == first->modified_ns) {
     return path;
@@ -291,7 +292,7 @@ absl::StatusOr<std::string> ReaderProgram() {
 }
 
 bool IsReaderFailure(const absl::Status& status) {
-  // One that was killed may well read the file the next time.
+  // A reader that was killed may well read the file the next time.
   return base::DetailsOf(status).reason == kReaderFailed && !absl::IsUnavailable(status);
 }
 

@@ -1,5 +1,5 @@
-// Confined processes that read storm files, watched from here: their time, their end, and what they
-// say. However one fails, the outcome is one error that names the file.
+// Confined processes that read storm files. They are watched from here: their time, their end, and
+// what they send. However a process fails, the result is one error that names the file.
 #pragma once
 
 #include <chrono>
@@ -24,21 +24,21 @@
 namespace thunderhead::sandbox {
 
 struct ReaderLimits {
-  // Of reading, and of what comes of it; 0 if this machine does not say how much it has.
+  // Memory for reading and for its result. It is 0 if this machine does not report how much it has.
   std::uint64_t memory_bytes = base::MachineMemoryBytes();
-  // That this process waits, and processor time.
+  // Timeout of this process' wait, and limit of the reader's processor time.
   std::chrono::milliseconds time{600'000};
-  // That nothing comes from a reader that does not wait for its storage.
+  // Timeout for a reader that sends nothing and is not waiting for its storage.
   std::chrono::milliseconds silence{60'000};
 };
 
-// The path of thunderhead-reader, which lies beside this program. INTERNAL if it is not there,
-// UNAVAILABLE if another file has replaced it since the first call, because a reader of another
-// version may have another layout of messages.
+// Returns the path of thunderhead-reader, which is next to this program. Returns INTERNAL if it is
+// missing. Returns UNAVAILABLE if another file has replaced it since the first call, because a
+// reader of another version may have another layout of messages.
 absl::StatusOr<std::string> ReaderProgram();
 
-// Keeps the reader that has answered last for a moment, as most requests about a file come in a
-// row: its description, its heights, its times. Safe from any thread.
+// Keeps the reader that has answered last for a moment. Most requests about a file come in a row:
+// its description, its heights, its times. Safe from any thread.
 class RestingReader {
  public:
   explicit RestingReader(const base::TimeSource& time) : time_(time) {}
@@ -46,9 +46,9 @@ class RestingReader {
   RestingReader(const RestingReader&) = delete;
   RestingReader& operator=(const RestingReader&) = delete;
 
-  // The reader, if it is of the file that the path leads to now; else null.
+  // Returns the reader if it has the file to which the path leads now, else null.
   std::unique_ptr<StartedReader> Take(const std::string& path);
-  // Ends the one that rested until now.
+  // Keeps this reader, and ends the one that was kept before.
   void Put(std::unique_ptr<StartedReader> reader);
 
  private:
@@ -63,23 +63,24 @@ class RestingReader {
   std::thread thread_;
 };
 
-// Has storm files read by processes of `program`, or of ReaderProgram() if that is empty, and waits
-// for them by `time`, which must outlive this. Safe from any thread.
+// Reads storm files in processes of `program`, or of ReaderProgram() if that is empty. `time`
+// measures the waits for them, and must outlive this. Safe from any thread.
 class Readers {
  public:
-  // Takes the result after its kind; nothing received fails until the Receiver is asked.
+  // A function that receives the result after the reply's kind. Failures of the Receiver are
+  // checked afterwards.
   using Take = std::function<absl::Status(Receiver& from_reader)>;
 
   explicit Readers(const ReaderLimits& limits, const base::TimeSource& time = base::SteadyTime(),
                    std::string program = "", CheckOpened check_opened = {});
 
-  // Has the file read, within `patience`. `wanted` is the reply that `take` understands; errors of
-  // the file come as they are. `checkpoint` may be empty.
+  // Has the file read, within `patience`. `wanted` is the reply that `take` understands. Errors of
+  // the file are returned unchanged. `checkpoint` may be empty.
   absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Take& take);
 
  private:
-  // Nothing if a reader that had rested has ended without a word.
+  // Returns nothing if a reader that was kept has ended without an answer.
   std::optional<absl::Status> Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
                                   const Request& request, Reply wanted,
                                   std::chrono::milliseconds patience,
@@ -92,8 +93,8 @@ class Readers {
   RestingReader resting_;
 };
 
-// True for errors that say that the reader failed and not that the file is none: the file may be
-// hostile, so that it should not be tried again at once.
+// Returns whether an error means that the reader failed, and not that the file is invalid. The file
+// may be hostile, so it should not be tried again at once.
 bool IsReaderFailure(const absl::Status& status);
 
 }  // namespace thunderhead::sandbox

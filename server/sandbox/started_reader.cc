@@ -41,7 +41,7 @@ absl::Status NoRegularFile(const std::string& path) {
       absl::StrCat(path, ": is no regular file; give the model's output file"));
 }
 
-// An open descriptor of a regular file, never of a pipe or device that would block or act.
+// Opens a regular file, but never a pipe or device, because opening one could block or act.
 absl::StatusOr<base::FileDescriptor> OpenFile(const std::string& path) {
   base::FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (!file.IsOpen()) {
@@ -60,8 +60,8 @@ absl::StatusOr<base::FileDescriptor> OpenFile(const std::string& path) {
   return NoRegularFile(path);
 }
 
-// Processes that did not end at once when they were killed: those that give back much memory, and
-// those that wait for a dead network file system. Asked again whenever another one ends.
+// Collects processes that did not end at once when they were killed. They free much memory, or wait
+// for a dead network file system. They are checked again whenever another one ends.
 void ReapLater(pid_t process) {
   static std::mutex mutex;
   static std::vector<pid_t> left;
@@ -70,7 +70,7 @@ void ReapLater(pid_t process) {
   std::erase_if(left, [](pid_t each) { return waitpid(each, nullptr, WNOHANG) != 0; });
 }
 
-// Variables that a program needs to start; none of this one's secrets.
+// Returns the variables that a program needs to start, and none of this process' secrets.
 std::vector<char*> Environment() {
   constexpr std::array<std::string_view, 5> kNames = {
       "LD_LIBRARY_PATH=", "ASAN_OPTIONS=", "UBSAN_OPTIONS=", "TSAN_OPTIONS=", "LSAN_OPTIONS="};
@@ -81,8 +81,8 @@ std::vector<char*> Environment() {
         kNames, [text](std::string_view name) { return text.starts_with(name); });
     if (known) kept.push_back(*variable);
   }
-  // Reading takes and gives back arrays of some 100 MB again and again. By default each would be
-  // mapped anew, and the kernel would clear all of its pages, one of 4 kB after another.
+  // Reading allocates and frees arrays of some 100 MB repeatedly. By default each would be mapped
+  // anew, and the kernel would clear all of its pages, one of 4 kB after another.
   static char malloc_keeps_memory[] =
       "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.mmap_max=0:"
       "glibc.malloc.trim_threshold=1099511627776:glibc.malloc.arena_max=1";
@@ -91,8 +91,9 @@ std::vector<char*> Environment() {
   return kept;
 }
 
-// The descriptor with a number beyond those that the reader gets, which Spawn must not overwrite
-// before it has copied them. A program whose standard streams are closed has it among those.
+// Returns the descriptor with a number above those that the reader gets, which Spawn could
+// otherwise overwrite before it has copied them. A program whose standard streams are closed gets
+// such low numbers.
 base::FileDescriptor MovedUp(base::FileDescriptor file) {
   constexpr int kBeyond = kSharedDescriptor + 1;
   if (!file.IsOpen() || file.Get() >= kBeyond) return file;
@@ -113,8 +114,8 @@ struct Descriptors {
   int shared = -1;
 };
 
-// Starts the program with the descriptors that it may have, in a group of its own, so that Ctrl-C
-// reaches the server alone. 0 and the process, or an error number.
+// Starts the program with the descriptors that it may have, in a separate process group, so that
+// only the server receives Ctrl-C. Returns 0 and the process, or an error number.
 int Spawn(const std::string& program, const Descriptors& given, pid_t& process) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -178,7 +179,7 @@ void UnmapBytes::operator()(const std::byte* bytes) const {
 SharedArrays SharedArrays::Make(std::size_t size) {
   SharedArrays arrays;
   base::FileDescriptor file(memfd_create("fields of a storm", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-  // Sealed, as a memory that became smaller would end whoever reads it.
+  // The memory is sealed, because shrinking it would crash a process that reads it.
   constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL;
   if (!file.IsOpen() || ftruncate(file.Get(), static_cast<off_t>(size)) != 0 ||
       fcntl(file.Get(), F_ADD_SEALS, kSeals) != 0) {
@@ -209,7 +210,7 @@ absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::s
     file = MovedUp(std::move(opened));
     const std::string place = PlaceOf(file);
     if (check_opened) THUNDERHEAD_RETURN_IF_ERROR(check_opened(first.path, place));
-    // A folder may hold thousands of files of other kinds; none of them needs a process.
+    // A folder may hold thousands of files of other kinds, and none of them needs a process.
     THUNDERHEAD_RETURN_IF_ERROR(netcdf::NetcdfFile::CheckStart(first.path, file.Get()));
     stamp = base::StampOf(absl::StrCat("/proc/self/fd/", file.Get()));
     arrays = SharedArrays::Make(first.memory_bytes);
@@ -222,7 +223,8 @@ absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::s
   if (pipe2(answering.data(), O_CLOEXEC) != 0) return NoReader(first.path, errno);
   base::FileDescriptor replies(answering[0]);
   const base::FileDescriptor replies_to = MovedUp(base::FileDescriptor(answering[1]));
-  // Fewer switches between the processes; where it is not allowed, the pipe stays small.
+  // A larger pipe needs fewer switches between the processes. If it is not allowed, the pipe stays
+  // small.
   fcntl(replies_to.Get(), F_SETPIPE_SZ, 1 << 20);
   pid_t process = 0;
   const int error =

@@ -1,4 +1,4 @@
-// A confined process that has one storm file open, and answers one request about it after another.
+// A confined process that has one storm file open, and answers requests about it one after another.
 #pragma once
 
 #include <sys/types.h>
@@ -21,11 +21,12 @@
 
 namespace thunderhead::sandbox {
 
-// Asked about each file that was opened by `path`, with the place where it really lies: a link may
-// have taken a folder's place since the path was checked. Empty: every place is allowed.
+// A check that is called for each file that was opened by `path`, with the place where it really
+// is. A link may have replaced a folder since the path was checked. If empty, every place is
+// allowed.
 using CheckOpened = std::function<absl::Status(const std::string& path, const std::string& place)>;
 
-// A process of this one; killed, and its end collected, when this object goes.
+// A child process. The destructor kills it and collects its exit status.
 class Child {
  public:
   Child(pid_t process, const base::TimeSource& time) : process_(process), time_(time) {}
@@ -33,10 +34,11 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // 0 once it has ended.
+  // Returns 0 once the process has ended.
   pid_t Process() const { return process_; }
 
-  // The signal that ended it, 0 if it ended by itself, nothing if it still runs after `patience`.
+  // Returns the signal that ended the process, or 0 if it exited normally. Returns nothing if it
+  // still runs after `patience`.
   std::optional<int> End(std::chrono::milliseconds patience);
 
  private:
@@ -53,14 +55,14 @@ struct UnmapBytes {
 // written.
 class SharedArrays {
  public:
-  // Without it arrays go through the pipe.
+  // Creates the memory. If that fails, arrays go through the pipe.
   static SharedArrays Make(std::size_t size);
 
-  // Negative: there are none.
+  // Returns a negative number if there is no memory.
   int File() const { return file_.Get(); }
   std::span<const std::byte> Bytes() const { return {bytes_.get(), bytes_.get_deleter().size}; }
 
-  // Gives back the memory of arrays that are not read any more.
+  // Frees the memory of arrays that are no longer read.
   void Empty();
 
  private:
@@ -70,20 +72,21 @@ class SharedArrays {
 
 class StartedReader {
  public:
-  // Opens the file that `first` names, unless that is a probe, and starts `program` for it with the
-  // memory and the processor time of `first`. UNAVAILABLE if no process can be started; errors of a
-  // file that cannot be opened, or is none of storms, name it. `time` must outlive the reader.
+  // Opens the file that `first` names, unless it is a probe. Then starts `program` for the file,
+  // with the memory and the processor time of `first`. Returns UNAVAILABLE if no process can be
+  // started. Errors of a file that cannot be opened, or that is not a storm file, name it. `time`
+  // must outlive the reader.
   static absl::StatusOr<std::unique_ptr<StartedReader>> Start(const std::string& program,
                                                               const Request& first,
                                                               const CheckOpened& check_opened,
                                                               const base::TimeSource& time);
 
-  // True if its file is the one that `path` leads to, and unchanged.
+  // Returns whether its file is the one to which `path` leads, and unchanged.
   bool Reads(const std::string& path, const std::optional<base::FileStamp>& now) const {
     return path == path_ && now.has_value() && now == stamp_;
   }
 
-  // Sends the request, which fits into the pipe. A reader that has ended does not notice.
+  // Sends the request, which fits into the pipe. Does not detect that a reader has ended.
   void Ask(Request request);
 
   int Replies() const { return replies_.Get(); }
@@ -100,7 +103,7 @@ class StartedReader {
   std::optional<base::FileStamp> stamp_;
   SharedArrays arrays_;
   base::FileDescriptor requests_;
-  // The other end of `requests_`, which stays open here so that a reader's end is no SIGPIPE.
+  // The other end of `requests_`. It stays open here so that a reader's end causes no SIGPIPE.
   base::FileDescriptor requests_from_;
   base::FileDescriptor replies_;
   Child child_;

@@ -1,4 +1,4 @@
-// The parts of a scene that a technique can show; read by the server, the page and the tables.
+// The features of a scene that a technique can show. The server, the page and the tables read them.
 #pragma once
 
 #include <span>
@@ -7,22 +7,24 @@
 
 namespace thunderhead::scene {
 
-// The use that a technique makes of the fields' turbulent detail.
+// How a technique uses the fields' turbulent detail.
 enum class DetailUse {
   kNone,
-  kMedium,     // structure finer than the grid, by a setting of its own
-  kRoughness,  // that of the field with the largest share roughens its surfaces
+  kMedium,     // the medium has structure finer than the grid; a setting turns it on
+  kRoughness,  // the detail of the field with the largest share roughens the field's surfaces
 };
 
 struct Capabilities {
-  bool lights = false;  // lights besides the sun
+  bool lights = false;  // directional lights in addition to the sun
   DetailUse detail = DetailUse::kNone;
-  bool field_optics = false;  // the fields' phase functions and false colours
-  bool traced_light = false;  // correction by traced paths
-  bool slices = false;        // pictures depend on a number of slices or samples
-  bool sparse = false;        // draws chosen rays alone, as moving pictures are made of
-  bool images = true;         // drawn by a renderer; false: traced beside the renderers
-  std::span<const Transport> transports = {};  // that it accepts, its default first; static
+  bool field_optics = false;  // the fields' own phase functions and false colours
+  bool traced_light = false;  // correction of the light by path tracing
+  bool slices = false;        // images depend on a number of slices or samples
+  bool sparse = false;        // can render a chosen subset of rays, which moving frames need
+  // Rendered on the GPU by a renderer; false: traced separately from the renderers.
+  bool images = true;
+  // The accepted values, the default first; static storage.
+  std::span<const Transport> transports = {};
 };
 
 }  // namespace thunderhead::scene

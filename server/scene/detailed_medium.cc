@@ -14,7 +14,7 @@
 namespace thunderhead::scene {
 namespace {
 
-// A group for each field.
+// Returns the fields regrouped so that each field has its own group.
 GroupedFields Parted(const GroupedFields& grouped) {
   GroupedFields parted = grouped;
   parted.groups.clear();
@@ -49,7 +49,8 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
       PlacedDetailOf(layers, tile_of, volume.grid.spacing_m, fields.motion);
   if (!layers.empty()) {
     detailed->control_ = volume::DetailControlOf(fields, parted.terms, volume);
-    // Fields of a group lose and gain together.
+    // The detail is placed per group, because the fields of a group gain and lose extinction
+    // together.
     volume::ExtinctionVolume by_group =
         volume::ComputeExtinction(fields, grouped.terms, static_cast<int>(grouped.groups.size()));
     volume::PlacedDetail of_groups = placed;
@@ -81,7 +82,7 @@ volume::DrawnMedium::Channels DetailedMedium::At_per_m(const glm::dvec3& place_m
   if (!inside) return {};
   volume::DrawnMedium::Channels values =
       medium_->At(glm::vec3((place_m - volume_.grid.low_corner_m) / volume_.grid.spacing_m));
-  // Where billows leave nothing, rounding may leave less.
+  // The billows can reduce the value to 0, and rounding can then make it negative.
   for (float& value : values) value = std::max(value, 0.0F) * volume_.extinction_per_m;
   return values;
 }

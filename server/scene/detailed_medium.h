@@ -1,6 +1,6 @@
-// A storm's extinction at any place, field by field, with the turbulent detail that the light
-// volume draws: the same displacement and noise, and columns that keep their water path. For code
-// that has no GL.
+// The extinction of a storm at any place, by field, including the turbulent detail that the light
+// volume draws. It applies the same displacement and noise, and each column keeps its water path.
+// This class is for code that does not use GL.
 #pragma once
 
 #include <cstdint>
@@ -17,28 +17,29 @@ namespace thunderhead::scene {
 
 class DetailedMedium {
  public:
-  // Each field has the detail that `scene` gives it, whatever its technique, or none without
-  // `detail`. `fields` need not outlive it.
+  // Creates the medium with the detail that `scene` gives each field, even if the scene's technique
+  // shows none. With `detail` false, no field has detail. `fields` need not outlive the medium.
   static std::shared_ptr<const DetailedMedium> Of(const Scene& scene,
                                                   const volume::HydrometeorFields& fields,
                                                   bool detail = true);
 
-  // 1/m, in the order of DrawnFieldsOf. Detail is that of a picture with infinitely fine pixels.
+  // Returns the extinction in 1/m by field, in the order of DrawnFieldsOf. The detail is that of an
+  // image with infinitely fine pixels.
   volume::DrawnMedium::Channels At_per_m(const glm::dvec3& place_m) const;
 
-  // Its cells, and the box of what is not empty.
+  // Returns the cells, with the bounding box of those that are not empty.
   const volume::ExtinctionVolume& Volume() const { return volume_; }
 
-  // By field, an upper bound of extinction in 1/m.
+  // Returns an upper bound of each field's extinction in 1/m.
   volume::DrawnMedium::Channels Largest_per_m() const;
 
-  // Detail multiplies a field by at most this.
+  // The largest factor by which detail multiplies a field.
   static constexpr float kMaxFactor = 4.0F;
 
  private:
   DetailedMedium() = default;
 
-  volume::ExtinctionVolume volume_;  // a channel for each field
+  volume::ExtinctionVolume volume_;  // one channel for each field
   volume::DetailControl control_;
   std::vector<std::unique_ptr<const physics::DetailTile>> tiles_;
   std::optional<volume::DrawnMedium> medium_;

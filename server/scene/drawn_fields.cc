@@ -5,8 +5,8 @@
 namespace thunderhead::scene {
 namespace {
 
-// The phase function of a field whose `optics` have the radius that is drawn; cloud water's where
-// the technique has one for every field.
+// Returns the phase function of a field whose `optics` have the radius that is drawn. If the
+// technique has one phase function for every field, that is the phase function of cloud water.
 physics::PhaseFunction PhaseShown(const Scene& scene, const physics::ParticleOptics& optics,
                                   const FieldLook& look) {
   if (look.per_field_phase) return physics::PhaseOf(optics);

@@ -1,5 +1,5 @@
-// A storm's fields as a scene shows them, resolved once for every technique and the reference:
-// which are drawn, and the optics, particle size and detail of each.
+// The drawn fields of a storm, resolved from the scene once for every technique and for the
+// reference. They include the optics, particle size and detail of each field.
 #pragma once
 
 #include <cstddef>
@@ -14,29 +14,30 @@
 
 namespace thunderhead::scene {
 
-// True if the field holds anything, is visible and is not scaled away.
+// Returns true if the field holds anything, is visible and has a scale above 0.
 bool IsDrawn(const Scene& scene, const volume::HydrometeorField& field);
 
 struct DrawnField {
   std::size_t index = 0;  // into HydrometeorFields::fields
   physics::Hydrometeor hydrometeor{};
-  // Of the mixing ratio in the file: the scene's scale is in it. By cell where the sizes are the
-  // model's.
+  // Extinction per mixing ratio of the file, including the scene's scale. It varies by cell if the
+  // model gives particle sizes.
   volume::MassExtinction mass_extinction;
-  // Effective, of all the field's particles; none where the file gives extinction.
+  // Effective radius of all the field's particles. It has no value if the file gives extinction.
   std::optional<float> radius_m;
-  physics::SizeSource sizes{};  // where radius_m comes from
+  physics::SizeSource sizes{};  // the source of radius_m
   float albedo = 1.0F;
-  physics::PhaseFunction phase;  // by physics::PhaseOf
-  glm::vec3 color{1.0F};         // white but in false colours
-  Detail detail;                 // as it is drawn, with a wavelength if any
-  Detail asked_detail;           // of the scene, whether the technique shows it or not
+  physics::PhaseFunction phase;  // from physics::PhaseOf
+  glm::vec3 color{1.0F};         // white except in false colours
+  // The detail as it is drawn, with a wavelength if the field has detail.
+  Detail detail;
+  Detail asked_detail;  // the scene's detail, whether or not the technique shows it
 };
 
-// In the order of `fields`.
+// Returns the drawn fields in the order of `fields`.
 std::vector<DrawnField> DrawnFieldsOf(const Scene& scene, const volume::HydrometeorFields& fields);
 
-// The hydrometeors among them.
+// Returns the hydrometeors of the drawn fields.
 std::vector<physics::Hydrometeor> HydrometeorsOf(const std::vector<DrawnField>& drawn);
 
 }  // namespace thunderhead::scene

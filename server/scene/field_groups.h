@@ -1,5 +1,5 @@
-// A storm's drawn fields in groups that look alike, and the noises of their detail: what a medium
-// is made of, whichever code draws, traces or exports it.
+// A storm's drawn fields in groups with equal optics and detail, and the noises of their detail.
+// Renderers, tracers and exporters build their medium from these groups.
 #pragma once
 
 #include <functional>
@@ -16,12 +16,12 @@
 
 namespace thunderhead::scene {
 
-// Fields that scatter and swirl alike.
+// Optical properties and detail that the fields of a group have in common.
 struct FieldGroup {
   float albedo = 1.0F;
-  physics::PhaseFunction phase;  // by physics::PhaseOf
+  physics::PhaseFunction phase;  // from physics::PhaseOf
   glm::vec3 color{1.0F};
-  Detail detail;  // with a wavelength if any
+  Detail detail;  // with a wavelength if the group has detail
 
   bool operator==(const FieldGroup&) const = default;
 };
@@ -29,24 +29,27 @@ struct FieldGroup {
 struct GroupedFields {
   std::vector<FieldGroup> groups;
   std::vector<volume::ExtinctionTerm> terms;  // which field adds to which group's channel
-  std::vector<DrawnField> fields;             // of each term
+  std::vector<DrawnField> fields;             // the field of each term
 };
 
 GroupedFields GroupedFieldsOf(const Scene& scene, const volume::HydrometeorFields& fields);
 
-// One noise, and how much of each group it multiplies. The first of a medium displaces it, too.
+// One noise, and how much of each group it multiplies. The first layer of a medium also displaces
+// the medium.
 struct DetailLayer {
   Detail detail;  // its share is unused
   std::vector<double> share_by_group;
 
-  double Tile_m() const;                                      // edge of the noise's tile
-  glm::dvec2 Drift_m(const volume::AirMotion& motion) const;  // of the noise
+  double Tile_m() const;  // edge length of the noise's tile
+  // Displacement of the noise by the wind.
+  glm::dvec2 Drift_m(const volume::AirMotion& motion) const;
 };
 
-// Groups that differ only in their share are in one layer.
+// Returns the layers of the groups. Groups that differ only in their share have a common layer.
 std::vector<DetailLayer> DetailLayersOf(const std::vector<FieldGroup>& groups);
 
-// The layers in place, in a medium of such cells. `tile_of` gives a noise, which must outlive it.
+// Returns the layers placed in a medium with cells of this size. `tile_of` returns a noise, which
+// must outlive the result.
 using TileOf = std::function<const physics::DetailTile*(const Detail&)>;
 volume::PlacedDetail PlacedDetailOf(const std::vector<DetailLayer>& layers, const TileOf& tile_of,
                                     const glm::dvec3& cell_m, const volume::AirMotion& motion);

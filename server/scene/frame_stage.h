@@ -1,5 +1,5 @@
-// The stages whose wall time a frame reports, finer than those that a change dirties, and the
-// properties of a scene that a frame reports as left out.
+// The stages whose wall time a frame reports, which are finer than scene::Stage. Also the
+// properties of a scene that a frame reports as not shown.
 #pragma once
 
 #include <string>
@@ -11,43 +11,43 @@ enum class FrameStage {
   kRead,
   kExtinction,
   kUpload,
-  kFit,      // of metaballs
-  kSurface,  // of a cumulus
-  kSlices,   // of half-angle slicing: light and view together
+  kFit,      // fits metaballs
+  kSurface,  // builds the surface of a cumulus
+  kSlices,   // half-angle slicing, which computes light and view together
   kLight,
   kView,
   kGround,
   kAir,
   kComposite,
-  kTrace,       // paths of the reference
-  kCorrection,  // by traced paths
+  kTrace,       // traces the paths of the reference
+  kCorrection,  // corrects the light by path tracing
   kTone,
   kReadBack,
   kEncode,
 };
 
-// "read", "read_back" and so on, for tables.
+// Returns the name of a stage for tables, such as "read" or "read_back".
 std::string_view NameOf(FrameStage stage);
 
 struct StageTime {
   FrameStage stage = FrameStage::kRead;
-  double milliseconds = 0.0;  // wall time
+  double milliseconds = 0.0;  // wall time in milliseconds
 };
 
-// A property of the scene or the storm that a technique leaves out.
+// A property of the scene or the storm that a technique does not show.
 struct NotShown {
   enum class Code {
-    kFineStructure,  // finer than metaballs
+    kFineStructure,  // structure finer than metaballs
     kDetail,
     kFieldOptics,
     kTracedLight,
-    kLights,   // besides the sun
-    kFields,   // some of the storm's
-    kStorm,    // the surface is made from a seed
-    kBorders,  // and coasts
+    kLights,   // lights other than the sun
+    kFields,   // some of the storm's fields
+    kStorm,    // the storm, because the surface is generated from a seed
+    kBorders,  // borders and coasts
     kOther,
   } code = Code::kOther;
-  std::string message;  // a few words for people
+  std::string message;  // description in a few words for people
 
   bool operator==(const NotShown&) const = default;
 };

@@ -1,5 +1,5 @@
-// The ground of a scene on its storm's fields: what of its look can be drawn, and how bright it is.
-// Knows no GL.
+// The ground of a scene for the fields of its storm: which cover can be drawn, and how bright the
+// ground is. This code does not use GL.
 #pragma once
 
 #include "glm/vec2.hpp"
@@ -9,18 +9,18 @@
 
 namespace thunderhead::scene {
 
-// The look as it is drawn on these fields.
+// Returns the scene's ground, reduced to what can be drawn for these fields.
 Ground DrawnGround(const Scene& scene, const volume::HydrometeorFields& fields);
 
-// The scene with the albedo of the ground that is drawn: the mean of the file's where land use is
-// drawn, else the scene's own. It is what lights the storm and the air.
+// Returns the scene with the albedo of the ground that is drawn, which lights the storm and the
+// air. The albedo is the mean of the file's land use if that is drawn, otherwise the scene's own.
 Scene WithGroundOf(Scene scene, const volume::HydrometeorFields& fields);
 
-// Reflectance by colour of plain ground: bare soil and grass seen from far off. The albedo is that
-// of red.
+// Returns the reflectance by colour of plain ground: bare soil and grass seen from far away. The
+// albedo is that of red.
 glm::vec3 PlainReflectance(const Scene& scene);
 
-// The middle of the rings: that of the storm's condensate.
+// Returns the centre of the distance rings, which is the middle of the storm's condensate.
 glm::dvec2 RingMiddle_m(const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::scene

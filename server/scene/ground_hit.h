@@ -1,5 +1,5 @@
-// Where a ray meets the ground: the file's terrain, which falls away from the storm as the Earth
-// does unless the camera sees a flat world.
+// Intersections of rays with the ground. The ground is the file's terrain, which curves away from
+// the storm with the Earth unless the camera sees a flat world.
 #pragma once
 
 #include <optional>
@@ -13,14 +13,15 @@ namespace thunderhead::scene {
 
 class Surface {
  public:
-  // `fields` must outlive it.
+  // `fields` must outlive the surface.
   Surface(const Scene& scene, const volume::HydrometeorFields& fields);
 
-  // Above sea level, in the coordinates of the world.
+  // Returns the height above sea level in world coordinates.
   double Height_m(const glm::dvec3& place_m) const;
 
-  // How far along the ray, whose direction has the length 1, it first goes below the ground, exact
-  // to a metre; nothing within `farthest_m`, or if it begins there. Steps grow with the distance.
+  // Returns the distance along the ray at which the ray first goes below the ground, accurate to a
+  // metre. Returns nothing if that is beyond `farthest_m` or if the ray begins below the ground.
+  // `direction` must have the length 1. The search steps grow with the distance.
   std::optional<double> MeetsRay_m(const glm::dvec3& origin_m, const glm::dvec3& direction,
                                    double farthest_m) const;
 
@@ -29,7 +30,7 @@ class Surface {
   const View view_;
 };
 
-// As far as any ray goes.
+// The farthest distance that any ray needs.
 inline constexpr double kFarthestGround_m = 2e8;
 
 }  // namespace thunderhead::scene

@@ -29,7 +29,7 @@ class DepthRays {
         view_(ViewOf(scene, fields)),
         steps_per_half_cell_(ShowsDetail(scene) ? kDetailSteps : 1.0) {}
 
-  // Of the ray through normalised device coordinates.
+  // Returns the depths along the ray through normalised device coordinates.
   Depths Through(double x, double y) const {
     const auto [origin_m, direction] = RayThrough(view_, x, y);
     const volume::ExtinctionVolume& volume = medium_->Volume();
@@ -48,7 +48,8 @@ class DepthRays {
   }
 
  private:
-  // The finest octave of detail has a wavelength of 3/8 of a cell: 1.5 steps.
+  // Steps per cell with detail. The finest octave of detail has a wavelength of 3/8 of a cell,
+  // which is 1.5 steps.
   static constexpr double kDetailSteps = 2.0;
 
   static bool ShowsDetail(const Scene& scene) {
@@ -56,7 +57,7 @@ class DepthRays {
     return medium != nullptr && medium->look.detail;
   }
 
-  // The middles of equal steps.
+  // Integrates the extinction by the midpoint rule with equal steps.
   Depths March(const glm::dvec3& origin_m, const glm::dvec3& direction, double begin_m,
                double step_m, int steps) const {
     double depth = 0.0;

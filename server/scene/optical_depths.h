@@ -1,5 +1,6 @@
-// The storm's optical depth along the ray of each pixel, and where it reaches 1. Computed from the
-// fields, so it is the same whichever technique draws the picture; without GL.
+// The storm's optical depth along the ray of each pixel, and the distance at which it reaches 1.
+// Both are computed from the fields without GL, so they do not depend on the technique that draws
+// the image.
 #pragma once
 
 #include "picture/linear_picture.h"
@@ -8,10 +9,11 @@
 
 namespace thunderhead::scene {
 
-// Sets `optical_depth` and `depth_one_distance_m` of a picture of the scene, of any size, from rays
-// through the middles of its pixels up to the ground. The medium is the one that the scene's
-// technique draws, with turbulent detail where that has it; for techniques that draw no medium
-// (metaballs, a cumulus' surface, the reference) the fields without detail. On several threads.
+// Sets `optical_depth` and `depth_one_distance_m` of a picture of the scene, of any size. The rays
+// pass through the pixel centres and end at the ground. The medium is the one that the scene's
+// technique draws, with turbulent detail if the technique shows it. For techniques that draw no
+// medium (metaballs, a cumulus' surface, the reference), the medium is the fields without detail.
+// The computation uses several threads.
 void AddOpticalDepths(const Scene& scene, const volume::HydrometeorFields& fields,
                       picture::LinearPicture* picture);
 

@@ -1,4 +1,5 @@
-// The first hit of a ray from an eye: the storm, the ground, or neither. For pointing at a picture.
+// The first hit of a ray from an eye: the storm, the ground, or neither. The page uses it to point
+// at places in a picture.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -7,11 +8,11 @@
 
 namespace thunderhead::scene {
 
-// The place where half of the cloud's share of what is seen along the ray lies before it: in a
-// dense cloud at an optical depth of ln 2, in thin cloud over the ground farther in. Where the ray
-// meets nearly no cloud (an optical depth below 0.1) it is the ground; and in the clear sky the
-// point of the ray that is nearest to the storm's middle. `direction` has the length 1. Without
-// turbulent detail.
+// Returns the place that a viewer sees along the ray. In cloud it is the point with half of the
+// cloud's visible contribution in front of it. In a dense cloud that is at an optical depth of ln
+// 2, in thin cloud over the ground it is farther in. A ray with an optical depth below 0.1 sees the
+// ground behind. In the clear sky the result is the point of the ray nearest to the storm's middle.
+// `direction` must have the length 1. The medium has no turbulent detail.
 glm::dvec3 PlaceSeen(const Scene& scene, const volume::HydrometeorFields& fields,
                      const glm::dvec3& origin_m, const glm::dvec3& direction);
 

@@ -26,7 +26,7 @@ double Cubic::Largest() const {
   const auto consider = [&](double u) {
     if (u > 0.0 && u < 1.0 && At(u) > At(largest)) largest = u;
   };
-  // Where the derivative is 0, by the form of the roots that does not cancel.
+  // The extrema are the roots of the derivative. This form of the roots avoids cancellation.
   const double a = 3.0 * factors[3];
   const double half_b = factors[2];
   const double c = factors[1];
@@ -89,7 +89,7 @@ Cubic RayPiece::Of(const CornerValues& values) const {
 std::vector<RayPiece> PiecesOf(const volume::RegularGrid& grid, const glm::dvec3& origin_m,
                                const glm::dvec3& direction, const Span& span) {
   if (span.end_m <= span.begin_m) return {};
-  // Where the ray crosses planes of middles.
+  // Pieces end where the ray crosses planes of cell centres.
   std::vector<double> ends_m = {span.end_m};
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0.0) continue;

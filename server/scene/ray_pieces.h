@@ -1,7 +1,7 @@
-// A ray in the pieces along which a storm's values are polynomials: values sit at cells' middles
-// and are linear in x, y and z between them, so that along a ray they are of degree 3 from one
-// plane of middles to the next. Beyond the outermost middles they stay what they are there.
-// Integrals and maxima are therefore exact.
+// A ray split into pieces along which a storm's values are polynomials. Values are given at cell
+// centres and interpolated trilinearly, so they are cubic along the ray between two planes of cell
+// centres. Beyond the outermost centres the values are constant. Integrals and maxima are therefore
+// exact.
 #pragma once
 
 #include <array>
@@ -14,31 +14,31 @@
 
 namespace thunderhead::scene {
 
-// Of a piece's share u, from 0 to 1.
+// A cubic polynomial of u, the share of a piece from 0 to 1.
 struct Cubic {
-  std::array<double, 4> factors{};  // of 1, u, u^2, u^3
+  std::array<double, 4> factors{};  // coefficients of 1, u, u^2, u^3
 
-  // The one with these values at 0, 1/3, 2/3 and 1.
+  // Returns the cubic with these values at 0, 1/3, 2/3 and 1.
   static Cubic Through(const std::array<double, 4>& values);
 
   double At(double u) const;
-  // From 0 to `u`.
+  // Returns the integral from 0 to `u`.
   double Integral(double u) const;
-  // The u at which it is largest.
+  // Returns the u at which the cubic is largest.
   double Largest() const;
-  // The smallest u by which the integral of a cubic that is nowhere below 0 reaches `value`; 1 if
-  // it does not.
+  // Returns the smallest u at which the integral reaches `value`, or 1 if the integral does not
+  // reach it. The cubic must not be negative anywhere.
   double WhereIntegralIs(double value) const;
 };
 
-// The cells around a place, and the place between their middles.
+// The eight cells whose centres surround a place.
 struct Corners {
-  std::array<std::size_t, 8> cells{};  // x fastest, then y, z
+  std::array<std::size_t, 8> cells{};  // x varies fastest, then y, then z
   glm::ivec3 low{0};
   glm::ivec3 high{0};
 
   static Corners Around(const volume::RegularGrid& grid, const glm::dvec3& place_m);
-  // 0 to 1 along each axis.
+  // Returns the position between the cell centres, from 0 to 1 along each axis.
   glm::dvec3 ShareOf(const volume::RegularGrid& grid, const glm::dvec3& place_m) const;
 };
 
@@ -58,8 +58,8 @@ struct RayPiece {
   Cubic Of(const CornerValues& values) const;
 };
 
-// The pieces of the ray within `span`, which is to lie in the grid's box. `direction` has the
-// length 1.
+// Returns the pieces of the ray within `span`, which must lie in the grid's box. `direction` must
+// have the length 1.
 std::vector<RayPiece> PiecesOf(const volume::RegularGrid& grid, const glm::dvec3& origin_m,
                                const glm::dvec3& direction, const Span& span);
 

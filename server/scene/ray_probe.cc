@@ -8,7 +8,8 @@
 namespace thunderhead::scene {
 namespace {
 
-// Evenly over the part in the domain, with its ends; a single one in the middle.
+// Returns the distances of samples spread evenly over the part in the domain, including both ends.
+// A single sample is in the middle.
 std::vector<double> SampleDistances_m(const Span& in_domain, int samples) {
   std::vector<double> distances_m;
   if (in_domain.end_m <= in_domain.begin_m || samples <= 0) return distances_m;
@@ -21,7 +22,7 @@ std::vector<double> SampleDistances_m(const Span& in_domain, int samples) {
   return distances_m;
 }
 
-// One field's readings around a place.
+// Reads the values of one field around a place.
 class FieldReader {
  public:
   FieldReader(const volume::HydrometeorFields& fields, std::size_t index)
@@ -67,7 +68,7 @@ class FieldReader {
   const volume::HydrometeorField& field_;
 };
 
-// `drawn` is null for a field that is not.
+// Probes one field. `drawn` is null for a field that is not drawn.
 FieldOnRay Probe(const FieldReader& reader, const DrawnField* drawn,
                  const std::vector<RayPiece>& pieces) {
   FieldOnRay result;

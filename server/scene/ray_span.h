@@ -1,4 +1,4 @@
-// The part of a ray that lies in a box, and the steps in which to walk through its cells.
+// The part of a ray that lies in a box, and the step length for walking through the box's cells.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -6,17 +6,17 @@
 
 namespace thunderhead::scene {
 
-// A part of a ray, by distances from its origin; empty if `end_m` is not beyond `begin_m`.
+// A part of a ray, by distances from its origin. It is empty if `end_m` is not beyond `begin_m`.
 struct Span {
   double begin_m = 0.0;
   double end_m = 0.0;
 };
 
-// The part of the ray that lies in the box `low_m` to `high_m`, before `end_m`.
+// Returns the part of the ray that lies in the box `low_m` to `high_m` and before `end_m`.
 Span SpanWithin(const glm::dvec3& low_m, const glm::dvec3& high_m, const glm::dvec3& origin_m,
                 const glm::dvec3& direction, double end_m);
 
-// Half of the shortest path through a cell from side to side.
+// Returns half of the shortest path through a cell from one side to the opposite one.
 double HalfCell_m(const volume::RegularGrid& grid, const glm::dvec3& direction);
 
 }  // namespace thunderhead::scene

@@ -10,7 +10,7 @@ bool SameOptics(const physics::ParticleOptics& a, const physics::ParticleOptics&
          a.albedo == b.albedo && a.phase == b.phase && a.false_color == b.false_color;
 }
 
-// The fields as they are drawn: without the detail that the technique ignores.
+// Returns the fields as they are drawn, without the detail that the technique ignores.
 std::array<FieldParameters, physics::kHydrometeorCount> FieldsShown(const Scene& scene) {
   auto fields = scene.fields;
   const Technique& technique = scene.rendering.technique;
@@ -20,8 +20,9 @@ std::array<FieldParameters, physics::kHydrometeorCount> FieldsShown(const Scene&
   return fields;
 }
 
-// The stage that a change of the lights besides the sun dirties. Their colours count once the light
-// is carried; a technique that does not show them only reports that.
+// Returns the first stage that a change of the additional lights dirties. The view stage applies
+// their colours to the light computed before. A technique that does not show them only reports that
+// it doesn't.
 Stage DirtiedByLights(const Scene& before, const Scene& after) {
   if (before.lights == after.lights) return Stage::kNothing;
   if (!CapabilitiesOf(after.rendering.technique).lights) return Stage::kTone;
@@ -30,7 +31,7 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
                  after.lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
                    return a.azimuth_deg == b.azimuth_deg && a.elevation_deg == b.elevation_deg;
                  });
-  // Only the program's own techniques are known to colour light as late as that.
+  // Only the program's own techniques are known to apply the colours in the view stage.
   const bool own = !std::holds_alternative<OtherTechnique>(after.rendering.technique);
   return same_directions && own ? Stage::kView : Stage::kLight;
 }
@@ -38,10 +39,11 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
 Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
-  // The storm sees the ground by the shares of sun and sky in its light and by its albedo.
+  // Diffusion takes the ground's light as a boundary condition, so the shares of sun and sky and
+  // the albedo change the storm's light.
   const MediumSettings* medium = MediumSettingsOf(after.rendering.technique);
   const bool diffuses = medium != nullptr && medium->transport == Transport::kDiffusion;
-  // Not what is painted on it.
+  // Borders and rings do not change the ground's albedo.
   const bool same_cover = before.ground.cover == after.ground.cover;
   if (diffuses && (before.sky != after.sky || !same_cover)) return Stage::kLight;
   if (before.camera != after.camera || before.sky != after.sky || before.ground != after.ground ||
@@ -60,9 +62,9 @@ bool FieldParameters::operator==(const FieldParameters& other) const {
 }
 
 Detail DefaultDetail(physics::Hydrometeor hydrometeor) {
-  // One seed and wavelength for all, as one turbulent flow carries them all: the noise is then
-  // fetched once. Equal shares leave fields that scatter alike in one group. Rain falls through the
-  // eddies.
+  // All fields have the same seed and wavelength, because one turbulent flow carries them all. The
+  // noise is then fetched only once. Equal shares keep fields that scatter alike in one group. Rain
+  // has no detail because it falls through the eddies.
   return {.share = hydrometeor == physics::Hydrometeor::kRain ? 0.0F : 1.0F};
 }
 

@@ -1,6 +1,6 @@
-// A scene: one plain value that decides what a picture looks like, with every default resolved.
-// Knows no files, no GL and no messages. Azimuths are degrees clockwise from north; world
-// coordinates as in volume/grid.h.
+// A scene: a plain value that determines what a picture looks like, with every default resolved. It
+// does not depend on files, GL or messages. Azimuths are degrees clockwise from north. World
+// coordinates are defined in volume/grid.h.
 #pragma once
 
 #include <array>
@@ -19,55 +19,56 @@
 
 namespace thunderhead::scene {
 
-// Structure finer than the grid (shaders/physics/detail.glsl), drifting with the wind, that changes
-// `share` of the field where the model's air is turbulent. Shown where the technique's look has
+// Structure finer than the grid (shaders/physics/detail.glsl) that drifts with the wind. It changes
+// `share` of the field where the model's air is turbulent. It is drawn if the technique's look has
 // detail.
 struct Detail {
   float share = 0.0F;
-  float wavelength_m = 0.0F;  // of the first octave; 0 is kDetailWavelengthInCells of the storm's
+  float wavelength_m = 0.0F;  // of the first octave; 0: kDetailWavelengthInCells cells of the storm
   int octaves = 4;
   std::uint32_t seed = 1;
 
   bool operator==(const Detail&) const = default;
 };
 
-// A model's grid carries waves of several cells; where those end, detail begins.
+// The wavelength at which detail begins. A model's grid resolves waves of several cells, and detail
+// adds the shorter ones.
 inline constexpr float kDetailWavelengthInCells = 3.0F;
 
 float DefaultDetailWavelength_m(const glm::dvec3& cell_m);
 
-// The detail that suits each hydrometeor.
+// Returns the default detail of a hydrometeor.
 Detail DefaultDetail(physics::Hydrometeor hydrometeor);
 
-// How one hydrometeor field is drawn.
+// Drawing parameters of one hydrometeor field.
 struct FieldParameters {
   bool visible = true;
   float scale = 1.0F;                // multiplies the mixing ratio
-  physics::ParticleOptics optics{};  // whose radius counts if the sizes are given
+  physics::ParticleOptics optics{};  // the radius applies if `sizes` is kGiven
   physics::SizeSource sizes = physics::SizeSource::kModel;
   Detail detail;
 
   bool operator==(const FieldParameters&) const;
 };
 
-// Looks at `target_m` from `distance_m` away, standing at azimuth and elevation seen from the
-// target.
+// A camera that looks at `target_m` from `distance_m` away. Azimuth and elevation give the camera's
+// direction as seen from the target.
 struct OrbitCamera {
   glm::dvec3 target_m{0.0};
   double azimuth_deg = 200.0;
   double elevation_deg = 4.0;
   double distance_m = 1e5;
-  double field_of_view_deg = 35.0;  // vertical
+  double field_of_view_deg = 35.0;  // vertical angle
 
   bool operator==(const OrbitCamera&) const = default;
 };
 
-// Stands on the ground at `place_m` and looks to azimuth and elevation. The picture is cut out of a
-// frame of 36 x 24 mm behind a lens of the given focal length: wider pictures use its whole width,
-// narrower ones its whole height.
+// A camera on the ground at `place_m` that looks towards azimuth and elevation. The picture is cut
+// out of a frame of 36 x 24 mm behind a lens of the given focal length. Wider pictures use the
+// frame's whole width, narrower ones its whole height.
 struct SpotterCamera {
   glm::dvec2 place_m{0.0};
-  double eye_height_m = 1.7;  // above the terrain
+  double eye_height_m = 1.7;  // height above the terrain
   double azimuth_deg = 20.0;
   double elevation_deg = 5.0;
   double focal_length_mm = 24.0;
@@ -75,10 +76,11 @@ struct SpotterCamera {
   bool operator==(const SpotterCamera&) const = default;
 };
 
-// Looks straight down from above the air, north up, without perspective, as satellite pictures do.
+// A camera above the air that looks straight down without perspective, with north up, like a
+// satellite.
 struct TopDownCamera {
   glm::dvec2 center_m{0.0};
-  double width_m = 1e5;  // that the picture shows
+  double width_m = 1e5;  // width of the shown area
 
   bool operator==(const TopDownCamera&) const = default;
 };
@@ -89,18 +91,19 @@ struct Sun {
   double azimuth_deg = 275.0;
   double elevation_deg = 18.0;
   double irradiance =
-      1.0;  // on a plane facing the sun above the atmosphere; radiance is in this unit
+      1.0;  // on a plane facing the sun above the atmosphere; this is the unit of radiance
 
   bool operator==(const Sun&) const = default;
 };
 
-// A light besides the sun, all of it from one direction. It lights the storm alone: neither ground
-// nor sky, and through no air. Shown by metaballs and by the reference.
+// A light in addition to the sun, with all of its light from one direction. It lights only the
+// storm, not the ground or the sky, and the air does not attenuate it. Metaballs and the reference
+// show it.
 struct DirectionalLight {
   double azimuth_deg = 75.0;
   double elevation_deg = 20.0;
   glm::dvec3 color{1.0};    // linear sRGB, up to 1
-  double irradiance = 1.0;  // of white, on a plane facing it, in the unit of the sun's
+  double irradiance = 1.0;  // of white, on a plane facing the light, in the unit of the sun's
 
   bool operator==(const DirectionalLight&) const = default;
 };
@@ -108,35 +111,36 @@ struct DirectionalLight {
 struct Sky {
   double brightness = 1.0;
   double ground_albedo = 0.2;
-  double turbidity = 1.5;  // of the air: 1 without haze, 10 very hazy
+  double turbidity = 1.5;  // of the air: 1 is without haze, 10 very hazy
 
   bool operator==(const Sky&) const = default;
 };
 
 enum class GroundCover {
-  kPlain,    // of one colour
-  kFields,   // crops on a one-mile grid, made up (physics/field_pattern.h)
-  kLandUse,  // the file's; plain if it has none
+  kPlain,    // one colour
+  kFields,   // synthetic crops on a one-mile grid (physics/field_pattern.h)
+  kLandUse,  // the file's land use; plain if the file has none
 };
 
-// The look of the ground. Which cover is the default depends on the storm.
+// The appearance of the ground. The default cover depends on the storm.
 struct Ground {
   GroundCover cover = GroundCover::kPlain;
-  bool borders = false;  // and coasts, where fields have them
-  bool rings = false;  // of distance, every 10 km around the storm's middle, and an arrow to north
+  bool borders = false;  // draws borders and coasts if the fields have them
+  // Draws distance rings every 10 km around the storm's middle and an arrow to north.
+  bool rings = false;
 
   bool operator==(const Ground&) const = default;
 };
 
-// An accuracy or a speed to reach, by the setting that the server's tables say is best; neither
-// leaves the rendering as it is.
+// A target accuracy or speed. The server reaches it with the best setting of its tables. Without a
+// target the rendering stays unchanged.
 struct MaxError {
-  double relative_rmse = 0.0;  // of linear radiance, against the reference
+  double relative_rmse = 0.0;  // of linear radiance, relative to the reference
 
   bool operator==(const MaxError&) const = default;
 };
 struct MaxMilliseconds {
-  double milliseconds = 0.0;  // a frame of a moved camera
+  double milliseconds = 0.0;  // for a frame after the camera moved
 
   bool operator==(const MaxMilliseconds&) const = default;
 };
@@ -145,7 +149,8 @@ using Accuracy = std::variant<std::monostate, MaxError, MaxMilliseconds>;
 // How a picture is computed: the technique with its settings.
 struct Rendering {
   Technique technique;
-  double image_scale = 1.0;  // of the eye buffer at full quality, (0, 2]; pictures keep their size
+  // Scale of the eye buffer at full quality, (0, 2]; the picture's size does not change.
+  double image_scale = 1.0;
 
   bool operator==(const Rendering&) const = default;
 };
@@ -153,10 +158,10 @@ struct Rendering {
 enum class ToneMap { kLinear, kFilmic };
 
 struct Display {
-  // In stops; without one, such that the storm's brightest hundredth is just below white.
+  // Exposure in stops. Without a value, the brightest hundredth of the storm is just below white.
   std::optional<double> exposure_ev{};
   ToneMap tone_map = ToneMap::kFilmic;
-  bool white_balance = true;  // to the scene's sun and sky
+  bool white_balance = true;  // adjusts to the scene's sun and sky
 
   bool operator==(const Display&) const = default;
 };
@@ -177,23 +182,23 @@ struct Scene {
   Sky sky;
   Ground ground;
   std::vector<DirectionalLight> lights;
-  std::array<FieldParameters, physics::kHydrometeorCount> fields;  // by physics::IndexOf
+  std::array<FieldParameters, physics::kHydrometeorCount> fields;  // indexed by physics::IndexOf
   Rendering rendering;
   Display display;
   Output output;
-  Accuracy accuracy;  // decides much of `rendering`, which renderers are given decided
+  Accuracy accuracy;  // determines most of `rendering`; renderers receive a scene with it resolved
 
-  // A scene with the default optics of every field.
+  // Creates a scene with the default optics of every field.
   Scene();
 
   bool operator==(const Scene&) const = default;
 };
 
-// A field's detail as it is drawn on a grid of such cells, its wavelength given; a share of 0 if
-// none.
+// Returns a field's detail as it is drawn on a grid with cells of this size, with a resolved
+// wavelength. The share is 0 if no detail is drawn.
 Detail DrawnDetail(const Scene& scene, physics::Hydrometeor hydrometeor, const glm::dvec3& cell_m);
 
-// The first stage that must rerun when `before` becomes `after`.
+// Returns the first stage that must rerun when `before` becomes `after`.
 Stage FirstDirtyStage(const Scene& before, const Scene& after);
 
 }  // namespace thunderhead::scene

@@ -8,11 +8,11 @@
 namespace thunderhead::scene {
 namespace {
 
-// Beyond, a storm of 12 km hides less than 8 % of the sky.
+// At this distance, a storm 12 km high hides less than 8 % of the sky.
 constexpr double kSkyMargin_m = 1.5e4;
-// The shadow of a low sun goes on for longer, in air that is hardly seen any more.
+// The shadow of a low sun is longer, but its far end lies in air that hardly affects the picture.
 constexpr double kLongestShadow_m = 1.5e5;
-// Of the round Earth's ground below the world's plane, 200 km away.
+// How far the round Earth's ground lies below the world's plane at a distance of 200 km.
 constexpr double kFallOfGround_m = 2700.0;
 
 }  // namespace

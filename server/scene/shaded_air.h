@@ -1,5 +1,5 @@
-// The air that a storm shades: where renderers and the reference look for light that is missing
-// from what the air sends to the eye.
+// The air that a storm shades. Renderers and the reference subtract the missing light only from
+// in-scattering in this air.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -7,14 +7,15 @@
 
 namespace thunderhead::scene {
 
-// Air outside both boxes counts as lit by the clear sky.
+// Boxes of shaded air. The clear sky and the sun light all air outside both boxes.
 struct ShadedAir {
   volume::WorldBox from_sun;  // around the storm and its shadow, down to the ground
-  volume::WorldBox from_sky;  // around where the storm hides a good part of the sky
+  // Around the places from which the storm hides a large part of the sky.
+  volume::WorldBox from_sky;
 };
 
-// `storm` is the box around the medium; `towards_sun` a unit vector. With the sun below the horizon
-// no air is lit by it.
+// Returns the boxes for a medium with the bounding box `storm`. `towards_sun` must be a unit
+// vector. If the sun is below the horizon, it lights no air.
 ShadedAir ShadedAirOf(const volume::WorldBox& storm, const glm::dvec3& towards_sun,
                       double ground_m);
 

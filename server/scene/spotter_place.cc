@@ -13,13 +13,13 @@
 namespace thunderhead::scene {
 namespace {
 
-// A tower as high or higher is seen from kNearest_m to kFarthest_m, a lower one from
-// proportionally nearer.
+// A tower of this height or higher is viewed from kNearest_m to kFarthest_m. For a lower tower
+// these distances shrink in proportion.
 constexpr double kTallTower_m = 12e3;
 constexpr double kNearest_m = 15e3;
 constexpr double kFarthest_m = 25e3;
 constexpr double kStep_m = 500.0;
-constexpr double kMaxSteps = 4000.0;  // to outside the domain
+constexpr double kMaxSteps = 4000.0;  // enough to leave the domain
 
 // Shares of the picture's height.
 constexpr double kMinGround = 1.0 / 6.0;
@@ -28,28 +28,28 @@ constexpr double kSkyAboveTop = 0.05;
 
 constexpr int kDirections = 24;
 
-// Weights of the hidden tower, of the hidden sky above it, and of looking straight against the sun,
-// where all that faces the eye is in shadow; the hidden base counts as 1.
+// Weights of the hidden tower, of the hidden sky above it, and of a view straight towards the sun.
+// Against the sun the side that faces the eye is in shadow. The hidden base has the weight 1.
 constexpr double kTowerWeight = 0.5;
 constexpr double kSkyWeight = 0.5;
 constexpr double kBacklitWeight = 1.0;
 
-// Under a wide anvil nothing of the tower is seen from less than kFarthest_m. So on each side
-// places this many times as far are looked at, too, and as far again as it takes to be clear of
-// cloud; they cost this much for each further kFarthest_m, as haze takes contrast.
+// Within kFarthest_m, a wide anvil hides the tower. Each side is therefore also tried at these
+// multiples of the distance, and farther if cloud surrounds the eye. Each further kFarthest_m adds
+// kDistanceWeight to the cost, because haze reduces contrast.
 constexpr double kFarther[] = {1.5, 2.0};
 constexpr double kDistanceWeight = 0.3;
 
-// By which a side must be better than one that is nearer to the camera's own azimuth.
+// The smallest cost advantage by which a side replaces one nearer to the camera's own azimuth.
 constexpr double kNearEqual = 0.02;
 
-// The storm's core as a camera sees it. Angles are elevations in radians.
+// The elevations, in radians, under which a camera sees the storm's core.
 struct CoreView {
-  double lowest_tilt = 0.0;   // of the camera: shows kMaxGround
-  double highest_tilt = 0.0;  // shows kMinGround
+  double lowest_tilt = 0.0;   // of the camera; the ground fills kMaxGround
+  double highest_tilt = 0.0;  // of the camera; the ground fills kMinGround
   double to_edge = 0.0;       // from the picture's middle to its upper edge
-  double to_sky = 0.0;        // to kSkyAboveTop below that
-  double top = 0.0;           // of the core
+  double to_sky = 0.0;        // from the picture's middle to kSkyAboveTop below the upper edge
+  double top = 0.0;           // top of the core
 
   bool TopFits() const { return top <= highest_tilt + to_sky; }
   double Tilt() const { return std::clamp(top - to_sky, lowest_tilt, highest_tilt); }
@@ -66,13 +66,13 @@ CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields
       std::acos(kEffectiveEarthRadius_m / (kEffectiveEarthRadius_m + camera.eye_height_m));
   const glm::dvec3 top =
       view.local_from_world * (glm::dvec3(core.place_m, core.top_m) - view.eye_m);
-  // Its near side hides the top's middle.
+  // The near side of the core hides the middle of its top.
   const double distance_m = std::max(glm::length(glm::dvec2(top)) - core.Radius_m(), 1.0);
   return {to_band(kMaxGround) - dip, to_band(kMinGround) - dip, to_band(0.0), to_band(kSkyAboveTop),
           std::atan2(top.z, distance_m)};
 }
 
-// Finds places to stand. Sight lines are those of a flat Earth.
+// Finds places for a spotter. Sight lines assume a flat Earth.
 class Stands {
  public:
   Stands(const volume::HydrometeorFields& fields, const volume::StormCore& core,
@@ -84,8 +84,8 @@ class Stands {
         scale_(std::min(core.Height_m() / kTallTower_m, 1.0)),
         sight_(fields, core, sizes) {}
 
-  // `camera` on the side from which it looks to `azimuth_deg`, as near as shows the top and is
-  // clear of cloud and rain, but not nearer than `nearest_m`.
+  // Returns `camera` on the side from which it looks to `azimuth_deg`. The place is the nearest one
+  // that shows the top, is clear of cloud and rain, and is at least `nearest_m` away.
   SpotterCamera Standing(SpotterCamera camera, double azimuth_deg, double nearest_m) const {
     camera.azimuth_deg = azimuth_deg;
     const glm::dvec2 towards(Direction(azimuth_deg, 0.0));
@@ -101,8 +101,8 @@ class Stands {
     }
   }
 
-  // Cost of a place: its distance, how far it looks against the sun, and the weighted shares of the
-  // view that are hidden from it.
+  // Returns the cost of a place: its distance, how much it looks towards the sun, and the weighted
+  // hidden shares of the view.
   double Cost(const SpotterCamera& camera) const {
     const glm::dvec3 eye_m = Eye(camera);
     const double distance_m = glm::length(camera.place_m - core_.place_m);
@@ -117,7 +117,8 @@ class Stands {
   double Farthest_m() const { return scale_ * kFarthest_m; }
 
  private:
-  // From 0, with the sun behind or beside the camera, to 1, against a low sun.
+  // Returns 0 if the sun is behind the camera or at its side, up to 1 if the camera looks towards a
+  // low sun.
   double Backlit(const SpotterCamera& camera) const {
     if (towards_sun_.z <= 0.0) return 0.0;
     return std::max(glm::dot(Direction(camera.azimuth_deg, 0.0), towards_sun_), 0.0);
@@ -131,7 +132,7 @@ class Stands {
   const volume::StormCore& core_;
   glm::dvec3 towards_sun_;
   double aspect_ratio_;
-  double scale_;  // of lengths, where the tower is low
+  double scale_;  // scale of lengths for low towers
   volume::CoreSight sight_;
 };
 
@@ -140,7 +141,8 @@ SpotterCamera OnBestSide(const Stands& stands, const SpotterCamera& camera) {
   double least_cost = std::numeric_limits<double>::infinity();
   const auto look_at = [&](double nearest_m) {
     for (int i = 0; i < kDirections; ++i) {
-      // To the right and to the left in turns, ever farther from the camera's own azimuth.
+      // Directions alternate between right and left, with growing distance from the camera's own
+      // azimuth.
       const int turn = i % 2 == 1 ? (i + 1) / 2 : -i / 2;
       const SpotterCamera standing =
           stands.Standing(camera, camera.azimuth_deg + turn * 360.0 / kDirections, nearest_m);

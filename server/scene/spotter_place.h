@@ -1,6 +1,6 @@
-// Where a spotter stands who is told no place: some 15 to 25 km from the strongest core, farther
-// where an anvil would be overhead, on a side that the sun lights and from which the least rain
-// hides its base.
+// The place of a spotter for requests that give none. It is about 15 to 25 km from the strongest
+// core, or farther if an anvil would be overhead. It is on a side that the sun lights and from
+// which little rain hides the core's base.
 #pragma once
 
 #include "scene/scene.h"
@@ -9,24 +9,24 @@
 
 namespace thunderhead::scene {
 
-// Which directions may be chosen.
+// The directions that may be chosen.
 enum class SpottersSide { kBest, kOppositeAzimuth };
 
-// `camera` with a place, azimuth and elevation from which the whole tower is in the picture, the
-// ground filling a sixth to a quarter of its height. `camera` gives eye height and lens; with
-// kOppositeAzimuth also the azimuth it looks to, else only which of equal sides is taken.
-// `towards_sun` is a unit vector; a sun below the horizon lights no side.
+// Returns `camera` with a place, azimuth and elevation that show the whole tower. Ground fills a
+// sixth to a quarter of the picture's height. `camera` gives eye height and lens. With
+// kOppositeAzimuth it also gives the azimuth to look to. With kBest its azimuth only decides
+// between equal sides. `towards_sun` is a unit vector. A sun below the horizon lights no side.
 //
-// The distance is the smallest that shows the tower's top, from 1.25 to 2.1 times the tower's
-// height (15 to 25 km for 12 km), and for a higher tower from 15 to 25 km; more where there is
-// cloud or rain around the eye, and with kBest where cloud covers the sky above the tower. If the
-// lens is too long for that, the top is cut off.
+// The distance is the smallest that shows the tower's top. It is 1.25 to 2.1 times the tower's
+// height (15 to 25 km for 12 km), and 15 to 25 km for a higher tower. It is larger if cloud or rain
+// surrounds the eye and, with kBest, if cloud covers the sky above the tower. If the lens is too
+// long for that distance, the top is cut off.
 SpotterCamera SpottingCore(SpotterCamera camera, SpottersSide side,
                            const volume::HydrometeorFields& fields, const volume::StormCore& core,
                            physics::SizeSource sizes, const glm::dvec3& towards_sun,
                            double aspect_ratio);
 
-// The spotter where it stands, its head turned to the core, as above.
+// Returns the spotter at its own place, turned to the core with the tilt that SpottingCore uses.
 SpotterCamera LookingAt(SpotterCamera camera, const volume::HydrometeorFields& fields,
                         const volume::StormCore& core, double aspect_ratio);
 

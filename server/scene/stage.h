@@ -3,7 +3,7 @@
 
 namespace thunderhead::scene {
 
-// In order; a change reruns the first stage that it dirties and every later one.
+// The stages in their order. A change reruns the first stage that it dirties and every later one.
 enum class Stage { kStorm, kExtinction, kLight, kView, kTone, kNothing };
 
 }  // namespace thunderhead::scene

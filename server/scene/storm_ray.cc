@@ -11,7 +11,8 @@
 namespace thunderhead::scene {
 namespace {
 
-// The box outside of which everything between cells' middles is 0, within the domain.
+// Returns the part of the ray within the domain and the box outside of which all interpolated
+// values are 0.
 Span NearCondensate(const volume::HydrometeorFields& fields, const glm::dvec3& origin_m,
                     const glm::dvec3& direction, const Span& in_domain) {
   const volume::RegularGrid& grid = fields.grid;

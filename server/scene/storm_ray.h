@@ -1,6 +1,6 @@
-// A ray from an eye through a storm, up to the ground: its optical depth, and what it shows. From
-// the fields as the scene draws them, without turbulent detail; exact for values that are linear
-// between cells' middles (ray_pieces.h). Without GL.
+// A ray from an eye through a storm to the ground: its optical depth, and what a viewer sees along
+// it. It uses the fields as the scene draws them, without turbulent detail. Results are exact for
+// values that are linear between cell centres (ray_pieces.h). This code does not use GL.
 #pragma once
 
 #include <optional>
@@ -15,29 +15,31 @@ namespace thunderhead::scene {
 
 enum class Seen { kCloud, kGround, kSky };
 
-// A ray through less cloud shows what lies behind.
+// A ray with a smaller optical depth shows what lies behind the cloud.
 inline constexpr double kThinnestSeen_depth = 0.1;
 
 class StormRay {
  public:
-  // `direction` has the length 1.
+  // `direction` must have the length 1.
   StormRay(const Scene& scene, const volume::HydrometeorFields& fields, const glm::dvec3& origin_m,
            const glm::dvec3& direction);
 
   glm::dvec3 At_m(double along_m) const { return origin_m_ + along_m * direction_; }
 
-  // Up to the ground.
+  // Returns the optical depth up to the ground.
   double OpticalDepth() const { return depth_; }
-  // Where that is reached; nothing if it is not.
+  // Returns the distance at which the optical depth reaches `depth`, or nothing if it does not.
   std::optional<double> WhereDepthIs_m(double depth) const;
   std::optional<double> Ground_m() const { return ground_m_; }
-  // The part in the domain, up to the ground; empty if it misses that.
+  // Returns the part of the ray in the domain, up to the ground. It is empty if the ray misses the
+  // domain.
   const Span& InDomain() const { return in_domain_; }
-  // Its pieces near condensate.
+  // Returns the ray's pieces near condensate.
   const std::vector<RayPiece>& Pieces() const { return pieces_; }
 
   Seen WhatIsSeen() const;
-  // Of cloud where half of its share of what is seen lies before it; nothing for the sky.
+  // Returns the distance to what is seen, or nothing for the sky. For cloud, it is the point with
+  // half of the cloud's visible contribution in front of it.
   std::optional<double> WhereSeen_m() const;
 
  private:
@@ -51,7 +53,7 @@ class StormRay {
   std::optional<double> ground_m_;
   Span in_domain_;
   std::vector<RayPiece> pieces_;
-  std::vector<Step> steps_;  // of the pieces
+  std::vector<Step> steps_;  // one for each piece
   double depth_ = 0.0;
 };
 

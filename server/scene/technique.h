@@ -1,5 +1,5 @@
-// The techniques that can draw a scene, each with its own settings (scene/techniques/), and what
-// code that serves all of them asks of any.
+// The techniques that can draw a scene, each with its own settings (scene/techniques/), and queries
+// that work for every technique.
 #pragma once
 
 #include <optional>
@@ -18,40 +18,45 @@ namespace thunderhead::scene {
 using Technique =
     std::variant<LightVolume, HalfAngle, Metaballs, Cumulus, Reference, OtherTechnique>;
 
-// Its name in messages, tables and flags, such as "light_volume".
+// Returns the technique's name in messages, tables and flags, such as "light_volume".
 std::string_view NameOf(const Technique& technique);
 
 const Capabilities& CapabilitiesOf(const Technique& technique);
 
-// None for techniques that do not draw a medium by these settings.
+// Returns null for techniques that do not draw a medium with these settings.
 const MediumSettings* MediumSettingsOf(const Technique& technique);
 MediumSettings* MediumSettingsOf(Technique* technique);
-// Default ones for techniques without; one that the program was extended by may draw a medium.
+// Returns default settings for techniques that have none. A technique added as an extension may
+// still draw a medium.
 MediumSettings MediumSettingsOrDefault(const Technique& technique);
 
-// Which of the fields' own properties it shows.
+// Returns which of the fields' own properties the technique shows.
 FieldLook FieldLookOf(const Technique& technique);
 
-// True if it is traced beside the renderers, ever finer, in place of being drawn by one.
+// Returns true if the technique is path-traced progressively instead of being drawn by a renderer.
 bool IsTraced(const Technique& technique);
 
-// The number of slices or samples that its pictures depend on, if they do.
+// Returns the number of slices or samples that the technique's pictures depend on, if they depend
+// on one.
 std::optional<int> SlicesOf(const Technique& technique);
 void SetSlices(Technique* technique, int slices);
 
-// The number that its pictures converge with: slices, samples or metaballs; 1 if there is none.
+// Returns the number with which the technique converges: slices, samples or metaballs. Returns 1 if
+// there is none.
 int CountOf(const Technique& technique);
 void SetCount(Technique* technique, int count);
 
-// How the cost of a picture grows with its pixels: slices, balls or ellipsoids over each.
+// Returns the number of slices, balls or ellipsoids that cover a pixel, by which the cost grows
+// with the pixels.
 double SamplesPerPixel(const Technique& technique, double slice_share);
 
-// When traced paths correct the light that it shows.
+// Returns when path tracing corrects the technique's light.
 TracedLight TracedLightOf(const Technique& technique);
-// Changes nothing where traced paths cannot correct it.
+// Sets when path tracing corrects the light. It has no effect on techniques without that
+// correction.
 void SetTracedLight(Technique* technique, TracedLight traced_light);
 
-// The first stage that must rerun when `before` becomes `after`.
+// Returns the first stage that must rerun when `before` becomes `after`.
 Stage FirstDirtyStage(const Technique& before, const Technique& after);
 
 }  // namespace thunderhead::scene

@@ -1,4 +1,4 @@
-// An available technique as it is told to clients.
+// The description of an available technique that clients receive.
 #pragma once
 
 #include <string>

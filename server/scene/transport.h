@@ -1,23 +1,25 @@
-// Ways to carry the light that a medium scatters.
+// Methods of propagating the light that a medium scatters.
 #pragma once
 
 namespace thunderhead::scene {
 
-// How the light that the medium scatters is carried (docs/clouds.md and decisions 4, 6 and 9).
+// How the technique propagates scattered light (docs/clouds.md and decisions 4, 6 and 9).
 enum class Transport {
-  kPaper,           // Riley et al. 2003 (Vis), eq. 14-17 as printed
-  kConsistent,      // the exact exponential of the effective extinction
-  kDiffusion,       // multiple scattering from the diffusion equation; the light volume alone
-  kLowAlbedo,       // single scattering: light that strikes a particle is lost to all others
-  kPaperLowAlbedo,  // the same, phase functions normalised over their dynamic range for display
+  kPaper,       // Riley et al. 2003 (Vis), eq. 14-17 as printed
+  kConsistent,  // the exact exponential of the effective extinction
+  kDiffusion,   // multiple scattering from the diffusion equation; only in the light volume
+  kLowAlbedo,   // single scattering; each interaction removes light from the beam
+  // Single scattering, with phase functions normalised over their dynamic range for display.
+  kPaperLowAlbedo,
 };
 
-// With the paper's step by step arithmetic and display, not the exact exponential.
+// Returns true if the transport uses the paper's stepwise arithmetic and display instead of the
+// exact exponential.
 constexpr bool IsPaper(Transport transport) {
   return transport == Transport::kPaper || transport == Transport::kPaperLowAlbedo;
 }
 
-// Light scattered forward goes on.
+// Returns true if light scattered forward continues through the medium.
 constexpr bool IsTranslucent(Transport transport) {
   return transport != Transport::kLowAlbedo && transport != Transport::kPaperLowAlbedo;
 }

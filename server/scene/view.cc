@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kMargin = 1.05;
 
-// Above practically all air, so that a picture from there shows what a satellite sees.
+// Above practically all air, so that a picture from this altitude shows what a satellite sees.
 constexpr double kSatelliteAltitude_m = 1e5;
 
 // Sets the axes of a view along `forward`, with `up` upright in the local frame of `zenith`.
@@ -31,15 +31,15 @@ void LookAlong(const glm::dvec3& forward, const glm::dvec3& zenith, View* view) 
   view->up = glm::cross(view->right, forward);
 }
 
-// Half the picture's size over the focal length, cut out of a frame of 36 x 24 mm.
+// Returns half the picture's size divided by the focal length, cut out of a frame of 36 x 24 mm.
 glm::dvec2 HalfFrame(double focal_length_mm, double aspect_ratio) {
   const double half_width_mm = aspect_ratio >= 1.5 ? 18.0 : 12.0 * aspect_ratio;
   return glm::dvec2(half_width_mm, half_width_mm / aspect_ratio) / focal_length_mm;
 }
 
-// Sets what of a view follows from the Earth's roundness and the eye's place; returns how far the
-// sea there is below the world's plane. A paraboloid stands in for the sphere: at 150 km they
-// differ by 0.05 m.
+// Sets the members of a view that follow from the Earth's curvature and the eye's place. Returns
+// how far sea level at the eye is below the world's plane. A paraboloid approximates the sphere: at
+// 150 km they differ by 0.05 m.
 double StandOnEarth(const Site& site, View* view) {
   view->touch_m = site.storm_middle_m;
   view->ground_curvature_per_m = 1.0 / kEffectiveEarthRadius_m;
@@ -139,7 +139,7 @@ View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields) {
 double FramingElevation_deg(const glm::dvec3& low_m, const glm::dvec3& high_m) {
   constexpr double kStormElevation_deg = OrbitCamera().elevation_deg;
   constexpr double kDomainElevation_deg = 35.0;
-  constexpr double kStormHeight = 0.1;  // over the width
+  constexpr double kStormHeight = 0.1;  // height divided by width
   constexpr double kDomainHeight = 0.02;
   const glm::dvec3 size_m = high_m - low_m;
   const double height = size_m.z / std::max(std::max(size_m.x, size_m.y), 1.0);
@@ -191,7 +191,8 @@ SpotterCamera LookingAt(SpotterCamera camera, const glm::dvec3& low_m, const glm
   const glm::dvec2 towards_m = glm::dvec2(low_m + high_m) / 2.0 - camera.place_m;
   const double distance_m = glm::length(towards_m);
   if (distance_m > 0.0) camera.azimuth_deg = AzimuthOf(towards_m);
-  // The storm's top is as far above the middle of the picture as the ground at its foot is below.
+  // The camera looks down so that the top is as far above the picture's middle as the near ground
+  // is below it.
   camera.elevation_deg = 0.5 * glm::degrees(std::atan2(high_m.z - low_m.z, distance_m));
   return camera;
 }

@@ -1,11 +1,12 @@
-// The geometry of a picture: which ray each pixel stands for. Derived from a scene's camera and the
-// ground under it.
+// The geometry of a picture: the ray of each pixel. It follows from a scene's camera and the ground
+// under the camera.
 //
-// World coordinates are those of the plane that touches the round Earth below the storm's middle:
-// the ground falls away from there as d^2 / 2R, and where an eye stands off it, its upright leans
-// with it. So a distant storm sinks below a spotter's horizon while rays stay straight lines. The
-// storm itself stays flat: what is r away from its middle stands r^2 / 2R too high, 15 m at 15 km
-// and 170 m at 50 km, however far the eye is. A top-down camera sees a flat world.
+// World coordinates are those of the plane that touches the round Earth below the storm's middle.
+// The ground falls away from that point as d^2 / 2R, and the upright of a distant eye tilts
+// accordingly. A distant storm therefore sinks below a spotter's horizon while rays stay straight
+// lines. The storm itself stays flat, so its parts at a distance r from its middle are r^2 / 2R too
+// high. That is 15 m at 15 km and 170 m at 50 km, however far away the eye is. A top-down camera
+// sees a flat world.
 #pragma once
 
 #include "glm/mat3x3.hpp"
@@ -19,9 +20,9 @@ namespace thunderhead::scene {
 using physics::kEffectiveEarthRadius_m;
 
 // `right`, `up` and `forward` are unit vectors. The ray through normalised device coordinates (x,
-// y) starts at eye_m + x half_width_m right + y half_height_m up and has the direction forward + x
-// tan_half_width right + y tan_half_height up. In perspective the half sizes are zero, for parallel
-// rays the tangents.
+// y) starts at eye_m + x half_width_m right + y half_height_m up. Its direction is forward + x
+// tan_half_width right + y tan_half_height up. The half sizes are zero in perspective, and the
+// tangents are zero for parallel rays.
 struct View {
   glm::dvec3 eye_m{0.0};
   glm::dvec3 right{1.0, 0.0, 0.0};
@@ -32,58 +33,61 @@ struct View {
   double half_width_m = 0.0;
   double half_height_m = 0.0;
 
-  // East, north and up where the eye is, from world directions.
+  // Transforms world directions to east, north and up at the eye.
   glm::dmat3 local_from_world{1.0};
-  double altitude_m = 0.0;              // of the eye above sea level
+  double altitude_m = 0.0;              // height of the eye above sea level
   glm::dvec2 touch_m{0.0};              // where the world's plane touches the Earth
-  double ground_curvature_per_m = 0.0;  // away from there; 0 is flat
+  double ground_curvature_per_m = 0.0;  // curvature away from touch_m; 0 is flat
 
   bool Orthographic() const { return half_width_m > 0.0; }
 };
 
-// `direction` has the length 1.
+// A ray with a `direction` of length 1.
 struct ViewRay {
   glm::dvec3 origin_m{0.0};
   glm::dvec3 direction{0.0, 1.0, 0.0};
 };
-// Through normalised device coordinates.
+// Returns the ray through normalised device coordinates.
 ViewRay RayThrough(const View& view, double x, double y);
 
-// Where a storm is: what of it a view depends on.
+// The position of a storm, as far as a view depends on it.
 struct Site {
-  double ground_height_m = 0.0;  // above sea level, under a spotter
+  double ground_height_m = 0.0;  // height above sea level of the ground under a spotter
   glm::dvec2 storm_middle_m{0.0};
 };
 
-// The unit vector that points to azimuth (clockwise from north) and elevation.
+// Returns the unit vector towards azimuth (clockwise from north) and elevation.
 glm::dvec3 Direction(double azimuth_deg, double elevation_deg);
 
-// The view of a camera on a picture of the given aspect ratio (width over height).
-View ViewOf(const OrbitCamera& camera, double aspect_ratio);  // on a flat Earth
+// Returns the view of a camera on a picture of the given aspect ratio (width over height).
+View ViewOf(const OrbitCamera& camera, double aspect_ratio);  // view on a flat Earth
 View ViewOf(const OrbitCamera& camera, const Site& site, double aspect_ratio);
 View ViewOf(const SpotterCamera& camera, const Site& site, double aspect_ratio);
 View ViewOf(const TopDownCamera& camera, double aspect_ratio);
 
-// Where the storm is, for a spotter at `place_m`.
+// Returns the site of the storm for a spotter at `place_m`.
 Site SiteOf(const volume::HydrometeorFields& fields, const glm::dvec2& place_m);
 
-// The view of the scene's camera on its storm.
+// Returns the view of the scene's camera on its storm.
 View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields);
 
-// The elevation from which an orbit shows the box `low_m` to `high_m` well: 4 degrees where it is
-// at least a tenth as high as wide, as single storms are, 35 where it is at most a fiftieth.
+// Returns an elevation from which an orbit camera shows the box `low_m` to `high_m` well. It is 4
+// degrees if the height is at least a tenth of the width, as for single storms, and 35 degrees if
+// it is at most a fiftieth.
 double FramingElevation_deg(const glm::dvec3& low_m, const glm::dvec3& high_m);
 
-// The camera that frames the box `low_m` to `high_m` whole, standing and looking as `camera` does.
+// Returns a camera that shows the whole box `low_m` to `high_m` from the direction of `camera`.
 OrbitCamera Framing(OrbitCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                     double aspect_ratio);
-// `camera` gives the azimuth it looks to and the focal length.
+// Returns a spotter that shows the whole box. `camera` gives the azimuth to look to and the focal
+// length.
 SpotterCamera Framing(SpotterCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                       double aspect_ratio);
 TopDownCamera Framing(TopDownCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                       double aspect_ratio);
 
-// The spotter where it stands, its head turned to the middle of the box, the horizon in sight.
+// Returns the spotter at its own place, turned to the middle of the box, with the horizon in the
+// picture.
 SpotterCamera LookingAt(SpotterCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m);
 
 }  // namespace thunderhead::scene

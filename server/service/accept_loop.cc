@@ -18,7 +18,7 @@
 namespace thunderhead::service {
 namespace {
 
-// After an error, as when there are no file descriptors left.
+// Pause after an error, for example when no file descriptors are left.
 constexpr std::chrono::milliseconds kPause{100};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Accepts connections on sockets that listen, on a thread of its own.
+// Accepts connections on listening sockets, on a separate thread.
 #pragma once
 
 #include <chrono>
@@ -16,18 +16,18 @@ namespace thunderhead::service {
 
 class AcceptLoop {
  public:
-  // Takes over `connection`, which does not block; on the loop's thread.
+  // Takes ownership of `connection`, which is non-blocking. It is called on the loop's thread.
   using Take = std::function<void(base::FileDescriptor connection)>;
 
-  // Another task of the loop's thread, run at least that often by `time`, which must outlive the
-  // loop.
+  // An additional task of the loop's thread. It runs at least once every `pause`, measured by
+  // `time`, which must outlive the loop.
   struct Chore {
     std::chrono::milliseconds pause;
     std::function<void()> run;
     const base::TimeSource* time = &base::SteadyTime();
   };
 
-  // Accepts until it is destroyed. `sockets` listen and do not block.
+  // Starts a loop that accepts until it is destroyed. `sockets` must be listening and non-blocking.
   static absl::StatusOr<std::unique_ptr<AcceptLoop>> Start(
       std::vector<base::FileDescriptor> sockets, Take take,
       std::optional<Chore> chore = std::nullopt);
@@ -42,7 +42,7 @@ class AcceptLoop {
         stop_(std::move(stop)),
         take_(std::move(take)),
         chore_(std::move(chore)) {}
-  // Runs the chore if it is due. Returns how long poll may wait, in milliseconds.
+  // Runs the chore if it is due, and returns the timeout for poll in milliseconds.
   int DoChore();
   void Run();
 

@@ -23,7 +23,7 @@ std::optional<std::string> Metadata(const grpc::CallbackServerContext& context, 
   return std::string(begin->second.data(), begin->second.size());
 }
 
-// All of the header's lines, in their order.
+// Returns all lines of the header, in order.
 std::string ForwardedFor(const grpc::CallbackServerContext& context) {
   const auto [begin, end] = context.client_metadata().equal_range("x-forwarded-for");
   std::string all;
@@ -34,8 +34,8 @@ std::string ForwardedFor(const grpc::CallbackServerContext& context) {
   return all;
 }
 
-// The connection's other end, "1.2.3.4:80" or "[::1]:80" of gRPC's "ipv4:1.2.3.4:80" or
-// "ipv6:%5B::1%5D:80"; nothing for the local socket.
+// Returns the remote end of the call's connection: "1.2.3.4:80" or "[::1]:80" from gRPC's
+// "ipv4:1.2.3.4:80" or "ipv6:%5B::1%5D:80". Returns nothing for the local socket.
 std::optional<std::string> ConnectionOf(const grpc::CallbackServerContext& context) {
   const std::string peer = context.peer();
   absl::string_view address = peer;
@@ -49,7 +49,8 @@ std::string PeerOf(const access::Door& door, const grpc::CallbackServerContext& 
   if (const auto connection = ConnectionOf(context); connection.has_value()) {
     return door.Proxies().ClientOf(*connection, ForwardedFor(context));
   }
-  // The local socket, to which only this user's processes connect: the gateway tells its client.
+  // The call came through the local socket, to which only this user's processes connect. The
+  // gateway reports its client's address.
   return Metadata(context, "x-forwarded-for").value_or("");
 }
 
@@ -59,7 +60,8 @@ CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, c
                access::CallKind kind) {
   access::Credentials credentials{"", PeerOf(door, context)};
   const std::string header = Metadata(context, "authorization").value_or("");
-  // With several tokens a proxy in front may have looked at another one: none of them counts.
+  // If there are several tokens, a proxy in front may have checked a different one. So none of them
+  // is valid.
   const bool is_one = context.client_metadata().count("authorization") == 1;
   if (is_one && absl::StartsWithIgnoreCase(header, kScheme)) {
     credentials.token = header.substr(sizeof(kScheme) - 1);
@@ -73,7 +75,7 @@ CallerOr Entrance::Enter(const grpc::CallbackServerContext& context, const char*
   if (caller.ok() && !closed_.ok()) return closed_;
   const std::optional<std::string> connection = ConnectionOf(context);
   if (!caller.ok() || !connection.has_value()) return caller;
-  // Counts while somebody has the caller.
+  // Keeps the call counted while any copy of the caller exists.
   struct Counted {
     std::shared_ptr<const access::Caller> caller;
     std::shared_ptr<const void> call;

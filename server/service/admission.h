@@ -1,4 +1,5 @@
-// Lets a call in, or not: finds in its metadata what the client shows, and asks the door.
+// Admission of calls: reads the client's credentials from a call's metadata and asks the access
+// control (access::Door) for a decision.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -17,21 +18,21 @@ namespace thunderhead::service {
 
 using CallerOr = absl::StatusOr<std::shared_ptr<const access::Caller>>;
 
-// By the header "authorization: Bearer TOKEN" and the client's address, which for calls of the
-// gateway and of trusted proxies is what they say.
+// Admits a call by its header "authorization: Bearer TOKEN" and the client's address. For calls
+// from the gateway and from trusted proxies, the address is the one that they report.
 CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, const char* method,
                access::CallKind kind);
 
-// The entrance of one service: each call is answered by its handler, or by a refusal. An exception
-// of a handler is answered by INTERNAL.
+// The entry point of one service. Each call is either handled or refused. An exception in a handler
+// gives INTERNAL.
 class Entrance {
  public:
-  // `closed` is why those whom the door lets in are refused all the same; OK: they are not. `calls`
-  // counts the calls that are let in.
+  // `closed` is the reason for refusing even admitted calls; OK means that they are handled.
+  // `calls` counts the admitted calls.
   Entrance(access::Door& door, ConnectionCalls& calls, absl::Status closed = absl::OkStatus())
       : door_(door), calls_(calls), closed_(std::move(closed)) {}
 
-  // `handle` takes the caller and returns the call's reactor.
+  // Handles a unary call. `handle` takes the caller and returns the call's reactor.
   template <typename Handler>
   grpc::ServerUnaryReactor* Unary(const char* method, grpc::CallbackServerContext* context,
                                   const Handler& handle) const {

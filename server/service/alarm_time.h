@@ -1,4 +1,4 @@
-// Alarms of gRPC for times of a TimeSource.
+// Conversion of a TimeSource's times for alarms of gRPC.
 #pragma once
 
 #include <chrono>
@@ -7,8 +7,8 @@
 
 namespace thunderhead::service {
 
-// Returns the time of the system's clock at which an alarm for `due` must ring. The code that it
-// calls must look at `time` again, and set another alarm if `due` has not passed by it.
+// Returns the system clock's time at which an alarm for `due` must fire. The alarm's callback must
+// check `time` again, and set another alarm if `due` has not passed.
 inline std::chrono::system_clock::time_point AlarmTime(const base::TimeSource& time,
                                                        base::TimeSource::Clock::time_point due) {
   return std::chrono::system_clock::now() +

@@ -13,7 +13,7 @@ void Answer::Give(absl::Status status) {
     if (place.ok()) place_ = *std::move(place);
     delivery_.Begin(response_.ByteSizeLong());
   }
-  // Errors have no message, and HTTP/2 always has room for what they do have.
+  // An error sends no message, and HTTP/2 flow control does not limit what it does send.
   Finish(ToGrpcStatus(status));
 }
 

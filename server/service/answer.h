@@ -1,5 +1,5 @@
-// The answer of a unary call, from when it is ready until its client has taken it. Meanwhile it
-// counts as one of those that wait for its caller, and it has a deadline.
+// The response of a unary call, from when it is ready until its client has received it. During that
+// time it counts towards the caller's pending responses and has a deadline.
 #pragma once
 
 #include <google/protobuf/message.h>
@@ -15,15 +15,16 @@
 
 namespace thunderhead::service {
 
-// Deletes itself when gRPC calls OnDone.
+// The reactor that sends a response. It deletes itself when gRPC calls OnDone.
 class Answer final : public grpc::ServerUnaryReactor {
  public:
-  // `limits` must outlive it.
+  // Creates the reactor. `limits` must outlive it.
   Answer(grpc::CallbackServerContext* context, const Limits& limits,
          std::shared_ptr<const access::Caller> caller, const google::protobuf::Message& response)
       : caller_(std::move(caller)), response_(response), delivery_(context, limits) {}
 
-  // Called once: ends the call with the response, which is complete, or with an error.
+  // Ends the call with the response, which must be complete, or with an error. It must be called
+  // exactly once.
   void Give(absl::Status status);
 
   void OnDone() override { delete this; }

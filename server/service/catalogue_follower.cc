@@ -13,13 +13,14 @@
 namespace thunderhead::service {
 namespace {
 
-// A session whose scene is being changed by somebody is looked at again, for this long: after that
-// the change, which may wait for a long read, is taken to know the catalogue.
+// If another change of a session's scene is in progress, the session is retried for this long.
+// After that, the other change, which may wait for a long read, is assumed to know the new
+// catalogue.
 constexpr int kAttempts = 40;
 constexpr std::chrono::milliseconds kBetweenAttempts{50};
 
-// True if what that time shows is another file's than before the change, or the storm has come
-// back.
+// Returns true if the time now comes from a different file than before the change, or if the storm
+// has come back.
 bool IsReplaced(const storm_store::StormChange& change, std::size_t time) {
   if (change.before == nullptr) return true;
   const std::vector<storm_store::StormTime>& before = change.before->times;
@@ -41,7 +42,7 @@ std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
     return StormPlace{change.after->id, static_cast<std::uint32_t>(index)};
   };
   if (time_index + 1 >= before.size()) return place(after.size() - 1);
-  // ISO 8601 sorts as the times do.
+  // ISO 8601 strings sort in the order of their times.
   const auto at = std::ranges::upper_bound(after, before[time_index].valid_time, {},
                                            &storm_store::StormTime::valid_time);
   return place(at == after.begin() ? 0 : static_cast<std::size_t>(at - after.begin()) - 1);
@@ -58,7 +59,7 @@ CatalogueFollower::~CatalogueFollower() { store_.Listen({}); }
 std::string CatalogueFollower::IdNow(std::string id) const {
   if (store_.Find(id) != nullptr) return id;
   const std::lock_guard lock(mutex_);
-  // As often as it may have been renamed, and no longer should names go in a circle.
+  // Follows the renamings at most once each, so that a cycle of names ends the loop.
   for (std::size_t i = 0; i <= renamed_.size(); ++i) {
     const auto next = renamed_.find(id);
     if (next == renamed_.end()) return id;
@@ -81,19 +82,20 @@ void CatalogueFollower::Follow(const storm_store::CatalogueChange& change) {
     if (attempt > 0) std::this_thread::sleep_for(kBetweenAttempts);
     std::erase_if(sessions, [&](const auto& session) { return Move(*session, change); });
   }
-  // After the sessions, so that a client that asks again finds its scene's time.
+  // The sessions are moved first, so that a client that asks again finds its scene's time.
   ++changes_;
   for (const auto& session : everybody) session->audience().WakeAll();
 }
 
-// False if it is to be tried again.
+// Returns false if the move must be retried.
 bool CatalogueFollower::Move(session::Session& session,
                              const storm_store::CatalogueChange& change) {
   if (!session.Newest().has_value()) return true;
   absl::StatusOr<ReadScene> newest = NewestSceneOf(session);
   if (!newest.ok()) return true;
   v1::Scene& scene = newest->scene;
-  // A storm that was gone comes back by its id, to those who could not be shown it.
+  // A storm that was absent comes back under its id. The sessions that could not show it then
+  // match.
   const auto at = std::ranges::find_if(change, [&](const storm_store::StormChange& storm) {
     return (storm.before != nullptr ? storm.before : storm.after)->id == scene.storm_id();
   });

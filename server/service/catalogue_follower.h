@@ -1,5 +1,5 @@
-// Keeps sessions where they are when a storm's times come and go: one that shows the newest time
-// goes on to the newer one, others keep their time, wherever it stands now.
+// Moves sessions when the times of their storm change. A session that shows the newest time
+// advances to a newer one. Other sessions keep their time, even if its index changes.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@
 
 namespace thunderhead::service {
 
-// A time of a storm, as a scene names it.
+// A time of a storm, as a scene refers to it.
 struct StormPlace {
   std::string storm_id;
   std::uint32_t time_index = 0;
@@ -25,27 +25,29 @@ struct StormPlace {
   bool operator==(const StormPlace&) const = default;
 };
 
-// Where a scene that shows that time of the storm before a change belongs after it: at the last
-// time if it was there, else at the same time, or where that is gone at the one before; in a storm
-// that was gone at the same index, or the last. Nothing if the storm is gone.
+// Returns the time that a scene should show after a change, given the time that it showed before.
+// The last time stays the last. Other times stay the same, or become the preceding one if the time
+// no longer exists. If the storm returns after an absence, the index stays or becomes the last.
+// Returns nothing if the storm is gone.
 std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
                                      std::uint32_t time_index);
 
 class CatalogueFollower {
  public:
-  // Listens to the store as long as it lives; all must outlive it.
+  // Listens to the store during its lifetime. All arguments must outlive it.
   CatalogueFollower(storm_store::StormStore& store, session::Sessions& sessions,
                     const drawing::RenderLoop& loop);
-  // Waits for a change that is being followed.
+  // Waits for a change that is being processed.
   ~CatalogueFollower();
   CatalogueFollower(const CatalogueFollower&) = delete;
   CatalogueFollower& operator=(const CatalogueFollower&) = delete;
 
-  // How often the catalogue has changed; clients are told of each.
+  // Returns the number of changes of the catalogue so far. Clients are notified of each.
   std::uint64_t Changes() const { return changes_; }
 
-  // The id that a storm has now that once had `id`: a run of one file is called by its file, and
-  // from the second on by its folder. `id` itself if nothing is known of it.
+  // Returns the current id of a storm that formerly had `id`. A run with one file is named after
+  // the file; with two or more files it is named after its folder. Returns `id` itself if no
+  // renaming is known.
   std::string IdNow(std::string id) const;
 
  private:

@@ -8,7 +8,7 @@
 namespace thunderhead::service {
 namespace {
 
-// UNAVAILABLE if the session's end could not be saved, for whatever reason.
+// Returns UNAVAILABLE if the session's end could not be saved for any reason.
 absl::Status EndSaved(const absl::Status& removed) {
   if (removed.ok()) return removed;
   const absl::Status unsaved = base::WithDetails(

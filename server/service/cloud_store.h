@@ -1,5 +1,6 @@
-// The clouds that a server generated on request: a folder of storm files, to which one cloud at a
-// time is added and from which clouds can be deleted. Safe to call from any thread.
+// The clouds that a server generated on request. They are storm files in one folder, in which
+// clouds are generated one at a time and from which they can be deleted. Safe to call from any
+// thread.
 #pragma once
 
 #include <chrono>
@@ -22,53 +23,57 @@ namespace thunderhead::service {
 
 class CloudStore {
  public:
-  // `path` is the folder; if empty, no clouds are generated. Generated clouds that the storm store
-  // has already loaded from the folder are those of an earlier server, and can be deleted too.
-  // The memory taken to generate a cloud counts in `memory`, which may be null.
+  // `path` is the folder; if it is empty, no clouds are generated. Clouds that the storm store has
+  // already loaded from the folder come from an earlier server and can be deleted too. The memory
+  // for generating a cloud is reserved in `memory`, which may be null.
   CloudStore(std::string path, storm_store::StormStore& store,
              std::shared_ptr<base::MemoryBudget> memory = nullptr);
 
-  // Generates the cloud into a file of its own and adds it to the storm store, for the identity
-  // `owner` (empty: nobody's). FAILED_PRECONDITION without a folder, RESOURCE_EXHAUSTED at the
-  // maximum number, in all or of one identity since the server started, or without memory,
-  // UNAVAILABLE during another call, DEADLINE_EXCEEDED if the folder's storage hangs as it begins.
+  // Generates the cloud into a new file and adds it to the storm store, for the identity `owner`
+  // (empty for none). Returns FAILED_PRECONDITION without a folder, UNAVAILABLE during another
+  // call, and DEADLINE_EXCEEDED if the folder's storage does not respond at the start. Returns
+  // RESOURCE_EXHAUSTED without memory, or at the maximum number of clouds. That maximum applies to
+  // all clouds, and to the clouds of one identity since the server started.
   absl::StatusOr<storm_store::StormInfoPtr> Make(const clouds::CloudShape& shape,
                                                  const clouds::CloudOrigin& origin,
                                                  const clouds::GenerateObserver& observer,
                                                  const std::stop_token& stop,
                                                  const std::string& owner = "");
 
-  // True if the storm is one of these clouds.
+  // Returns true if the storm is one of these clouds.
   bool Holds(const std::string& storm_id) const;
 
-  // Removes a cloud's file, and the cloud from the storm store. NOT_FOUND for an unknown id,
-  // FAILED_PRECONDITION for another storm, PERMISSION_DENIED if the file cannot be removed,
-  // DEADLINE_EXCEEDED if its storage hangs; the file may be removed later, and the cloud is kept.
+  // Removes a cloud's file, and the cloud from the storm store. Returns NOT_FOUND for an unknown
+  // id, FAILED_PRECONDITION for any other storm, PERMISSION_DENIED if the file cannot be removed,
+  // and DEADLINE_EXCEEDED if its storage does not respond. In the last case the cloud is kept,
+  // although the file may still be removed later.
   absl::Status Delete(const std::string& storm_id);
 
  private:
-  // DEADLINE_EXCEEDED if the storage of the folder hangs.
+  // Returns DEADLINE_EXCEEDED if the storage of the folder does not respond.
   absl::Status FolderAnswers();
-  // A path whose name no file or storm has, and no deleted cloud had.
+  // Returns a path whose name is not used by any file, storm or deleted cloud.
   std::string NewPath(const clouds::CloudOrigin& origin) const;
-  // Removes a file, and gives the system's error; DEADLINE_EXCEEDED if the storage hangs.
+  // Removes a file and returns the system's error. Returns DEADLINE_EXCEEDED if the storage does
+  // not respond.
   absl::StatusOr<std::error_code> Remove(const std::string& path);
-  // The file of a cloud; errors as of Delete.
+  // Returns the file of a cloud, or an error as from Delete.
   absl::StatusOr<std::string> PathOf(const std::string& storm_id) const;
   bool WasUsed(const std::string& id) const;
 
   const std::string path_;
   storm_store::StormStore& store_;
   const std::shared_ptr<base::MemoryBudget> memory_;
-  base::PatientCalls patient_{std::chrono::seconds(10)};  // for what the storage is asked
+  base::PatientCalls patient_{std::chrono::seconds(10)};  // requests to the storage
   std::mutex making_;                                     // held while a cloud is generated
-  mutable std::mutex mutex_;  // never while the storage is asked, which may hang
+  mutable std::mutex mutex_;  // not held during requests to the storage, which may hang
   struct File {
     std::string path;
     std::string owner;
   };
-  std::map<std::string, File> files_;  // of the clouds, by storm id
-  std::set<std::string> used_ids_;     // not reused: a viewer may still show a deleted cloud
+  std::map<std::string, File> files_;  // the clouds' files, by storm id
+  // Ids are not reused, because a viewer may still show a deleted cloud.
+  std::set<std::string> used_ids_;
 };
 
 }  // namespace thunderhead::service

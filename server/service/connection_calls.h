@@ -1,6 +1,6 @@
-// Which connections of gRPC's port are used: those with a call that the door let in. gRPC tells
-// neither of its connections nor which a call is of, but a call's peer is its connection's other
-// end, which no two have at a time. Safe from any thread.
+// Reports which connections of gRPC's port are in use, that is, have an admitted call. gRPC reports
+// neither its connections nor the connection of a call. But the peer of a call is the remote end of
+// its connection, and no two connections share it at a time. Safe to call from any thread.
 #pragma once
 
 #include <chrono>
@@ -19,21 +19,21 @@ class ConnectionCalls {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `time` must outlive it and the calls.
+  // `time` must outlive this object and the calls.
   explicit ConnectionCalls(const base::TimeSource& time = base::SteadyTime())
       : shared_(std::make_shared<Shared>(time)) {}
 
   struct Use {
-    std::size_t calls = 0;      // now
-    Clock::time_point since{};  // when the last of them began or ended
+    std::size_t calls = 0;      // calls in progress
+    Clock::time_point since{};  // when the last call began or ended
   };
 
-  // Counts a call of that peer's connection, "1.2.3.4:80" or "[::1]:80", until the last copy is
-  // destroyed, which may outlive this.
+  // Counts a call of the connection with this peer, "1.2.3.4:80" or "[::1]:80". The call counts
+  // until the last copy of the result is destroyed, which may outlive this object.
   std::shared_ptr<const void> Begin(const std::string& peer);
-  // Nothing for one that never had a call.
+  // Returns the use of a connection, or nothing if it never had a call.
   std::optional<Use> UseOf(const std::string& peer) const;
-  // The connection is closed, or a new one.
+  // Forgets a connection that was closed, or whose peer now belongs to a new connection.
   void Forget(const std::string& peer);
 
  private:

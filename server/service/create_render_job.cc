@@ -10,7 +10,7 @@
 namespace thunderhead::service {
 namespace {
 
-// All but the scenes, of which each fails by itself.
+// Checks all of the request except the scenes, because each scene may fail independently.
 absl::Status CheckShape(v1::CreateRenderJobRequest request) {
   for (v1::RenderJobPicture& picture : *request.mutable_pictures()) picture.clear_scene();
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));

@@ -24,11 +24,12 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
   return absl::OkStatus();
 }
 
-// After an attempt to save the session. One on a full disk is opened all the same, as that must not
-// keep a class from beginning; where the storage hangs, nothing will tell when it is saved.
+// Handles the result of saving the session. On a full disk the session is opened all the same, so
+// that a class can begin. If the storage hangs the session is refused, because nothing would report
+// when it is saved.
 absl::Status Saved(Engine& engine, const absl::Status& saved, v1::CreateSessionResponse& response) {
   if (base::DetailsOf(saved).reason == base::kStorageHangs) {
-    // Nobody has its keys.
+    // The session can be closed because its keys were not sent to any client.
     (void)engine.sessions.Close(response.session_id());
     return base::Annotate(saved, "no session can be opened, as it could not be kept");
   }

@@ -1,5 +1,5 @@
-// Cancels a call whose client does not take in time what it asked for. gRPC itself would wait for
-// ever for one that grants no room for it (HTTP/2's flow control) and goes on answering pings.
+// Cancels a call whose client does not receive a message in time. gRPC itself would wait
+// indefinitely for a client that answers pings but grants no HTTP/2 flow-control window.
 #pragma once
 
 #include <grpcpp/alarm.h>
@@ -18,34 +18,34 @@ namespace thunderhead::service {
 
 class DeliveryDeadline {
  public:
-  // `limits` must outlive it.
+  // `limits` must outlive this object.
   DeliveryDeadline(grpc::CallbackServerContext* context, const Limits& limits)
       : limits_(limits), call_(std::make_shared<Call>(context, *limits.time)) {}
   DeliveryDeadline(const DeliveryDeadline&) = delete;
   DeliveryDeadline& operator=(const DeliveryDeadline&) = delete;
-  // The call has ended: to be destroyed before OnDone returns.
+  // Ends the deadline. The call has ended, and this must be destroyed before OnDone returns.
   ~DeliveryDeadline();
 
-  // The client has the time of so many bytes from now on for what is written next, until Taken().
-  // Cheap enough for each frame.
+  // Starts the deadline for the next message of that many bytes. It runs until Taken(). It is cheap
+  // enough to call for each frame.
   void Begin(std::size_t bytes);
   void Taken();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  // State that the alarm may still use after the call has ended. The alarm is not set anew for each
-  // message: when it rings, it looks when the one that is being written is due.
+  // State that the alarm may still use after the call has ended. The alarm is not set again for
+  // each message. When it fires, it checks the deadline of the message that is being written.
   struct Call : std::enable_shared_from_this<Call> {
     Call(grpc::CallbackServerContext* of, const base::TimeSource& by) : context(of), time(by) {}
     void SetAlarm(Clock::time_point at);
     void Look();
 
-    // Recursive, as cancelling may end the call on the same thread.
+    // The mutex is recursive because TryCancel may end the call on the same thread.
     std::recursive_mutex mutex;
-    grpc::CallbackServerContext* context;  // null: it has ended
+    grpc::CallbackServerContext* context;  // null after the call has ended
     const base::TimeSource& time;
-    std::optional<Clock::time_point> due;  // nothing: no message is being written
+    std::optional<Clock::time_point> due;  // empty while no message is being written
     std::optional<grpc::Alarm> alarm;
     Clock::time_point rings_at;
   };

@@ -1,4 +1,4 @@
-// The draining of a server: it takes no new work, and ends when the work begun before is done.
+// The draining of a server: it accepts no new work, and ends when the existing work is done.
 #pragma once
 
 #include <atomic>
@@ -10,14 +10,14 @@ namespace thunderhead::service {
 
 class Drain {
  public:
-  // From now on new pictures are refused.
+  // Starts to refuse new pictures.
   void Begin() { begun_ = true; }
   bool HasBegun() const { return begun_; }
 
-  // Pictures that were begun and not yet delivered.
+  // Returns the number of pictures that were started and not yet delivered.
   int Pictures() const { return pictures_; }
 
-  // A picture, from its request to its delivery.
+  // Counts a picture from its request to its delivery.
   class Picture {
    public:
     explicit Picture(Drain& drain) : drain_(drain) { ++drain_.pictures_; }
@@ -25,7 +25,7 @@ class Drain {
     Picture(const Picture&) = delete;
     Picture& operator=(const Picture&) = delete;
 
-    // Refuses what comes after Begin.
+    // Returns an error after Begin, which refuses new work.
     absl::Status Check() const {
       return drain_.HasBegun() ? base::ShuttingDown() : absl::OkStatus();
     }

@@ -31,24 +31,26 @@ struct Engine {
   base::WakeSignal& wake;
   base::Executor& executor;
   CloudStore& clouds;
-  session::SessionKeeper* keeper;  // null: sessions end with the server
+  session::SessionKeeper* keeper;  // null if sessions end with the server
   const CatalogueFollower& catalogue;
   Drain& drain;
   Limits limits;
 };
 
-// Calls `done` after an attempt to save what has been done to sessions: at once, and with OK, if
-// they end with the server, else on another thread, as SessionKeeper::SaveThen.
+// Calls `done` after an attempt to save the changes of sessions. If sessions end with the server,
+// it calls `done` at once with OK. Otherwise it calls it on another thread, as
+// SessionKeeper::SaveThen does.
 void SaveThen(Engine& engine, session::SessionKeeper::Done done);
 
-// The storm's fields at that time. An error names `path`, the request's field with the storm's id.
+// Returns the storm's fields at that time. An error names `path`, the field of the request that
+// holds the storm's id.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
     storm_store::StormStore& store, const std::string& storm_id, int time_index,
     const std::string& path);
 
-// Frames the condensate if the camera needs it, then calls `then`: at once if it does not, else on
-// the executor after reading the fields, in the turn of the identity `owner`. `scene` must live
-// until then.
+// Frames the condensate if the camera needs it, then calls `then`. Without framing, the call
+// happens at once. Otherwise it happens on the executor after the fields were read, in the turn of
+// the identity `owner`. `scene` must live until then.
 void FrameThen(Engine& engine, const std::string& owner, v1::Scene& scene,
                std::function<void(const absl::Status&)> then);
 

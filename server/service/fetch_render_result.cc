@@ -26,19 +26,20 @@ using ResultReactor = grpc::ServerWriteReactor<v1::FetchRenderResultResponse>;
 
 constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
 
-// It may have been dropped just now, or somebody was in the folder.
+// Returns the error for a missing file: it was dropped just now, or an operator removed it from the
+// folder.
 absl::Status Gone() {
   return base::WithDetails(absl::NotFoundError("the picture's file is gone; ask for it again"),
                            {.reason = "NO_SUCH_RESULT"});
 }
 
-// The file of a result from an offset on. One thread at a time uses it.
+// The file of a result, read from an offset. Only one thread at a time may use it.
 class ResultFile {
  public:
   ResultFile(jobs::ResultPlace place, std::uint64_t offset)
       : place_(std::move(place)), offset_(offset) {}
 
-  // The next chunk; the first has what is told of the picture, too.
+  // Returns the next chunk. The first one also has the description of the picture.
   absl::StatusOr<v1::FetchRenderResultResponse> Read() {
     v1::FetchRenderResultResponse response;
     if (!file_.is_open()) {
@@ -58,7 +59,7 @@ class ResultFile {
 
   bool AtEnd() const { return offset_ >= place_.bytes; }
 
-  // The job's folder: its storage answers, or does not.
+  // Returns the job's folder, whose storage may hang.
   std::string Storage() const { return std::filesystem::path(place_.path).parent_path(); }
 
  private:
@@ -67,9 +68,9 @@ class ResultFile {
   std::ifstream file_;
 };
 
-// Sends a file, a chunk after another: each is read while none is written. Deletes itself when gRPC
-// calls OnDone, which comes after it has called Finish: never while a chunk is read, but for one
-// that hangs, which has no need of it.
+// Sends a file in chunks, and reads each chunk while no other is being written. It deletes itself
+// when gRPC calls OnDone, which follows its call of Finish. So no read is in progress then, except
+// one that hangs, which does not use this object.
 class ResultStream final : public ResultReactor {
  public:
   ResultStream(jobs::Jobs& jobs, const ResultReading& reading, const Limits& limits,
@@ -118,10 +119,10 @@ class ResultStream final : public ResultReactor {
 
   jobs::Jobs& jobs_;
   const ResultReading reading_;
-  const CallerRef caller_;  // has its place while the stream lives
+  const CallerRef caller_;  // counts the stream while it lives
   const jobs::PicturePlace picture_;
   const std::shared_ptr<ResultFile> file_;
-  v1::FetchRenderResultResponse response_;  // gRPC reads it while it is written
+  v1::FetchRenderResultResponse response_;  // gRPC reads it during the write
   DeliveryDeadline delivery_;
 };
 

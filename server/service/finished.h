@@ -1,5 +1,5 @@
-// The reactors of calls that finish at once, or with one piece of work. Refusals are written to the
-// audit here.
+// The reactors of calls that finish at once or after one piece of work. They write refusals to the
+// audit log.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -18,7 +18,8 @@
 
 namespace thunderhead::service {
 
-// Refuses without the audit: calls that the door has refused, or whose handler wrote the line.
+// Refuses a call without an entry in the audit log: either access control refused the call, or its
+// handler wrote the entry.
 inline grpc::ServerUnaryReactor* Refused(grpc::CallbackServerContext* context,
                                          const absl::Status& why) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
@@ -43,8 +44,9 @@ inline grpc::ServerUnaryReactor* Finished(const Limits& limits,
   return answer;
 }
 
-// Finishes with what `work` gives on a thread of the executor, in the caller's turn; not begun for
-// a caller who has gone. What gRPC keeps of the call lives until then.
+// Finishes with the result of `work`, which runs on a thread of the executor in the caller's turn.
+// The work is skipped if the caller has cancelled the call. gRPC keeps the call's objects alive
+// until then.
 template <typename Work>
 grpc::ServerUnaryReactor* FinishedBy(Engine& engine, grpc::CallbackServerContext* context,
                                      const std::shared_ptr<const access::Caller>& caller,
@@ -62,8 +64,8 @@ grpc::ServerUnaryReactor* FinishedBy(Engine& engine, grpc::CallbackServerContext
   return answer;
 }
 
-// A stream that is refused, of any kind; the first is for those that the door has refused. Deletes
-// itself when gRPC calls OnDone.
+// A refused stream of any kind. The first constructor is for streams that access control refused.
+// It deletes itself when gRPC calls OnDone.
 template <typename Reactor>
 class RefusedStream final : public Reactor {
  public:

@@ -1,4 +1,4 @@
-// Frames, the report of their accuracy and a session's problems as messages.
+// Converts frames, accuracy reports and a session's problems to messages.
 #pragma once
 
 #include "delivery/frame_hub.h"

@@ -43,7 +43,8 @@ absl::Status NotThere(const v1::GetStormMapRequest& request, int index,
       "FIELD_NOT_THERE", {{"allowed", names}});
 }
 
-// Indices of the fields to add up, each once. Water paths and optical depths have no sum.
+// Returns the indices of the fields to add, each once. Water paths and optical depths cannot be
+// added to each other.
 absl::StatusOr<std::vector<std::size_t>> FieldsAdded(const v1::GetStormMapRequest& request,
                                                      const storm_store::StormInfo& storm,
                                                      const volume::HydrometeorFields& fields) {

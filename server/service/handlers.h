@@ -1,5 +1,5 @@
-// One handler for each rpc, in the file named after it. Those that may refuse, or whose work waits
-// for its turn, are told who calls.
+// Declares one handler for each rpc, defined in the file named after it. Handlers that may refuse,
+// or whose work waits for its turn, get the caller.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>

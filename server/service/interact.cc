@@ -31,7 +31,7 @@ namespace {
 
 using session::Clock;
 
-// Answers that wait for a slow client; no further request is read until it has taken some.
+// Maximum number of answers that wait for a slow client. At the maximum no further request is read.
 constexpr std::size_t kMaxWaitingAnswers = 16;
 
 absl::Status NotJoined() {
@@ -53,7 +53,8 @@ absl::Status Replaced() {
       {.reason = "CONNECTION_REPLACED"});
 }
 
-// The name of a request that is written to the audit whatever its outcome; null for others.
+// Returns the name of a request that is always written to the audit log, or null for other
+// requests.
 const char* PrivilegedAct(const v1::InteractRequest& request) {
   switch (request.message_case()) {
     case v1::InteractRequest::kGiveControl:
@@ -67,17 +68,17 @@ const char* PrivilegedAct(const v1::InteractRequest& request) {
   }
 }
 
-// "Interact/update_scene"
+// Returns a name such as "Interact/update_scene".
 std::string NameOfRequest(const v1::InteractRequest& request) {
   const auto* const field =
       v1::InteractRequest::descriptor()->FindFieldByNumber(request.message_case());
   return absl::StrCat("Interact/", field == nullptr ? "unknown" : field->name());
 }
 
-// One client's call. It lives until gRPC, the session and the updates on their way have released
-// it. There is at most one pending read and one pending write; Finish is called once, when nothing
-// is being written. Requests are handled one after another, by the thread of the read; what is to
-// be written is chosen when the last write is done, so that the newest wins.
+// One client's call. It lives until gRPC, the session and the pending updates have released it.
+// There is at most one pending read and one pending write. Finish is called once, while nothing is
+// being written. The thread of the read handles requests one after another. The next message is
+// chosen when the last write is done, so that the newest state is sent.
 class InteractCall : public InteractReactor,
                      public Asker,
                      public std::enable_shared_from_this<InteractCall> {
@@ -104,8 +105,7 @@ class InteractCall : public InteractReactor,
         join_due_(engine.limits.time->Now() + engine.limits.join_timeout),
         delivery_(std::in_place, context, engine.limits) {}
 
-  // Writes the next message, or ends the call, if there is a reason to and nothing is being
-  // written.
+  // Writes the next message or ends the call, if there is a reason and nothing is being written.
   void Wake() override {
     std::optional<grpc::ByteBuffer> message;
     std::optional<grpc::Status> end;
@@ -171,7 +171,7 @@ class InteractCall : public InteractReactor,
 
   void OnDone() override {
     if (session_ != nullptr) {
-      // First, as a session that nobody watches expires sooner.
+      // This comes first, because a session without viewers expires sooner.
       session_->Touch();
       {
         const std::lock_guard lock(mutex_);
@@ -179,12 +179,12 @@ class InteractCall : public InteractReactor,
       }
       session_->audience().Leave(person_id_, session_->Now());
     }
-    delivery_.reset();  // the session and updates may keep the call for longer
+    delivery_.reset();  // because the session and updates may keep the call for longer
     held_by_grpc_.reset();
   }
 
  private:
-  // Needs mutex_.
+  // Sets the alarm for the join timeout. The caller must hold mutex_.
   void SetJoinAlarm() {
     join_alarm_.emplace().Set(AlarmTime(*engine_.limits.time, join_due_),
                               [weak = weak_from_this()](bool rang) {
@@ -193,7 +193,7 @@ class InteractCall : public InteractReactor,
                               });
   }
 
-  // Ends the call if its client should have joined by now.
+  // Ends the call if its client has not joined in time.
   void LookForJoin() {
     {
       const std::lock_guard lock(mutex_);
@@ -205,7 +205,7 @@ class InteractCall : public InteractReactor,
     End(ToGrpcStatus(status));
   }
 
-  // Ends the call as soon as nothing is being written. The first reason counts.
+  // Ends the call as soon as nothing is being written. The first reason is kept.
   void End(const grpc::Status& status) {
     {
       const std::lock_guard lock(mutex_);
@@ -214,7 +214,7 @@ class InteractCall : public InteractReactor,
     Wake();
   }
 
-  // The status to end the call with, if it must end now. Needs mutex_.
+  // Returns the status to end the call with if it must end now. The caller must hold mutex_.
   std::optional<grpc::Status> Ended() {
     if (end_.has_value()) return end_;
     if (session_ == nullptr) return std::nullopt;
@@ -223,7 +223,7 @@ class InteractCall : public InteractReactor,
     return ToGrpcStatus(session_->hub().ClosedBecause());
   }
 
-  // The next message, if there is one. Needs mutex_.
+  // Returns the next message, if there is one. The caller must hold mutex_.
   std::optional<grpc::ByteBuffer> Next() {
     if (!answers_.empty()) {
       grpc::ByteBuffer answer = answers_.front();
@@ -248,7 +248,7 @@ class InteractCall : public InteractReactor,
       return ResponseOf(response);
     }
     Watch(Watched());
-    // In turn, so that neither holds up the other on a slow link.
+    // News and frames alternate, so that neither delays the other on a slow link.
     const auto next_news = [&] { return news_->Next(*session_, engine_.catalogue); };
     std::optional<grpc::ByteBuffer> next = frame_next_ ? NextFrame() : next_news();
     if (!next.has_value()) next = frame_next_ ? next_news() : NextFrame();
@@ -269,29 +269,30 @@ class InteractCall : public InteractReactor,
     return ResponseOf(response);
   }
 
-  // The person's picture: the session's, the own view, or nothing. Needs mutex_.
+  // Returns the session that draws the person's frames: the joined session, the own view, or null.
+  // The caller must hold mutex_.
   std::shared_ptr<session::Session> Watched() {
     const std::shared_ptr<session::Session> own_view = requests_->OwnView();
     if (hidden_) return nullptr;
     return own_view == nullptr ? session_ : own_view;
   }
 
-  // Receives the frames of `session` from now on. Needs mutex_.
+  // Subscribes to the frames of `session`. The caller must hold mutex_.
   void Watch(const std::shared_ptr<session::Session>& session) {
     if (session == watched_) return;
     if (watched_ != nullptr) watched_->hub().Leave(watcher_id_);
     watched_ = nullptr;
     if (session == nullptr) return;
     const auto watcher_id = session->hub().Join(shared_from_this(), wants_);
-    if (!watcher_id.ok()) return;  // it has closed, which the next message tells
+    if (!watcher_id.ok()) return;  // the session has closed, which the next message reports
     watched_ = session;
     watcher_id_ = *watcher_id;
   }
 
-  // Reads the next request unless too many answers wait.
+  // Reads the next request, unless too many answers are waiting.
   void ReadOn() {
-    // Begun under the lock: without a pending read or write, nothing else keeps the call from being
-    // finished meanwhile.
+    // The read starts under the lock. Without a pending read or write, nothing else would prevent
+    // the call from being finished meanwhile.
     const std::lock_guard lock(mutex_);
     if (reading_ || finished_ || answers_.size() + updates_ >= kMaxWaitingAnswers) return;
     reading_ = true;
@@ -306,7 +307,7 @@ class InteractCall : public InteractReactor,
     Wake();
   }
 
-  // An error ends the call; a request that is merely refused has an answer.
+  // Handles the received request. An error ends the call, while a refused request gets an answer.
   absl::Status Handle() {
     v1::InteractRequest request;
     grpc::ProtoBufferReader reader(&received_);
@@ -344,7 +345,7 @@ class InteractCall : public InteractReactor,
                                  ParticipantKeyOf(join.participant_key(), "join.participant_key"));
     THUNDERHEAD_ASSIGN_OR_RETURN(const session::FoundSession found,
                                  engine_.sessions.Find(join.session_key()));
-    // Who is a viewer by their token stays one, whichever key was passed on to them.
+    // A viewer token never grants presenter rights, even with a presenter key.
     const session::Role role =
         access::MayPresent(caller_->identity().role) ? found.role : session::Role::kViewer;
     const std::size_t most = engine_.limits.max_viewers_per_session;
@@ -403,7 +404,7 @@ class InteractCall : public InteractReactor,
       watched = watched_;
       watcher_id = watcher_id_;
     }
-    // One for a view that was left meanwhile is late, not wrong.
+    // An acknowledgement of a view that was left meanwhile is late, but not an error.
     if (watched == nullptr || acknowledgement.own_view() != (watched != session_)) {
       return absl::OkStatus();
     }
@@ -412,7 +413,7 @@ class InteractCall : public InteractReactor,
     return absl::OkStatus();
   }
 
-  // Needs mutex_.
+  // Returns the delivery settings for a window. The caller must hold mutex_.
   delivery::ViewerWants WantsOf(const v1::Window& window) const {
     return {.window_width_px = static_cast<int>(window.width_px()),
             .frames_per_second = window.frames_per_second(),
@@ -448,7 +449,7 @@ class InteractCall : public InteractReactor,
 
   Engine& engine_;
   const std::shared_ptr<const access::Caller> caller_;
-  access::RequestBudget budget_;  // used by the reading thread alone
+  access::RequestBudget budget_;  // used only by the reading thread
   const Clock::time_point join_due_;
   std::shared_ptr<InteractCall> held_by_grpc_;
   std::optional<DeliveryDeadline> delivery_;
@@ -456,7 +457,7 @@ class InteractCall : public InteractReactor,
   grpc::ByteBuffer sent_;
 
   std::mutex mutex_;
-  std::optional<grpc::Alarm> join_alarm_;  // until the client has joined
+  std::optional<grpc::Alarm> join_alarm_;  // set until the client has joined
   bool reading_ = true;
   bool writing_ = false;
   bool finished_ = false;
@@ -464,9 +465,9 @@ class InteractCall : public InteractReactor,
   bool end_told_ = false;
   std::optional<grpc::Status> end_;
   std::deque<grpc::ByteBuffer> answers_;
-  std::size_t updates_ = 0;  // on their way to an answer
+  std::size_t updates_ = 0;  // updates whose answer is pending
 
-  // Set by Join before anything else can use them.
+  // Join sets these before anything else can use them.
   std::shared_ptr<session::Session> session_;
   std::uint64_t person_id_ = 0;
   std::optional<PersonRequests> requests_;
@@ -477,15 +478,16 @@ class InteractCall : public InteractReactor,
   bool takes_video_ = false;
   bool takes_stills_ = false;
   delivery::ViewerWants wants_;
-  std::shared_ptr<session::Session> watched_;  // whose frames come
-  std::uint64_t watcher_id_ = 0;               // in its hub
+  std::shared_ptr<session::Session> watched_;  // the session whose frames are sent
+  std::uint64_t watcher_id_ = 0;               // the id in its hub
   std::uint64_t told_doubts_ = 0;
-  std::optional<std::uint64_t> asking_for_;  // the doubt that the message being written is about
+  // The liveness check that the message being written asks for.
+  std::optional<std::uint64_t> asking_for_;
 };
 
 }  // namespace
 
-// Deletes itself when gRPC calls OnDone.
+// The call deletes itself when gRPC calls OnDone.
 InteractReactor* Interact(Engine& engine, grpc::CallbackServerContext* context,
                           std::shared_ptr<const access::Caller> caller,
                           double requests_per_second) {

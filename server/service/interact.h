@@ -1,5 +1,5 @@
-// The call of clients that stay: a whole session in one stream each way. Its messages are handled
-// as bytes, so that what many people are sent is serialized once.
+// The Interact call: a whole session in one stream each way, for clients that stay connected. Its
+// messages are handled as bytes, so that a message for many people is serialized once.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -14,7 +14,7 @@ namespace thunderhead::service {
 
 using InteractReactor = grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>;
 
-// Of its requests, those beyond `requests_per_second` are refused; 0: none.
+// Starts the call. Requests beyond `requests_per_second` are refused; 0 means no limit.
 InteractReactor* Interact(Engine& engine, grpc::CallbackServerContext* context,
                           std::shared_ptr<const access::Caller> caller, double requests_per_second);
 

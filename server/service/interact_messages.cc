@@ -14,7 +14,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Clients add a random share of their own, so that they do not come back all at once.
+// Clients add a random delay, so that they do not all reconnect at once.
 constexpr std::chrono::milliseconds kComeBackAfter{1000};
 
 void SetPerson(const session::Person& person, v1::Person& message) {

@@ -1,4 +1,4 @@
-// The responses of Interact, as bytes that all people share. Its requests are in
+// The responses of Interact, as bytes that all people of a session share. Its requests are in
 // interact_requests.h.
 #pragma once
 
@@ -14,19 +14,19 @@
 
 namespace thunderhead::service {
 
-// Whole responses as bytes, for session::Audience.
+// Returns the functions that serialize whole responses, for session::Audience.
 session::AudienceFormat InteractFormat();
-// A frame's message without its sequence, for session::FrameEncoder.
+// Returns a frame's message without its sequence number, for session::FrameEncoder.
 std::string SerializedFrame(const delivery::EncodedFrame& frame);
 
-// Responses. Those of frames and scenes share the bytes of their largest part.
+// Serializes responses. Responses with frames and scenes share the bytes of their largest part.
 grpc::ByteBuffer FrameResponse(const std::shared_ptr<const delivery::EncodedFrame>& frame,
                                bool own_view);
 grpc::ByteBuffer SceneResponse(const session::NewestScene& scene);
 grpc::ByteBuffer ResponseOf(const v1::InteractResponse& response);
-// The call's last message.
+// Returns the last message of a call.
 v1::InteractResponse EndResponse(const absl::Status& why);
-// The answer to a request that was not obeyed.
+// Returns the answer to a refused request.
 v1::InteractResponse RefusedResponse(std::uint64_t request_id, const absl::Status& why);
 
 v1::Role RoleMessage(session::Role role);

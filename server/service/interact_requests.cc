@@ -17,9 +17,9 @@ namespace thunderhead::service {
 namespace {
 
 constexpr std::size_t kMaxNameCharacters = 40;
-constexpr int kParticipantKeyWords = 4;  // of 8 hexadecimal digits
+constexpr int kParticipantKeyWords = 4;  // each of 8 hexadecimal digits
 
-// Bytes of the UTF-8 character that begins with `byte`; 0 for none.
+// Returns the length in bytes of the UTF-8 character that begins with `byte`; 0 if none does.
 std::size_t CharacterBytes(unsigned char byte) {
   if (byte < 0x80) return 1;
   if (byte >= 0xc2 && byte < 0xe0) return 2;
@@ -27,7 +27,7 @@ std::size_t CharacterBytes(unsigned char byte) {
   return byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
 }
 
-// Of one UTF-8 character.
+// Returns the code point of one UTF-8 character.
 std::uint32_t CodePointOf(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character.size() == 1) return first;
@@ -38,8 +38,9 @@ std::uint32_t CodePointOf(std::string_view character) {
   return code;
 }
 
-// Controls, and what has no width or turns the direction of the text: a name with them could pass
-// for another's. Joiners, which scripts need, are none of these.
+// Returns true for control characters, and for characters that have no width or change the text
+// direction. A name with them could imitate another. Joiners are allowed, because scripts need
+// them.
 bool IsHidden(std::uint32_t code) {
   constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 8> kHidden{{{0x00, 0x1f},
                                                                             {0x7f, 0x9f},

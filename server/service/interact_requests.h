@@ -1,5 +1,5 @@
-// Values from the requests of Interact, checked, since anybody may send anything. They need no
-// session, only its plain values.
+// Reads and validates values of Interact's requests, because clients may send anything. The
+// functions need no session, only plain values.
 #pragma once
 
 #include <string>
@@ -11,18 +11,18 @@
 
 namespace thunderhead::service {
 
-// `rules` with those of the message that are set.
+// Returns `rules`, changed by the rules that the message sets.
 session::Rules RulesOf(const v1::SessionRules& message, session::Rules rules);
 
-// INVALID_ARGUMENT for a direction of length 0; `path` names the ray's field.
+// Returns the ray, or INVALID_ARGUMENT for a direction of length 0. `path` names the ray's field.
 absl::StatusOr<session::Ray> RayOf(const v1::Ray& message, const std::string& path);
 
-// The key that a person comes back with, or a new one if it is empty. INVALID_ARGUMENT, naming the
-// field `path`, for what no server has given.
+// Returns the key with which a person reconnects, or a new key if it is empty. Returns
+// INVALID_ARGUMENT, which names the field `path`, for a key that no server can have issued.
 absl::StatusOr<std::string> ParticipantKeyOf(const std::string& key, const std::string& path);
 
-// The name as others see it: without control characters, white space at its ends and what is beyond
-// 40 characters. INVALID_ARGUMENT, naming the field `path`, if it is not UTF-8.
+// Returns the name as others see it: without control characters and surrounding white space, and
+// cut to 40 characters. Returns INVALID_ARGUMENT, which names the field `path`, if it is not UTF-8.
 absl::StatusOr<std::string> NameOf(const std::string& name, const std::string& path);
 
 }  // namespace thunderhead::service

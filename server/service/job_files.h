@@ -1,4 +1,4 @@
-// How the thread of render jobs looks at storms' files. A plain value.
+// How the thread of render jobs checks the files of storms. It is a plain value.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@ namespace thunderhead::service {
 
 struct JobFiles {
   std::function<std::optional<base::FileStamp>(const std::string& path)> stamp = base::StampOf;
-  // How long that may take, and reading a piece of a result; then the file's storage hangs. Its
-  // pictures are tried again later.
+  // The timeout of this check, and of reading a piece of a result. After it, the file's storage
+  // counts as hanging, and its pictures are retried later.
   std::chrono::milliseconds patience = std::chrono::seconds(5);
 };
 

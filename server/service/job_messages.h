@@ -18,15 +18,15 @@ void ToMessage(const jobs::PictureView& picture, v1::RenderJobPictureState& mess
 
 jobs::Asker AskerOf(const access::Caller& caller);
 
-// A picture as a job keeps it: with the storm and the valid time that its scene means now, if there
-// are such. Checks nothing else; what is wrong is found when it is drawn.
+// Returns a picture as a job stores it, with the storm and the valid time that its scene means now,
+// if they exist. It checks nothing else; other errors are found when the picture is drawn.
 jobs::PictureOrder OrderOf(const storm_store::StormStore& store,
                            const v1::RenderJobPicture& picture);
 
-// Where a job's results are at the HTTP port: "/results/KEY".
+// Returns the path of a job's results on the HTTP port: "/results/KEY".
 std::string ResultPathOf(const std::string& result_key);
 
-// A picture by that path and its place, "/results/KEY/7"; nothing for another path.
+// A picture's key and place from its path, "/results/KEY/7". Other paths give nothing.
 struct ResultPath {
   std::string key;
   std::size_t place = 0;

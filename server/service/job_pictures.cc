@@ -21,14 +21,14 @@
 namespace thunderhead::service {
 namespace {
 
-// "png" of IMAGE_FORMAT_PNG.
+// Returns the extension of a format, such as "png" for IMAGE_FORMAT_PNG.
 std::string ExtensionOf(v1::ImageFormat format) {
   const std::string name = v1::ImageFormat_Name(format);
   return absl::AsciiStrToLower(absl::StripPrefix(name, "IMAGE_FORMAT_"));
 }
 
-// Looks at storms' files for the jobs' thread, which everybody's jobs need, so that a storage that
-// hangs holds it up for a while once, and others' pictures no more after that.
+// Checks the files of storms for the thread that all jobs share. A hanging storage therefore delays
+// that thread only once, for a limited time, and no longer delays other pictures after that.
 class StormFiles {
  public:
   StormFiles(const JobFiles& files, const base::TimeSource& time)
@@ -83,7 +83,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
   }
 
  private:
-  // Finds the time that the order means, which may have another index or storm id by now.
+  // Finds the time that the order means. Its index or storm id may have changed since.
   absl::Status Place(const jobs::PictureOrder& order) {
     if (!request_.ParseFromString(order.request)) {
       return absl::DataLossError("the server's record of this picture is damaged");
@@ -93,7 +93,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
     input_.set_storm_id(scene.storm_id());
     input_.set_valid_time(order.valid_time);
     input_.set_device(engine_.loop.Device().device);
-    // An order without a time is found wrong as for any picture.
+    // For an order without a time, the error is found as for any other picture.
     if (order.valid_time.empty()) return absl::OkStatus();
     THUNDERHEAD_ASSIGN_OR_RETURN(const storm_store::StormInfoPtr storm,
                                  FindStorm(engine_.store, scene.storm_id()));
@@ -124,7 +124,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
   v1::RenderImageRequest request_;
   v1::RenderImageResponse picture_;
   v1::RenderJobInput input_;
-  std::string path_;  // of the file; empty: unknown
+  std::string path_;  // the file's path; empty if unknown
   std::optional<base::FileStamp> stamp_;
   absl::Status status_;
   PictureJob job_;

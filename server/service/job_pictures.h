@@ -1,4 +1,4 @@
-// Draws the pictures of render jobs as RenderImage draws its own, but behind those.
+// Draws the pictures of render jobs in the same way as RenderImage, but with lower priority.
 #pragma once
 
 #include "jobs/picture_source.h"
@@ -7,8 +7,8 @@
 
 namespace thunderhead::service {
 
-// Orders are those of OrderOf; what is told of a picture is a FetchRenderResultResponse. `engine`
-// must outlive it and its pictures.
+// Returns the function that begins a job's picture. Its orders come from OrderOf, and a picture's
+// description is a FetchRenderResultResponse. `engine` must outlive the function and its pictures.
 jobs::BeginPicture JobPictures(Engine& engine, const JobFiles& files);
 
 }  // namespace thunderhead::service

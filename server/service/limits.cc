@@ -10,10 +10,10 @@
 namespace thunderhead::service {
 namespace {
 
-// Retry delays: of a session that is full, and of a picture that this machine draws too slowly.
+// Retry delays for a full session, and for a picture that this machine draws too slowly.
 constexpr std::chrono::seconds kViewerRetry{30};
 constexpr std::chrono::seconds kRenderRetry{60};
-// Retry delay of requests that are too large: only the operator can help.
+// Retry delay for requests that are too large, for which only the operator can help.
 constexpr std::chrono::minutes kSizeRetry{60};
 
 absl::Status TooLarge(const std::string& what, std::uint64_t number, std::uint64_t maximum,

@@ -1,5 +1,6 @@
-// Limits of the service that whoever runs it may set. Each is refused with RESOURCE_EXHAUSTED and a
-// time after which to try again. What numbers a message may have at all is in the schema.
+// Limits of the service that an operator can set. A request beyond a limit is refused with
+// RESOURCE_EXHAUSTED and a time after which to retry. The ranges of the messages' numbers are in
+// the schema.
 #pragma once
 
 #include <chrono>
@@ -13,50 +14,56 @@
 namespace thunderhead::service {
 
 struct Limits {
-  // Of gRPC's port, in all and from one address (trusted proxies have no limit of their own).
+  // Maximum number of connections to gRPC's port, in total and from one address. Trusted proxies
+  // have no limit per address.
   std::size_t max_connections = 768;
   std::size_t max_connections_per_address = 512;
-  // TLS handshakes a second from one address; twice as many at once. 0: no limit.
+  // Maximum number of TLS handshakes per second from one address, with bursts of twice as many; 0
+  // means no limit.
   double max_handshakes_per_address = 256.0;
-  // By Interact and by WatchFrames each; presenters are let in beyond it.
+  // Maximum number of viewers by Interact, and separately by WatchFrames. Presenters are admitted
+  // beyond it.
   std::size_t max_viewers_per_session = 256;
-  // Width times height, and that times the technique's slices. By default what the schema allows.
+  // Maximum of width times height, and of that product times the technique's slices. By default it
+  // is the maximum of the schema.
   std::uint64_t max_pixels = std::uint64_t{1} << 25;
   std::uint64_t max_samples = std::uint64_t{1} << 37;
-  // Of one picture outside sessions, from the reading of its fields on: waiting for others does not
-  // count.
+  // Maximum time of one picture outside sessions, from the reading of its fields. Time spent queued
+  // does not count.
   std::chrono::milliseconds max_render_time = std::chrono::minutes(30);
-  // A picture that is ready, or each part of it, must be taken by its client within this and the
-  // time that it takes at this rate; then the call is cancelled.
+  // Time for a client to receive a finished picture, or each part of it, in addition to the time
+  // that it takes at this rate. After that the call is cancelled.
   std::chrono::milliseconds delivery_time = std::chrono::minutes(2);
   double min_bytes_per_second = 8192.0;
-  // Until a client of Interact has joined.
+  // Timeout until a client of Interact has joined.
   std::chrono::milliseconds join_timeout = std::chrono::seconds(10);
-  // Until a connection of gRPC's port without a call that the door let in is closed, whatever calls
-  // it has announced. gRPC itself closes one without any a little earlier, and more kindly.
+  // Timeout of a connection of gRPC's port that has no admitted call, even if it has announced
+  // calls. It is then closed. Slightly earlier, gRPC itself closes a connection without any call
+  // gracefully.
   std::chrono::milliseconds unused_connection = std::chrono::seconds(75);
-  // A scene is at most a few kilobytes.
+  // Maximum size of a request; a scene takes at most a few kilobytes.
   std::size_t max_request_bytes = 1u << 20;
-  // Of gRPC's buffers, all connections together; near it, calls are refused.
+  // Maximum size of gRPC's buffers, for all connections together. Near the limit, calls are
+  // refused.
   std::size_t grpc_memory_bytes = std::size_t{1} << 30;
-  // Further calls of a connection wait in its client.
+  // Maximum number of concurrent calls of a connection. Further calls wait in its client.
   int max_streams_per_connection = 1024;
-  // What delivery_time, join_timeout, unused_connection and max_handshakes_per_address are measured
-  // by; must outlive the server.
+  // The time source for delivery_time, join_timeout, unused_connection and
+  // max_handshakes_per_address. It must outlive the server.
   const base::TimeSource* time = &base::SteadyTime();
 };
 
-// How long a client may take for so many bytes of a picture.
+// Returns the time that a client has to receive that many bytes of a picture.
 std::chrono::milliseconds DeliveryTime(const Limits& limits, std::size_t bytes);
 
-// RESOURCE_EXHAUSTED for a picture that is larger, or has more samples, than the limits allow.
-// `scene` has its defaults.
+// Returns RESOURCE_EXHAUSTED for a picture with more pixels or samples than the limits allow.
+// `scene` must have its defaults.
 absl::Status CheckSize(const Limits& limits, const v1::Scene& scene);
 
-// RESOURCE_EXHAUSTED for a session with as many viewers as it may have.
+// Returns RESOURCE_EXHAUSTED for a session that has its maximum number of viewers.
 absl::Status TooManyViewers(std::size_t maximum);
 
-// RESOURCE_EXHAUSTED for a picture that took longer than it may.
+// Returns RESOURCE_EXHAUSTED for a picture that exceeded its time limit.
 absl::Status RenderedTooLong(std::chrono::milliseconds limit);
 
 }  // namespace thunderhead::service

@@ -23,7 +23,8 @@
 namespace thunderhead::service {
 namespace {
 
-// In Linux's abstract namespace, which needs no file and disappears with the process.
+// Returns a name in Linux's abstract namespace, which needs no file and disappears with the
+// process.
 std::string NewName() {
   static std::atomic<int> count{0};
   return absl::StrCat("thunderhead-", getpid(), "-", ++count);
@@ -38,10 +39,11 @@ bool Bind(int socket, const std::string& name) {
   return bind(socket, reinterpret_cast<const sockaddr*>(&address), bytes) == 0;
 }
 
-// Anybody on this machine may connect as often as they like.
+// Limits the warnings, because any user of this machine may connect at any rate.
 constexpr int kMaxWarningsPerSecond = 5;
 
-// True for a process of this process' user. Root may do anything anyway, but has no need to.
+// Returns true for a process of this process' user. Root is refused too, because it has no need to
+// connect.
 bool IsOwnUser(int connection, base::LineLimit& warnings) {
   ucred peer{};
   socklen_t bytes = sizeof(peer);

@@ -1,5 +1,5 @@
-// The socket by which the gateway and the command line reach the service in their own process. It
-// accepts connections of this process' user alone, and hands them to gRPC.
+// The socket through which the gateway and the command line reach the service in their own process.
+// It accepts only connections of this process' user, and passes them to gRPC.
 #pragma once
 
 #include <grpcpp/server.h>
@@ -15,11 +15,11 @@ namespace thunderhead::service {
 
 class LocalListener {
  public:
-  // Accepts connections for `server` until it is destroyed, which must be before the server shuts
-  // down.
+  // Accepts connections for `server` until it is destroyed. It must be destroyed before the server
+  // shuts down.
   static absl::StatusOr<std::unique_ptr<LocalListener>> Start(grpc::Server& server);
 
-  // Its address as gRPC's clients write it.
+  // Returns its address in the notation of gRPC's clients.
   const std::string& address() const { return address_; }
 
  private:

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPause{100};
 
-// So long after its last call a connection counts as used: some handlers answer after they have let
-// go of the caller.
+// A connection counts as used for this long after its last call, because some handlers respond
+// after they have released the caller.
 constexpr std::chrono::seconds kJustUsed{10};
 
 }  // namespace
@@ -46,7 +46,7 @@ std::optional<std::string> OpenSockets::PeerOf(int socket) {
 }
 
 bool OpenSockets::Take(int socket, const std::string& peer, Clock::time_point now) {
-  // Its number was another's that is closed.
+  // The descriptor's number belonged to a connection that is closed now.
   if (const auto closed = open_.find(socket); closed != open_.end()) Forget(closed);
   const Open newcomer{peer, base::NetworkOf(peer), now};
   const auto is_full = [&] { return open_.size() >= most_ || HasItsShare(newcomer); };
@@ -55,7 +55,7 @@ bool OpenSockets::Take(int socket, const std::string& peer, Clock::time_point no
     const std::string* const own = HasItsShare(newcomer) ? &newcomer.network : nullptr;
     if (!CloseLeastNeeded(own, now)) return false;
   }
-  // Its peer may have been that of one that is closed.
+  // The same peer may have belonged to a connection that is closed now.
   for (auto open = open_.begin(); open != open_.end();) {
     const auto at = open++;
     if (at->second.peer == peer && peer_of_(at->first) != peer) open_.erase(at);
@@ -75,7 +75,7 @@ bool OpenSockets::HasItsShare(const Open& newcomer) const {
 bool OpenSockets::CloseLeastNeeded(const std::string* network, Clock::time_point now) {
   struct Candidate {
     std::map<int, Open>::iterator open;
-    // Those that had a call after those that never had, and then by the time without one.
+    // Ranks connections that never had a call first, then those without a call for longest.
     std::tuple<bool, Clock::time_point> rank;
   };
   std::vector<Candidate> candidates;
@@ -111,7 +111,8 @@ void OpenSockets::CloseUnused(std::chrono::milliseconds unused, Clock::time_poin
 
 void OpenSockets::Close(std::map<int, Open>::iterator open) {
   const auto& [socket, connection] = *open;
-  // gRPC sees the end, and closes it. Others own the descriptor, and may have closed it just now.
+  // gRPC sees the end of the connection and closes it. Since gRPC owns the descriptor, it may have
+  // closed it just now.
   if (peer_of_(socket) == connection.peer) shutdown(socket, SHUT_RDWR);
   Forget(open);
 }

@@ -1,6 +1,6 @@
-// How many connections are open, and of whom, where others own and close them: their descriptors
-// are looked at again when there seem to be too many. Then a newcomer takes the place of one that
-// has no call. Used by one thread.
+// Counts the open connections, in total and per address, although other objects own and close them.
+// It checks their descriptors again when there seem to be too many. A new connection then replaces
+// one that has no call. It must be used by one thread only.
 #pragma once
 
 #include <chrono>
@@ -21,9 +21,9 @@ class OpenSockets {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Of all, and of one address; of IPv6 of one network (/64). Those of `proxies` may have as many
-  // as there may be in all. `calls` tells which connections have calls; `peer_of` is another than
-  // PeerOf in tests.
+  // `most` limits all connections, and `most_per_address` those of one address, or of one network
+  // (/64) with IPv6. Addresses in `proxies` are limited only by `most`. `calls` reports which
+  // connections have calls. Tests replace `peer_of`.
   OpenSockets(std::size_t most, std::size_t most_per_address, base::TrustedProxies proxies,
               std::shared_ptr<ConnectionCalls> calls,
               std::function<std::optional<std::string>(int)> peer_of = PeerOf)
@@ -33,16 +33,18 @@ class OpenSockets {
         calls_(std::move(calls)),
         peer_of_(std::move(peer_of)) {}
 
-  // The other end of a connected socket, "1.2.3.4:80" or "[::1]:80"; nothing if it is none.
+  // Returns the remote end of a connected socket, "1.2.3.4:80" or "[::1]:80"; nothing if the socket
+  // is not connected.
   static std::optional<std::string> PeerOf(int socket);
 
-  // Counts a connection. If there are as many as there may be, of all or of the peer's address, it
-  // shuts another down: of the peer's address, or of the one with most of them, the one that has
-  // been without a call for longest, those that never had one first. False if all have calls. Looks
-  // for those that others closed ten times a second at most.
+  // Counts a connection. At the maximum, in total or of the peer's address, it shuts down another
+  // connection without a call. That connection belongs to the peer's address, or to the address
+  // with the most connections. It is the one that has been without a call for longest; connections
+  // that never had a call come first. Returns false if all have calls. Checks for connections that
+  // were closed elsewhere at most ten times a second.
   bool Take(int socket, const std::string& peer, Clock::time_point now);
 
-  // Shuts those down that have been without a call for so long.
+  // Shuts down the connections that have been without a call for that long.
   void CloseUnused(std::chrono::milliseconds unused, Clock::time_point now);
 
  private:
@@ -53,11 +55,11 @@ class OpenSockets {
   };
 
   bool HasItsShare(const Open& newcomer) const;
-  // Shuts one down, of that network or of any if it is null.
+  // Shuts down one connection of that network, or of any network if it is null.
   bool CloseLeastNeeded(const std::string* network, Clock::time_point now);
   void Close(std::map<int, Open>::iterator open);
   void ForgetClosed(Clock::time_point now);
-  // Another connection may have the peer by now, and so the use.
+  // Removes a connection. Its use is kept if a newer connection has the same peer.
   void Forget(std::map<int, Open>::iterator open);
   bool HasOpen(const std::string& peer) const;
 
@@ -66,7 +68,7 @@ class OpenSockets {
   const base::TrustedProxies proxies_;
   const std::shared_ptr<ConnectionCalls> calls_;
   const std::function<std::optional<std::string>(int)> peer_of_;
-  std::map<int, Open> open_;  // by descriptor
+  std::map<int, Open> open_;  // by file descriptor
   std::optional<Clock::time_point> looked_at_;
 };
 

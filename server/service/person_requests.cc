@@ -20,7 +20,7 @@ namespace {
 
 using session::Clock;
 
-// The answer of a request that is only answered if it is refused.
+// Returns the answer to a request that is answered only if it is refused.
 std::optional<v1::InteractResponse> RefusalOf(std::uint64_t request_id,
                                               const absl::Status& status) {
   if (status.ok()) return std::nullopt;
@@ -91,7 +91,7 @@ absl::Status PersonRequests::ChangeRoster(Asker& asker, const v1::InteractReques
         }
       },
       now);
-  asker.Wake();  // who follows again is told of the change later, but sees the session at once
+  asker.Wake();  // a person who follows again gets the message later, but sees the session at once
   return status;
 }
 
@@ -119,8 +119,9 @@ absl::Status PersonRequests::Update(const std::shared_ptr<Asker>& asker, std::ui
   return absl::OkStatus();
 }
 
-// Calls `take` with the camera whose defaults are filled in, or with why there is none: at once, or
-// on the executor if they depend on the storm. Not if it returns an error.
+// Calls `take` with the camera, whose defaults are filled in, or with an error. It does so at once,
+// or on the executor if the defaults depend on the storm. If this function itself returns an error,
+// `take` is not called.
 absl::Status PersonRequests::WithCamera(const std::shared_ptr<Asker>& asker,
                                         std::uint64_t request_id, const v1::Camera& message,
                                         TakeCamera take) {
@@ -140,8 +141,8 @@ absl::Status PersonRequests::WithCamera(const std::shared_ptr<Asker>& asker,
   return absl::OkStatus();
 }
 
-// Cameras of the own view take effect in the order of their requests, though some wait for the
-// storm's fields. Who returns to the session's view meanwhile stays there.
+// Cameras of the own view take effect in the order of their requests, even if some wait for the
+// storm's fields. A person who returns to the session's view meanwhile stays there.
 absl::Status PersonRequests::Detach(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
                                     const v1::Detach& detach) {
   const std::uint64_t returns = session_->audience().Returns(person_id_);
@@ -157,7 +158,8 @@ absl::Status PersonRequests::Detach(const std::shared_ptr<Asker>& asker, std::ui
   return asked;
 }
 
-// Not before there is a view of one's own: who is refused a camera goes on following.
+// Detaching waits until the own view exists, so that a person whose camera is refused keeps
+// following.
 absl::Status PersonRequests::DetachTo(Asker& asker, std::uint64_t look, std::uint64_t returns,
                                       const absl::StatusOr<scene::Camera>& camera) {
   THUNDERHEAD_RETURN_IF_ERROR(camera.status());
@@ -199,7 +201,7 @@ absl::Status PersonRequests::Point(const v1::Point& point) {
   return session_->audience().Point(person_id_, ray, session_->Now());
 }
 
-// Finds the places on the executor: they are many.
+// Finds the positions on the executor, because there are many.
 absl::Status PersonRequests::AddMark(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
                                      const v1::AddMark& message) {
   THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MayMark(person_id_));
@@ -237,7 +239,8 @@ absl::Status PersonRequests::PlaceMark(const std::shared_ptr<Asker>& asker,
           THUNDERHEAD_RETURN_IF_ERROR(status);
           return session::LineSeen(*session_, engine_.store, rays);
         });
-        // Before anybody is told of it, who may draw the next one then.
+        // This precedes the announcement of the mark, because the person may draw the next one
+        // after it.
         drawing_ = false;
         const absl::Status drawn =
             positions_m.ok() ? Draw(*std::move(positions_m), color) : positions_m.status();

@@ -1,5 +1,5 @@
-// The requests of a person who has joined a session: changes of its scene, a view of their own,
-// control, pointing and marks. How their pictures are delivered is the call's affair.
+// Handles the requests of a person who has joined a session: changes of its scene, the person's own
+// view, control, pointers and marks. The call itself delivers the frames.
 #pragma once
 
 #include <atomic>
@@ -20,16 +20,18 @@
 
 namespace thunderhead::service {
 
-// The call that the requests come from. Whatever is on its way to an answer holds it.
+// The call that sends the requests. Every pending request keeps a reference to it.
 class Asker : public delivery::Viewer {
  public:
-  // The answer to a request comes later, by Settle.
+  // Announces that the answer to a request will follow by Settle.
   virtual void Await() = 0;
-  // Without an answer the request was obeyed, and nothing is to be said.
+  // Sends the answer to a request. Without an answer, the request was obeyed and nothing needs to
+  // be sent.
   virtual void Settle(const std::optional<v1::InteractResponse>& answer) = 0;
 };
 
-// Of one person in one call, whose asker it is part of. Obey is called by one thread at a time.
+// Handles the requests of one person in one call, and is a part of the call's asker. Obey must be
+// called by one thread at a time.
 class PersonRequests {
  public:
   PersonRequests(Engine& engine, std::shared_ptr<const access::Caller> caller,
@@ -41,9 +43,11 @@ class PersonRequests {
         person_id_(person_id),
         participant_key_(std::move(participant_key)) {}
 
-  // Obeys at once, or has `asker` await the outcome. An error is why the request is refused.
+  // Obeys a request at once, or calls Await on `asker` and obeys it later. An error is the reason
+  // for a refusal.
   absl::Status Obey(const std::shared_ptr<Asker>& asker, const v1::InteractRequest& request);
-  // The session that draws the person's own view; null while they follow. Safe from any thread.
+  // Returns the session that draws the person's own view; null while the person follows. Safe to
+  // call from any thread.
   std::shared_ptr<session::Session> OwnView();
 
  private:
@@ -57,8 +61,8 @@ class PersonRequests {
                           const v1::Camera& message, TakeCamera take);
   absl::Status Detach(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
                       const v1::Detach& detach);
-  // Detaches unless the person has gone back to the session's view since the request, when they
-  // had done so `returns` times.
+  // Detaches unless the person has returned to the session's view since the request. `returns` is
+  // the number of returns at the time of the request.
   absl::Status DetachTo(Asker& asker, std::uint64_t look, std::uint64_t returns,
                         const absl::StatusOr<scene::Camera>& camera);
   absl::Status MoveCamera(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
@@ -77,7 +81,7 @@ class PersonRequests {
   const std::uint64_t person_id_;
   const std::string participant_key_;
   LookingAround around_;
-  std::atomic<bool> drawing_{false};  // a mark's places are being found
+  std::atomic<bool> drawing_{false};  // true while the positions of a mark are computed
 };
 
 }  // namespace thunderhead::service

@@ -23,7 +23,7 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-// The picture as light. Its estimated error is not known yet.
+// Returns the picture as linear radiance in OpenEXR. Its estimated error is not known yet.
 absl::StatusOr<std::string> EncodeLight(drawing::DisplayFrame& picture,
                                         const volume::HydrometeorFields& fields,
                                         const storm_store::StormInfo* storm,
@@ -34,7 +34,7 @@ absl::StatusOr<std::string> EncodeLight(drawing::DisplayFrame& picture,
   return picture::EncodeExr(*picture.linear, attributes);
 }
 
-// Takes the picture's pixels.
+// Encodes the picture and consumes its pixels.
 absl::Status Encode(drawing::DisplayFrame& picture, const v1::RenderImageRequest& request,
                     v1::RenderImageResponse& response) {
   const bool jpeg = request.format() == v1::IMAGE_FORMAT_JPEG;
@@ -56,8 +56,8 @@ void Describe(const drawing::DisplayFrame& picture, double encode_ms,
   if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
 }
 
-// Writes into a PNG what it shows, and into an OpenEXR file what was not known when it was encoded.
-// `storm` is null if it has gone since.
+// Adds the description of a picture to a PNG file. To an OpenEXR file it adds the values that were
+// unknown when the file was encoded. `storm` is null if the storm no longer exists.
 void AddTexts(const storm_store::StormInfo* storm, v1::RenderImageResponse& response) {
   if (response.format() == v1::IMAGE_FORMAT_EXR && response.has_accuracy()) {
     picture::SetExrNumber(kErrorText, response.accuracy().estimated_error(),
@@ -67,7 +67,7 @@ void AddTexts(const storm_store::StormInfo* storm, v1::RenderImageResponse& resp
   response.set_image(frame::WithTexts(response.image(), TextsOf(response, *storm)));
 }
 
-// Errors of drawing are not about one field, so they name the whole scene.
+// Errors of drawing do not concern a single field, so they name the whole scene.
 absl::Status OfScene(const absl::Status& status) {
   return base::WithDetails(status, {.reason = "SCENE_NOT_DRAWN", .field = "scene"});
 }

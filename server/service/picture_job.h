@@ -1,5 +1,5 @@
-// One picture of the service, from its request to its bytes: for calls that wait for it, and for
-// jobs.
+// One picture of the service, from its request to its bytes. It serves both calls that wait for the
+// picture, and render jobs.
 #pragma once
 
 #include <atomic>
@@ -14,23 +14,25 @@
 
 namespace thunderhead::service {
 
-// The call that waits for a picture.
+// The recipient of a picture and its progress.
 class PictureListener {
  public:
-  // Progress of tracing light. Must not block.
+  // Reports the progress of path tracing. It must not block.
   virtual void Progressed(const drawing::ImageProgress& /*progress*/) {}
-  // Called once, and last. If `status` is OK the response is complete.
+  // Reports the end; it is the last call and happens once. If `status` is OK, the response is
+  // complete.
   virtual void Ended(const absl::Status& status) = 0;
 
  protected:
   ~PictureListener() = default;
 };
 
-// Those who wait for a picture: one without any lets others go before.
+// Whether a call waits for the picture. A picture without a waiting call lets others go first.
 enum class Awaited { kByACall, kByNobody };
 
-// Reads, draws and encodes a picture in a lane of the render loop, which ends it; everything passed
-// to it must live until then. `owner` is the identity whose share of drawing it takes.
+// Reads, draws and encodes a picture in a lane of the render loop, which also ends the job. All
+// arguments must live until then. `owner` is the identity whose share of drawing time the picture
+// uses.
 class PictureJob {
  public:
   PictureJob(Engine& engine, const v1::RenderImageRequest& request,
@@ -44,7 +46,7 @@ class PictureJob {
         owner_(std::move(owner)) {}
 
   void Begin();
-  // Ends it at its next piece. Safe from any thread.
+  // Cancels the picture at its next piece of work. Safe to call from any thread.
   void Cancel();
 
  private:
@@ -62,8 +64,10 @@ class PictureJob {
   const Awaited awaited_;
   const std::string owner_;
   double encode_ms_ = 0.0;
-  std::shared_ptr<const base::MemoryReservation> memory_;  // of the picture, until it is delivered
-  std::shared_ptr<const volume::HydrometeorFields> fields_;  // of a picture as light, until then
+  // The memory of the picture, held until delivery.
+  std::shared_ptr<const base::MemoryReservation> memory_;
+  // The fields of a picture with linear radiance, kept until delivery.
+  std::shared_ptr<const volume::HydrometeorFields> fields_;
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };
 

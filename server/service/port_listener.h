@@ -1,5 +1,5 @@
-// gRPC's TCP port. gRPC's own listens without a limit on connections, and those that say nothing
-// would use up the process's file descriptors.
+// The TCP port of gRPC. gRPC's own listener has no limit on connections, so that idle connections
+// could use up the process's file descriptors.
 #pragma once
 
 #include <grpcpp/server_builder.h>
@@ -22,33 +22,34 @@ namespace thunderhead::service {
 class PortListener {
  public:
   using Acceptor = std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>;
-  // Told of a newcomer that was closed, and why; on the listener's thread.
+  // Called on the listener's thread when a new connection was refused, with the reason.
   using Refused = std::function<void(const std::string& peer, const absl::Status& why)>;
 
   struct Options {
-    std::chrono::milliseconds unused;     // those without a call for so long are closed
-    double handshakes_per_address = 0.0;  // as Limits has it; 0: no limit
-    base::TrustedProxies proxies;         // which have none
+    std::chrono::milliseconds unused;                    // timeout of connections without a call
+    double handshakes_per_address = 0.0;                 // as in Limits; 0 means no limit
+    base::TrustedProxies proxies;                        // addresses without these limits
     const base::TimeSource* time = &base::SteadyTime();  // must outlive the listener
   };
 
-  // Listens on "HOST:PORT", port 0 for a free one; connections wait until Start. 0.0.0.0 and [::]
-  // are all of this machine's addresses, of IPv4 and IPv6. What has been sent on a connection must
-  // arrive within `unanswered`. UNAVAILABLE if it cannot.
+  // Listens on "HOST:PORT", where port 0 picks a free one. Connections wait until Start. The hosts
+  // 0.0.0.0 and [::] mean all addresses of this machine, both IPv4 and IPv6. `unanswered` limits
+  // the time until the peer acknowledges data that was sent. Returns UNAVAILABLE if listening
+  // fails.
   static absl::StatusOr<std::unique_ptr<PortListener>> Open(const std::string& address,
                                                             std::chrono::milliseconds unanswered);
 
   int Port() const { return port_; }
 
-  // Hands connections to `acceptor` until this is destroyed, which must be before its server shuts
-  // down.
+  // Passes connections to `acceptor` until this object is destroyed. It must be destroyed before
+  // its server shuts down.
   absl::Status Start(Acceptor acceptor, OpenSockets open, const Options& options, Refused refused);
 
  private:
   PortListener(std::vector<base::FileDescriptor> sockets, int port)
       : sockets_(std::move(sockets)), port_(port) {}
 
-  std::vector<base::FileDescriptor> sockets_;  // until Start
+  std::vector<base::FileDescriptor> sockets_;  // held until Start
   const int port_;
   std::unique_ptr<AcceptLoop> loop_;
 };

@@ -15,10 +15,10 @@
 namespace thunderhead::service {
 namespace {
 
-// A request with its defaults, and the scene that it means.
+// A request with its defaults, and the scene that it refers to.
 struct Asked {
   v1::ProbeRayRequest request;
-  ReadScene scene;  // without a session at revision 0
+  ReadScene scene;  // at revision 0 without a session
   storm_store::StormInfoPtr storm;
 };
 

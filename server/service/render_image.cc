@@ -13,7 +13,7 @@
 namespace thunderhead::service {
 namespace {
 
-// A picture as the response of a unary call.
+// Sends a picture as the response of a unary call.
 class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
  public:
   PictureReactor(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
@@ -40,8 +40,9 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
   PictureJob job_;
 };
 
-// A picture as the last event of a stream. There is at most one pending write: progress that
-// arrives meanwhile, or too soon after the last, is dropped, as newer progress will follow.
+// Sends a picture as the last event of a stream. There is at most one pending write. Progress that
+// arrives during a write, or too soon after the last progress, is dropped because newer progress
+// will follow.
 class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
                             private PictureListener {
  public:
@@ -63,7 +64,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
-      // A client that is gone cancels as well.
+      // A disconnected client also cancels the drawing.
       if (!end_.has_value()) return;
       if (!ok) end_ = grpc::Status(grpc::StatusCode::CANCELLED, "the client is gone");
     }
@@ -99,12 +100,13 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     {
       const std::lock_guard lock(mutex_);
       end_ = ToGrpcStatus(status);
-      if (writing_) return;  // OnWriteDone writes it
+      if (writing_) return;  // OnWriteDone writes the end
     }
     WriteEnd();
   }
 
-  // Called when no write is pending: again for each chunk.
+  // Writes the next chunk, or the end. It must be called only while no write is pending, and is
+  // called again after each chunk.
   void WriteEnd() {
     if (!end_->ok()) {
       delivery_.Begin(0);
@@ -127,11 +129,11 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   const bool in_chunks_;
   const base::TimeSource& time_;
   v1::RenderImageEvent image_;
-  v1::RenderImageEvent progress_;  // or a chunk; gRPC reads it while `writing_`
-  std::size_t sent_bytes_ = 0;     // in chunks
+  v1::RenderImageEvent progress_;  // progress or a chunk; gRPC reads it while `writing_`
+  std::size_t sent_bytes_ = 0;     // size of the chunks sent
   std::mutex mutex_;
   bool writing_ = false;
-  std::optional<base::TimeSource::Clock::time_point> told_at_;  // the last progress
+  std::optional<base::TimeSource::Clock::time_point> told_at_;  // time of the last progress message
   std::optional<grpc::Status> end_;
   DeliveryDeadline delivery_;
   PictureJob job_;
@@ -139,8 +141,8 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
 
 }  // namespace
 
-// gRPC gets a reactor that has begun. One that throws as it begins is destroyed here, and gives its
-// caller's place back.
+// gRPC receives a reactor that has begun. If its start throws an exception, it is destroyed here
+// and releases its caller's place.
 grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
                                       const CallerRef& caller,
                                       const v1::RenderImageRequest* request,

@@ -1,4 +1,4 @@
-// One handler for each rpc of RenderJobService, in the file named after it.
+// Declares one handler for each rpc of RenderJobService, defined in the file named after it.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>
@@ -36,7 +36,7 @@ grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response);
 
-// Reads files of results on threads of its own, and waits for no storage longer than its patience.
+// The means to read files of results: separate threads, and calls with a timeout to the storage.
 struct ResultReading {
   base::Executor& threads;
   base::PatientCalls& calls;

@@ -22,7 +22,8 @@ RenderJobService::RenderJobService(Engine& engine, access::Door& door, Connectio
     : engine_(engine),
       jobs_(jobs),
       entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
-      // A stream waits for one read at a time, and the door counts streams: none is refused here.
+      // A stream waits for one read at a time, and access control limits the streams. So the
+      // executor refuses no read.
       reading_({.threads = kReadingThreads,
                 .max_waiting = door.limits().max_streams,
                 .max_waiting_each = door.limits().max_streams_per_identity}),

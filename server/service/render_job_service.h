@@ -1,5 +1,5 @@
-// The service of render jobs as gRPC calls it: asks the door about every call, and dispatches it to
-// its handler.
+// The render job service as gRPC calls it. It checks access for each call and dispatches the call
+// to its handler.
 #pragma once
 
 #include <chrono>
@@ -16,8 +16,8 @@ namespace thunderhead::service {
 
 class RenderJobService final : public v1::RenderJobService::CallbackService {
  public:
-  // `jobs` is null where the server keeps none; all must outlive this. A result whose storage does
-  // not answer within `patience` is not fetched.
+  // `jobs` is null if the server keeps no jobs. All arguments must outlive this object. Fetching a
+  // result fails if its storage does not respond within `patience`.
   RenderJobService(Engine& engine, access::Door& door, ConnectionCalls& calls, jobs::Jobs* jobs,
                    std::chrono::milliseconds patience);
 
@@ -38,18 +38,19 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
   grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* FetchRenderResult(
       grpc::CallbackServerContext* context, const v1::FetchRenderResultRequest* request) override;
 
-  // Ends the reading of results; further ones are refused.
+  // Ends the reading of results and refuses further reads.
   void Stop() { reading_.Stop(); }
 
  private:
-  // Two for one identity, and one for others, so that a large file on a slow disk holds up few.
+  // One identity may use two threads, and one is left for others, so that a large file on a slow
+  // disk delays few callers.
   static constexpr int kReadingThreads = 3;
 
   Engine& engine_;
   jobs::Jobs* const jobs_;
   const Entrance entrance_;
   base::Executor reading_;
-  base::PatientCalls calls_;  // to the storage of results
+  base::PatientCalls calls_;  // requests to the storage of results
 };
 
 }  // namespace thunderhead::service

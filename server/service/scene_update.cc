@@ -22,10 +22,10 @@ using google::protobuf::util::FieldMaskUtil;
 
 using google::protobuf::FieldDescriptor;
 
-// Returns the fields that a path of an update mask names, from the scene's own down to the last.
-// INVALID_ARGUMENT for a path with an empty component, for a name that the message before it does
-// not have, and for a path that goes on after a field that is no single message. Every step that
-// follows a path takes it from here, so reflection never gets an unchecked name.
+// Returns the fields that a path of an update mask names, from the scene's own field down to the
+// last. Returns INVALID_ARGUMENT for an empty component or for a name that the preceding message
+// does not have. It does so too for a path that continues after a field that is not a single
+// message. Every later step uses this result, so reflection never gets an unchecked name.
 absl::StatusOr<std::vector<const FieldDescriptor*>> FieldsOf(const std::string& path) {
   std::vector<const FieldDescriptor*> fields;
   const google::protobuf::Descriptor* message = v1::Scene::descriptor();
@@ -45,8 +45,8 @@ absl::StatusOr<std::vector<const FieldDescriptor*>> FieldsOf(const std::string& 
   return fields;
 }
 
-// INVALID_ARGUMENT for a path into another kind of camera or technique than the scene has, because
-// it would replace the scene's own kind.
+// Returns INVALID_ARGUMENT for a path into a different kind of camera or technique than the scene
+// has, because it would replace the scene's own kind.
 absl::Status CheckKinds(const v1::Scene& scene, const std::string& path,
                         const std::vector<const FieldDescriptor*>& fields) {
   const google::protobuf::Message* message = &scene;
@@ -65,7 +65,7 @@ absl::Status CheckKinds(const v1::Scene& scene, const std::string& path,
   return absl::OkStatus();
 }
 
-// The session's newest scene with the fields that the mask names.
+// Returns the session's newest scene, with the fields that the mask names replaced.
 absl::StatusOr<v1::Scene> Merged(v1::Scene scene, const SceneChange& change) {
   for (const std::string& path : change.update_mask.paths()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, FieldsOf(path));
@@ -86,7 +86,7 @@ absl::StatusOr<ReadScene> Read(std::uint64_t revision, const std::string& serial
   return read;
 }
 
-// Also one that waits for its storm.
+// Returns the newest accepted scene, even if it still waits for its storm.
 absl::StatusOr<ReadScene> NewestTakenOf(session::Session& session) {
   const std::optional<session::SerializedScene> newest = session.NewestTaken();
   if (!newest.has_value()) return absl::InternalError("the session has no scene yet");
@@ -103,14 +103,15 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   Changed changed{0, std::make_shared<v1::Scene>(change.scene)};
   std::optional<std::uint64_t> expected = change.expected_revision;
   if (change.update_mask.paths_size() > 0) {
-    // The fields that are not named must not be older than the newest.
+    // The fields that are not named must come from the newest scene.
     THUNDERHEAD_ASSIGN_OR_RETURN(ReadScene newest, NewestTakenOf(session));
     if (!expected.has_value()) expected = newest.revision;
     THUNDERHEAD_ASSIGN_OR_RETURN(*changed.scene, Merged(std::move(newest.scene), change));
   }
   THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine.store, engine.loop.Techniques(), *changed.scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine.limits, *changed.scene));
-  // Taken before the scene is framed, which may wait for a read, so that the last update wins.
+  // The revision is taken before the scene is framed, which may wait for a read, so that the last
+  // update wins.
   session::IncompleteUpdate update{.still_counts = std::move(still_counts)};
   if (NeedsFraming(*changed.scene)) update.serialized = changed.scene->SerializeAsString();
   if (!expected.has_value()) {
@@ -122,7 +123,8 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   return changed;
 }
 
-// Whoever sent the update lost control and has it again, but another change was made meanwhile.
+// Returns the error for a person who lost control and regained it, while another person changed the
+// scene.
 absl::Status Overruled() {
   return base::WithDetails(
       absl::AbortedError("somebody else steered while the storm of this update was read, and "

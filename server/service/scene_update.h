@@ -14,10 +14,10 @@ namespace thunderhead::service {
 struct SceneChange {
   v1::Scene scene;
   std::optional<std::uint64_t> expected_revision;
-  google::protobuf::FieldMask update_mask;  // no path: the whole scene
+  google::protobuf::FieldMask update_mask;  // an empty mask means the whole scene
 };
 
-// The change of an UpdateSceneRequest or a SceneUpdate, which have the same fields.
+// Returns the change in an UpdateSceneRequest or a SceneUpdate, which have the same fields.
 template <typename Message>
 SceneChange SceneChangeOf(const Message& message) {
   SceneChange change{message.scene(), std::nullopt, message.update_mask()};
@@ -25,23 +25,28 @@ SceneChange SceneChangeOf(const Message& message) {
   return change;
 }
 
-// A session's newest scene, read back from the bytes that the session keeps.
+// A session's newest scene, parsed from the bytes that the session stores.
 struct ReadScene {
   std::uint64_t revision = 0;
   v1::Scene scene;
 };
 absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session);
 
-// As Session::Show, of a scene that is complete.
+// Shows a complete scene, as Session::Show does.
 bool ShowScene(const storm_store::StormStore& store, session::Session& session,
                std::uint64_t revision, const v1::Scene& scene);
 
-// Completes the changed scene and shows it, then calls `done` with its revision: at once, or on
-// another thread if the storm must be read to place the camera. `may` says whether who asks may
-// change the scene. It is called first; as control may pass on during the read, before the scene is
-// shown; and when another change comes meanwhile, which this one does not stand in the way of once
-// it may not be made any more. The change's limits were checked. `owner` is the identity that asks.
-// INVALID_ARGUMENT and NOT_FOUND as PrepareScene; ABORTED if the scene is at another revision.
+// Completes the changed scene and shows it, then calls `done` with its revision. That happens at
+// once, or on another thread if the storm must be read to place the camera.
+//
+// `may` reports whether the caller may change the scene. It is called first. It is called again
+// before the scene is shown, because control may pass to another person during the read. It is also
+// called when another change arrives meanwhile; a change that is no longer permitted does not block
+// the other one.
+//
+// The change's limits must have been checked. `owner` is the caller's identity. Returns
+// INVALID_ARGUMENT and NOT_FOUND as PrepareScene does, and ABORTED if the scene is at another
+// revision.
 void ChangeScene(Engine& engine, const std::string& owner,
                  const std::shared_ptr<session::Session>& session, const SceneChange& change,
                  std::function<absl::Status()> may,

@@ -36,15 +36,16 @@
 namespace thunderhead::service {
 namespace {
 
-// The largest picture that CheckScene allows, uncompressed, with room to spare.
+// Size of the largest uncompressed picture that CheckScene allows, with a margin.
 constexpr int kMaxResponseBytes = 128 << 20;
 // A viewer that disappeared without closing its connection is detected after the sum of these.
 constexpr int kKeepaliveTimeMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
-// A client that connects and says nothing, or begins no call, is dropped after these.
+// Timeouts for a client that connects and sends nothing, or starts no call.
 constexpr int kHandshakeTimeoutMs = 10'000;
 constexpr int kIdleConnectionMs = 60'000;
-// Of services whose calls hold a thread each, which is reflection alone; further calls are refused.
+// Maximum number of threads for services whose calls occupy a thread each, which is only
+// reflection. Further calls are refused.
 constexpr int kMaxCallThreads = 16;
 
 std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
@@ -76,8 +77,8 @@ Limits LimitsOf(const ServerOptions& options) {
   return limits;
 }
 
-// Has requests that are compressed refused with UNIMPLEMENTED, and none inflated: a megabyte of
-// gzip may hold a gigabyte, and gRPC inflates a message before it looks at its size.
+// Makes gRPC refuse compressed requests with UNIMPLEMENTED and inflate none. A megabyte of gzip may
+// hold a gigabyte, and gRPC inflates a message before it checks its size.
 void RefuseCompression(grpc::ServerBuilder& builder) {
   for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
     builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
@@ -109,7 +110,7 @@ class RunningServer final : public Server {
     return absl::OkStatus();
   }
 
-  // Brings back the sessions that the store has.
+  // Restores the sessions from the store.
   absl::Status StartKeeper() {
     if (session_store_ == nullptr) return absl::OkStatus();
     THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -120,7 +121,7 @@ class RunningServer final : public Server {
     return absl::OkStatus();
   }
 
-  // Brings back the jobs that the store has.
+  // Restores the jobs from the store.
   absl::Status StartJobs(const jobs::JobsOptions& options) {
     if (options.folder.empty()) return absl::OkStatus();
     THUNDERHEAD_ASSIGN_OR_RETURN(jobs_, jobs::Jobs::Open(options));
@@ -134,7 +135,7 @@ class RunningServer final : public Server {
     service_ = MakeThunderheadService(*engine_, *door_, *connection_calls_);
     job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, *connection_calls_,
                                                       jobs_.get(), job_files_.patience);
-    // A global setting, which applies to every server built later.
+    // This is a global setting, which applies to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] { grpc::reflection::InitProtoReflectionServerBuilderPlugin(); });
     grpc::ServerBuilder builder;
@@ -242,11 +243,11 @@ class RunningServer final : public Server {
   void Shutdown() override {
     health_.SetServing(false);
     if (jobs_ != nullptr) jobs_->CancelPictures();
-    // First, so that no picture is begun after a client has seen its stream end.
+    // This comes first, so that no picture is started after a client has seen its stream end.
     if (loop_ != nullptr) loop_->RequestStop();
     sessions_.CloseAll(base::ShuttingDown());
     if (loop_ != nullptr) loop_->Stop();
-    // After the loop, which has ended their pictures.
+    // These follow the loop, which has ended their pictures.
     if (jobs_ != nullptr) jobs_->Stop();
     if (job_service_ != nullptr) job_service_->Stop();
     executor_.Stop();
@@ -256,7 +257,7 @@ class RunningServer final : public Server {
       server_->Shutdown(std::chrono::system_clock::now() + shutdown_grace_);
       server_->Wait();
     }
-    // Last, because calls wait for it.
+    // This comes last, because calls wait for it.
     keeper_.reset();
   }
 
@@ -279,13 +280,13 @@ class RunningServer final : public Server {
   std::unique_ptr<session::SessionKeeper> keeper_;
   std::unique_ptr<CatalogueFollower> catalogue_;
   std::unique_ptr<Engine> engine_;
-  std::unique_ptr<jobs::Jobs> jobs_;  // null: none are kept
+  std::unique_ptr<jobs::Jobs> jobs_;  // null if none are kept
   std::unique_ptr<grpc::Service> service_;
   std::unique_ptr<RenderJobService> job_service_;
   HealthService health_{v1::ThunderheadService::service_full_name()};
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<LocalListener> local_;
-  std::unique_ptr<PortListener> port_;  // null: none
+  std::unique_ptr<PortListener> port_;  // null without a port
 };
 
 }  // namespace

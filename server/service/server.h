@@ -1,5 +1,6 @@
-// The gRPC server: the service, standard health and reflection, on a port or in process, with the
-// render loop. Its storms and frame source are injected, so that tests run it without files or GL.
+// The gRPC server: the service, standard health checks and reflection, on a port or in process,
+// with the render loop. Its storms and frame source are injected, so that tests can run it without
+// files or GL.
 #pragma once
 
 #include <grpcpp/channel.h>
@@ -25,7 +26,7 @@
 
 namespace thunderhead::service {
 
-// PEM files, read again when they change; both empty: no TLS.
+// PEM files, which are read again when they change. If both are empty, TLS is off.
 struct TlsFiles {
   std::string certificate;  // the chain, the server's own certificate first
   std::string key;
@@ -33,75 +34,77 @@ struct TlsFiles {
 };
 
 struct ServerOptions {
-  std::string address;  // HOST:PORT, port 0 for a free one; empty: no port
-  TlsFiles tls;         // of that port
-  // The time of sessions, their people and the limits; must outlive the server. A door has its own.
+  std::string address;  // HOST:PORT, port 0 for a free one; empty means no port
+  TlsFiles tls;         // for that port
+  // The time source of sessions, their people and the limits. It must outlive the server. A door
+  // has a separate time source.
   const base::TimeSource* time = &base::SteadyTime();
-  // Decides who may call; null: everybody may do everything, and nothing is written down.
+  // Decides who may call. If null, all calls are allowed and no audit log is written.
   std::shared_ptr<access::Door> door;
   Limits limits;
-  std::string clouds_folder;  // for generated clouds; empty: none can be generated
+  std::string clouds_folder;  // for generated clouds; if empty, none can be generated
   session::SessionsOptions sessions;
-  std::shared_ptr<session::SessionStore> session_store;  // null: sessions end with the server
+  std::shared_ptr<session::SessionStore> session_store;  // null if sessions end with the server
   drawing::RenderLoopOptions render_loop;
   jobs::JobsOptions jobs;
   JobFiles job_files;
-  // Of blocking work: reading fields, making clouds. The storm store reads one after another, so a
-  // few threads are enough.
+  // Threads for blocking work, such as reading fields and generating clouds. The storm store reads
+  // one time after another, so a few threads are enough.
   base::Executor::Limits executor;
-  // For running calls to end by themselves before a server that shuts down cancels them.
+  // Time for running calls to end on their own before a server that shuts down cancels them.
   std::chrono::seconds shutdown_grace{2};
 };
 
-// The load of a server now.
+// The current load of a server.
 struct ServerLoad {
   int sessions = 0;
-  int viewers = 0;  // of sessions and own views
+  int viewers = 0;  // viewers of sessions and own views
   int storms = 0;
-  double cached_bytes = 0.0;     // of storms' fields
-  int pictures = 0;              // single ones, begun and not yet delivered
-  int waiting_pictures = 0;      // of them, for a lane
-  double reading_stuck_s = 0.0;  // since a storage that hangs gave something; 0: none hangs
-  bool recovering = false;       // the device was lost
-  double stalled_s = 0.0;        // since a lane that works drew a piece; 0 while none works
-  double turn_s = 0.0;           // since the render loop's turn began; 0 while it waits for work
+  double cached_bytes = 0.0;     // size of the storms' fields in memory
+  int pictures = 0;              // single pictures, started and not yet delivered
+  int waiting_pictures = 0;      // those of them that wait for a lane
+  double reading_stuck_s = 0.0;  // time since a hanging storage last responded; 0 if none hangs
+  bool recovering = false;       // true after the device was lost
+  double stalled_s = 0.0;        // time since a busy lane last drew a piece; 0 while all are idle
+  // Time since the render loop's turn began; 0 while it waits for work.
+  double turn_s = 0.0;
   bool draining = false;
   jobs::JobsLoad jobs;
 };
 
 class Server {
  public:
-  // Returns when the frame source is ready and the port is open.
+  // Starts a server and returns when the frame source is ready and the port is open.
   static absl::StatusOr<std::unique_ptr<Server>> Start(
       const ServerOptions& options, std::shared_ptr<storm_store::StormStore> store,
       const drawing::FrameSourceFactory& make_source);
   virtual ~Server() = default;
 
-  // The listening port, 0 if none.
+  // Returns the listening port, or 0 if there is none.
   virtual int Port() const = 0;
-  // The device that the server draws on.
+  // Returns the device that the server draws on.
   virtual const drawing::DeviceInfo& Device() const = 0;
-  // A channel to this server from its own process, through a local socket.
+  // Returns a channel to this server from its own process, through a local socket.
   virtual std::shared_ptr<grpc::Channel> LocalChannel() = 0;
   virtual ServerLoad Load() const = 0;
-  // The file of a render job's picture by its path at the HTTP port, "/results/KEY/INDEX"; nothing
-  // if there is none.
+  // Returns the file of a render job's picture by its path on the HTTP port, "/results/KEY/INDEX";
+  // nothing if there is none.
   virtual std::optional<jobs::ResultPlace> FindResult(std::string_view path) const = 0;
-  // Somebody has got the whole of that file.
+  // Reports that a client has received that file completely.
   virtual void ResultFetched(std::string_view path) = 0;
-  // Tells everybody in a session when to come back, to the next server, refuses new sessions,
-  // viewers and pictures, and tells health checks. Sessions, for those who stay, and pictures that
-  // were begun go on. Returns at once.
+  // Starts the draining of the server and returns at once. It tells all people in sessions when to
+  // reconnect, to the next server. It refuses new sessions, viewers and pictures, and updates the
+  // health checks. Sessions continue for people who stay, and so do pictures that were started.
   virtual void BeginDrain() = 0;
 
-  // Replaces ServerOptions::sessions.roster_timeouts, also for waits that have begun.
+  // Replaces ServerOptions::sessions.roster_timeouts, also for timeouts that are already running.
   virtual void SetRosterTimeouts(const session::RosterTimeouts& timeouts) = 0;
 
-  // Sets the status that gRPC's health service gives: serving from the start, and never again once
-  // the server drains.
+  // Sets the status that gRPC's health service reports. It is serving from the start, and never
+  // again once the server drains.
   virtual void SetServing(bool serving) = 0;
-  // Ends every stream with UNAVAILABLE, refuses queued work, and waits for running work. The
-  // destructor does it too.
+  // Ends every stream with UNAVAILABLE, refuses queued work and waits for running work. The
+  // destructor calls it too.
   virtual void Shutdown() = 0;
 };
 

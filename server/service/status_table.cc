@@ -19,19 +19,20 @@ using std::chrono::milliseconds;
 
 constexpr char kDomain[] = "thunderhead";
 
-// gRPC drops a status of more than 8 KiB, and a shader's log may be longer. A status contains its
-// message twice, the second time as base64 in the details.
+// Limits of the texts. gRPC drops a status of more than 8 KiB, and a shader's log may be longer. A
+// status contains its message twice, the second time as base64 in the details.
 constexpr std::size_t kMaxMessageBytes = 2000;
 constexpr std::size_t kMaxDetailBytes = 600;
 
 struct Row {
   absl::StatusCode engine;
   grpc::StatusCode wire;
-  const char* reason;             // if the status has none
-  milliseconds retry_after = {};  // likewise; 0: a retry does not help
+  const char* reason;  // default, if the status has none
+  // The default if the status has none; 0 means that a retry does not help.
+  milliseconds retry_after = {};
 };
 
-// To a client OUT_OF_RANGE is a wrong value like any other, hence INVALID_ARGUMENT.
+// For a client, OUT_OF_RANGE is a wrong value like any other, so it maps to INVALID_ARGUMENT.
 constexpr std::array kTable = {
     Row{absl::StatusCode::kInvalidArgument, grpc::StatusCode::INVALID_ARGUMENT, "INVALID_ARGUMENT"},
     Row{absl::StatusCode::kOutOfRange, grpc::StatusCode::INVALID_ARGUMENT, "VALUE_OUT_OF_RANGE"},
@@ -40,7 +41,7 @@ constexpr std::array kTable = {
     Row{absl::StatusCode::kUnauthenticated, grpc::StatusCode::UNAUTHENTICATED, "UNAUTHENTICATED"},
     Row{absl::StatusCode::kPermissionDenied, grpc::StatusCode::PERMISSION_DENIED,
         "PERMISSION_DENIED"},
-    // Memory may become free later.
+    // A retry may succeed, because memory may become free later.
     Row{absl::StatusCode::kResourceExhausted, grpc::StatusCode::RESOURCE_EXHAUSTED,
         "RESOURCE_EXHAUSTED", std::chrono::seconds(30)},
     Row{absl::StatusCode::kFailedPrecondition, grpc::StatusCode::FAILED_PRECONDITION,
@@ -64,9 +65,9 @@ const Row& RowOf(absl::StatusCode code) {
   return kOther;
 }
 
-// Returns the text printable, as protobuf strings and log lines must be, and truncated to
-// `max_bytes` in the encoding of grpc-message, which writes three bytes for each byte outside
-// ASCII.
+// Returns the text made printable, as protobuf strings and log lines require, and truncated to
+// `max_bytes`. The size is that of the encoding of grpc-message, which writes three bytes for each
+// byte outside ASCII.
 std::string Sendable(std::string_view text, std::size_t max_bytes) {
   std::string printable = base::Printable(text);
   std::size_t bytes = 0;
@@ -124,7 +125,7 @@ std::string SendableMessage(const absl::Status& status) {
 grpc::Status ToGrpcStatus(const absl::Status& status) {
   const std::string message = SendableMessage(status);
   if (status.ok()) return grpc::Status::OK;
-  // A client that cancelled its call does not read details.
+  // A client that cancelled its call does not read details, so none are sent.
   if (absl::IsCancelled(status)) return {grpc::StatusCode::CANCELLED, message};
   const Row& row = RowOf(status.code());
   const base::ErrorDetails details = base::DetailsOf(status);

@@ -1,4 +1,4 @@
-// Reads back the scenes of sessions that were kept while the server was down, perhaps by an older
+// Restores the scenes of sessions that were saved while the server was down, perhaps by an older
 // version of this program.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace thunderhead::service {
 
-// Checks the scene as a client's, and fills in the defaults of fields that its writer did not know.
-// The storm may be gone, which whoever looks at the session is told.
+// Checks the scene like a client's, and fills in the defaults of fields that its writer did not
+// know. The storm may no longer exist; viewers of the session are then informed.
 absl::StatusOr<session::DecodedScene> DecodeStoredScene(
     const storm_store::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
     const std::string& serialized);

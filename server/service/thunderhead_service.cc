@@ -10,7 +10,8 @@
 namespace thunderhead::service {
 namespace {
 
-// The calls by messages, and Interact by bytes. This takes gRPC's generated class for each call.
+// The service's base class: Interact uses bytes and all other calls use messages. gRPC needs a
+// generated class for each call.
 using Generated = v1::ThunderheadService;
 using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbackMethod_ListStorms<
     Generated::WithCallbackMethod_DescribeStorm<Generated::WithCallbackMethod_GenerateCloud<

@@ -1,4 +1,5 @@
-// The service as gRPC calls it: asks the door about every call, and dispatches it to its handler.
+// The service as gRPC calls it. It checks access for each call and dispatches the call to its
+// handler.
 #pragma once
 
 #include <grpcpp/impl/service_type.h>
@@ -11,7 +12,7 @@
 
 namespace thunderhead::service {
 
-// All must outlive it.
+// Returns the service. All arguments must outlive it.
 std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
                                                       ConnectionCalls& calls);
 

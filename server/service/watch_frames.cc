@@ -20,12 +20,12 @@ namespace {
 using FramesReactor = grpc::ServerWriteReactor<v1::WatchFramesResponse>;
 
 // One viewer's stream. It lives until both gRPC and the hub have released it. There is at most one
-// pending write; Finish is called once, when there is none.
+// pending write. Finish is called once, while none is pending.
 class FrameStream : public FramesReactor,
                     public delivery::Viewer,
                     public std::enable_shared_from_this<FrameStream> {
  public:
-  // The session counts its onlooker already.
+  // Starts a stream. The session must already count its onlooker.
   static FramesReactor* Start(const Limits& limits, grpc::CallbackServerContext* context,
                               std::shared_ptr<session::Session> session, CallerRef caller) {
     auto stream =
@@ -90,16 +90,16 @@ class FrameStream : public FramesReactor,
   }
 
   void OnDone() override {
-    // First, as a session that nobody watches expires sooner.
+    // This comes first, because a session without viewers expires sooner.
     session_->Touch();
     if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
     session_->audience().RemoveOnlooker();
-    delivery_.reset();  // the hub may keep the stream for longer
+    delivery_.reset();  // because the hub may keep the stream for longer
     held_by_grpc_.reset();
   }
 
  private:
-  // The status to end the stream with, if it must end now. Needs mutex_.
+  // Returns the status to end the stream with if it must end now. The caller must hold mutex_.
   std::optional<grpc::Status> End() {
     if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the viewer disconnected");
     if (!known_.ok()) return ToGrpcStatus(known_);
@@ -108,7 +108,7 @@ class FrameStream : public FramesReactor,
     return ToGrpcStatus(closed);
   }
 
-  // `writing_` is set, so no other thread accesses the response.
+  // Sets the response. `writing_` is set, so no other thread accesses the response.
   void SetResponse(const delivery::FrameEvent& event) {
     response_.set_viewer_id(viewer_id_);
     if (const auto* frame = std::get_if<std::shared_ptr<const delivery::EncodedFrame>>(&event)) {
@@ -131,20 +131,21 @@ class FrameStream : public FramesReactor,
   }
 
   const std::shared_ptr<session::Session> session_;
-  const CallerRef caller_;  // has its place while the stream lives
+  const CallerRef caller_;  // counts the stream while it lives
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
-  std::uint64_t sent_revision_ = 0;  // of the scene sent last; accessed only while `response_` is
+  // The revision of the scene sent last. It is accessed only while `response_` is accessed.
+  std::uint64_t sent_revision_ = 0;
   std::mutex mutex_;
   std::uint64_t viewer_id_ = 0;
   bool writing_ = false;
   bool disconnected_ = false;
-  absl::Status known_;  // why the caller may watch no longer
+  absl::Status known_;  // the reason why the caller may no longer watch
   bool finished_ = false;
   std::optional<DeliveryDeadline> delivery_;
 };
 
-// The session, with one onlooker more.
+// Returns the session, which then counts one more onlooker.
 absl::StatusOr<std::shared_ptr<session::Session>> FindToWatch(
     Engine& engine, const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));

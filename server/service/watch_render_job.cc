@@ -25,8 +25,8 @@ absl::Status Forgotten(const std::string& id) {
       {.reason = "JOB_NOT_FOUND", .metadata = {{"job_id", id}}});
 }
 
-// One client's stream. There is at most one pending write; what changes meanwhile comes with the
-// next. Lives until both gRPC and the jobs have released it.
+// One client's stream. There is at most one pending write, and changes during it are sent with the
+// next one. It lives until both gRPC and the jobs have released it.
 class JobStream final : public JobReactor,
                         public jobs::JobWatcher,
                         public std::enable_shared_from_this<JobStream> {
@@ -85,13 +85,13 @@ class JobStream final : public JobReactor,
   }
 
   void OnDone() override {
-    delivery_.reset();  // the jobs may keep the stream for longer
+    delivery_.reset();  // because the jobs may keep the stream for longer
     held_by_grpc_.reset();
   }
 
  private:
-  // The status to end with, if the stream ends now; else sets the response, if there is news. Needs
-  // mutex_.
+  // Returns the status to end with if the stream ends now. Otherwise sets the response if there is
+  // news. The caller must hold mutex_.
   std::optional<grpc::Status> Next() {
     if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected");
     if (!known_.ok()) return ToGrpcStatus(known_);
@@ -111,7 +111,7 @@ class JobStream final : public JobReactor,
   }
 
   jobs::Jobs& jobs_;
-  const CallerRef caller_;  // has its place while the stream lives
+  const CallerRef caller_;  // counts the stream while it lives
   const std::string id_;
   std::shared_ptr<JobStream> held_by_grpc_;
   v1::WatchRenderJobResponse response_;  // gRPC reads it while `writing_`
@@ -121,7 +121,7 @@ class JobStream final : public JobReactor,
   bool has_ended_ = false;
   bool writing_ = false;
   bool disconnected_ = false;
-  absl::Status known_;  // why the caller may watch no longer
+  absl::Status known_;  // the reason why the caller may no longer watch
   bool finished_ = false;
   std::optional<DeliveryDeadline> delivery_;
 };

@@ -32,7 +32,7 @@ void AppendLength(int field, std::size_t size, std::string* bytes) {
 
 grpc::Slice SharedSlice(const std::shared_ptr<const std::string>& bytes) {
   auto held = std::make_unique<std::shared_ptr<const std::string>>(bytes);
-  // gRPC takes a pointer to bytes that it could change, and does not.
+  // gRPC takes a pointer to mutable bytes, but does not change them.
   char* const data = const_cast<char*>(bytes->data());
   return {
       data, bytes->size(),

@@ -1,5 +1,5 @@
-// Protobuf's wire format for messages that share their largest part: the shared bytes are
-// serialized once, and a few bytes before them make each message.
+// Protobuf's wire format for messages that share their largest part. The shared bytes are
+// serialized once, and a short prefix completes each message.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -12,15 +12,15 @@
 
 namespace thunderhead::service {
 
-// Appends a field with a number or a truth value.
+// Appends a field with a number or a bool.
 void AppendNumber(int field, std::uint64_t value, std::string* bytes);
-// Appends the tag and length of a field whose `size` bytes follow.
+// Appends the tag and length of a field. Its `size` bytes must follow.
 void AppendLength(int field, std::size_t size, std::string* bytes);
 
-// Bytes that are shared without a copy; they live as long as the slice.
+// Returns a slice that shares the bytes without a copy and keeps them alive.
 grpc::Slice SharedSlice(const std::shared_ptr<const std::string>& bytes);
 
-// The message `prefix` + `shared`.
+// Returns the message `prefix` + `shared`.
 grpc::ByteBuffer Joined(const std::string& prefix, const grpc::Slice& shared);
 grpc::ByteBuffer Whole(const std::string& bytes);
 

@@ -8,7 +8,7 @@
 namespace thunderhead::session {
 namespace {
 
-// Who tells of it sees to its pace.
+// The caller of Hold limits how often the times change.
 constexpr std::chrono::milliseconds kAtOnce{0};
 
 }  // namespace
@@ -86,7 +86,7 @@ absl::Status Audience::Change(const RosterChange& change, Time now) {
   return status;
 }
 
-// Of people who may not point any more.
+// Removes the pointers of people who may not mark.
 void Audience::WithdrawPointers() {
   const auto may_not = [this](std::uint64_t id) { return !roster_.MayMark(id).ok(); };
   std::erase_if(rays_, [&](const auto& ray) { return may_not(ray.first); });
@@ -253,7 +253,7 @@ Told Audience::Marks(std::uint64_t count) {
   return all;
 }
 
-// Marks are told by their changes, and all of them only where somebody asks for them.
+// Sends the change of the marks. All the marks are serialized only when a person needs them.
 void Audience::TellMarks(Time now) {
   marks_ = {{marks_.told.count + 1, nullptr}, board_.marks_revision(), now};
   marks_changes_.push_back(
@@ -278,7 +278,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
     gone.push_back(members_.at(id).viewer);
     Forget(id);
   }
-  // Found without the lock, as it takes a while.
+  // Places are found without the lock because that takes a while.
   if (!rays_.empty() && now >= pointers_.told_at + kPointersPause) {
     const auto rays = TakeRays();
     for (const auto& [id, ray] : rays) finding_.insert(id);
@@ -288,7 +288,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
     for (const auto& [id, ray] : rays) found.push_back({id, place(ray)});
     lock.lock();
     for (const Pointer& pointer : found) {
-      // Unless it has moved on or gone meanwhile.
+      // Skips pointers that moved again or were removed meanwhile.
       if (finding_.erase(pointer.person_id) > 0) {
         board_.Point(pointer.person_id, pointer.position_m);
       }
@@ -312,7 +312,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   return next;
 }
 
-// In turn, so that many who point do not hold up one another for long.
+// Takes rays in turn, so that many pointing people do not delay one another for long.
 std::map<std::uint64_t, Ray> Audience::TakeRays() {
   std::map<std::uint64_t, Ray> taken;
   while (!rays_.empty() && taken.size() < kMaxFound) {

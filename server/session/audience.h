@@ -1,6 +1,7 @@
-// The people of a session with their connections: changes the roster and the board under a lock,
-// and tells everybody the outcome. What is told is turned into bytes once for all of them, at most
-// some times a second, the newest only. Safe from any thread; knows no messages.
+// The people of a session and their connections. Changes the roster and the board under a lock and
+// sends the outcome to all of them. Each update is serialized once for all people, a few times a
+// second at most, and only the newest state is sent. Safe from any thread; knows no message
+// formats.
 #pragma once
 
 #include <chrono>
@@ -31,7 +32,7 @@ struct HeldTimes {
   bool operator==(const HeldTimes&) const = default;
 };
 
-// Turns what people are told into bytes, which are opaque here.
+// Serializes the updates for people into bytes, which are opaque here.
 struct AudienceFormat {
   std::function<std::string(const Roster&)> presence = [](const Roster&) { return ""; };
   std::function<std::string(const std::vector<Pointer>&)> pointers = [](const auto&) { return ""; };
@@ -40,16 +41,16 @@ struct AudienceFormat {
   std::function<std::string(const HeldTimes&)> held_times = [](const auto&) { return ""; };
 };
 
-// The last that people were told of one subject.
+// The last update about one subject that was sent to people.
 struct Told {
-  std::uint64_t count = 0;  // of tellings; 0: nothing yet
+  std::uint64_t count = 0;  // number of updates; 0: none yet
   std::shared_ptr<const std::string> bytes;
 };
 
-// A ray from an eye.
+// A ray from a viewpoint.
 struct Ray {
   glm::dvec3 origin_m{0.0};
-  glm::dvec3 direction{0.0, 1.0, 0.0};  // of length 1
+  glm::dvec3 direction{0.0, 1.0, 0.0};  // has length 1
 };
 
 class Audience {
@@ -61,56 +62,60 @@ class Audience {
   static constexpr std::chrono::milliseconds kScenePause{200};
   static constexpr std::chrono::milliseconds kPointersPause{33};
   static constexpr std::chrono::milliseconds kMarksPause{200};
-  // Places of pointers found in one Tick; further people wait for the next.
+  // Maximum number of pointers whose places are found in one Tick. Further pointers wait for the
+  // next.
   static constexpr std::size_t kMaxFound = 8;
-  // The last changes of marks, of 6 s if something is drawn all the time. Who has missed more is
-  // told all the marks.
+  // Number of changes of marks that are kept, which cover 6 s of continuous drawing. A person who
+  // has missed more gets all the marks.
   static constexpr std::size_t kMaxMarksChanges = 32;
 
-  // `on_due` is called, without the lock, when Tick is to be called soon.
+  // `on_due` is called, without the lock, when Tick must be called soon.
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
            std::function<void()> on_due, const RosterTimeouts& timeouts = {});
 
-  // `member` is woken when it is to be told something. The marks with `owner_key`, if there are
-  // any, become the newcomer's. None for a viewer where `most` people are, onlookers included; who
-  // comes back may be one more, as the lost connection may not have ended yet.
+  // Adds a person. `member` is woken when there is an update for it. Marks with `owner_key` become
+  // the new person's. Returns none for a viewer if there are already `most` people, onlookers
+  // included. A returning person may exceed `most` by one because the lost connection may not have
+  // ended yet.
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
                                     std::shared_ptr<delivery::Viewer> member, Time now,
                                     std::size_t most = std::numeric_limits<std::size_t>::max(),
                                     const std::string& owner_key = "", bool answers_checks = true);
   void Leave(std::uint64_t id, Time now);
-  // One more who only watches, and is nobody in the roster; false for a viewer where `most` are
-  // already, people included.
+  // Adds a connection that only watches and is not in the roster. Returns false for a viewer if
+  // there are already `most` people and onlookers.
   bool AddOnlooker(Role role, std::size_t most);
   void RemoveOnlooker();
-  // The person has said something.
+  // Records that a message came from the person.
   void Heard(std::uint64_t id);
-  // The person has been asked whether it is there, because of doubt number `doubts`.
+  // Records that the person was asked for a sign of life, because of doubt number `doubts`.
   void Checked(std::uint64_t id, std::uint64_t doubts, Time now);
 
-  // Changes the roster or the board.
+  // Functions that change the roster or the board.
   using RosterChange = std::function<absl::Status(Roster&)>;
   using BoardChange = std::function<absl::Status(Board&)>;
   absl::Status Change(const RosterChange& change, Time now);
   absl::Status Draw(std::uint64_t id, const BoardChange& change, Time now);
-  // Erases those marks, or all: a presenter anybody's, a viewer the own ones. PERMISSION_DENIED,
-  // and none is erased, if a viewer names another's.
+  // Erases the marks with those ids, or all of them if there are no ids. Presenters may erase any
+  // marks, viewers only their own. If a viewer names another person's mark, the result is
+  // PERMISSION_DENIED and nothing is erased.
   absl::Status Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now);
-  // Moves the person's pointer to what the ray meets, as soon as Tick has found it; without a ray
-  // it goes.
+  // Moves the person's pointer to the point that the ray hits, once Tick has found it. Without a
+  // ray, removes the pointer.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
 
-  // Control is as it was before the server started again; called before anybody has joined.
+  // Restores the control of the previous server run. Must be called before the first person joins.
   void RestoreControl(const KeptControl& kept, Time now);
-  // The session shows a scene of that revision, which everybody is to be sent, and a storm of that
-  // domain; absent: of the one before, as far as is known.
+  // Records that the session shows a scene of that revision, which all people must be sent.
+  // `domain` is the domain of its storm; if absent, the previous domain is kept.
   void SceneChanged(std::uint64_t revision, const std::optional<std::string>& domain, Time now);
-  // The times in memory of the storm that the session shows; everybody is told if it is news.
+  // Sets the times in memory of the storm that the session shows. Sends them to all people if they
+  // changed.
   void Hold(const HeldTimes& held, Time now);
-  // Wakes everybody, when the session has ended.
+  // Wakes all people when the session has ended.
   void WakeAll();
 
-  // Copies.
+  // The following functions return copies.
   Board Drawn() const;
   Rules CurrentRules() const;
   KeptControl ControlToKeep() const;
@@ -118,29 +123,31 @@ class Audience {
   absl::Status MaySteer(std::uint64_t id) const;
   absl::Status PresenterMaySteer() const;
   absl::Status MayMark(std::uint64_t id) const;
-  // False for one who has left, or gave no sign of life when asked.
+  // Returns false for a person who has left or gave no sign of life when asked.
   bool IsThere(std::uint64_t id) const;
   std::uint64_t Doubts(std::uint64_t id) const;  // Person::doubts
   bool Follows(std::uint64_t id) const;
   std::uint64_t Returns(std::uint64_t id) const;  // Person::returns
   bool Empty() const;
 
-  // For that person: nothing yet where the last telling is older than the person's joining.
+  // Returns the last presence update for that person. It is empty if the last update is older than
+  // the person's joining.
   Told Presence(std::uint64_t id) const;
   Told Pointers() const;
-  // For one who was told of the marks `count` times: the next change, or all the marks. Those may
-  // be newer than what others were told; a change that comes twice is the same as one. Of 0: all.
+  // Returns the update of the marks for a person who has received `count` of them: the next change,
+  // or all the marks. All the marks may be newer than what others were sent; applying a change
+  // twice is harmless. A `count` of 0 gets all the marks.
   Told Marks(std::uint64_t count);
   Told TimesHeld() const;
-  // Without bytes: it counts when people were told to take the newest scene.
+  // Returns an update without bytes; its count changes when people must take the newest scene.
   Told Scene() const;
 
-  // Ends what has run out, finds where pointers point, and tells what is due. Returns when it is to
-  // be called next, if nothing happens before.
+  // Ends expired states, finds the places of pointers, and sends the updates that are due. Returns
+  // when it must be called next if nothing happens before.
   std::optional<Time> Tick(Time now, const Place& place);
 
  private:
-  // One subject: what was told of it, and whether it has changed since.
+  // One subject of updates: the last update, and the revision that it was made of.
   struct Subject {
     Told told;
     std::uint64_t told_revision = 0;
@@ -149,10 +156,11 @@ class Audience {
 
   struct Member {
     std::shared_ptr<delivery::Viewer> viewer;
-    std::uint64_t joined_at = 0;  // the roster's revision
+    std::uint64_t joined_at = 0;  // revision of the roster at joining
   };
 
-  // All need mutex_. TellDue tells those subjects whose pause is over; true if there were any.
+  // The following functions need mutex_. TellDue sends the subjects whose pause is over and returns
+  // true if there were any.
   void Forget(std::uint64_t id);
   void TellMarks(Time now);
   bool TellDue(Time now);
@@ -170,13 +178,13 @@ class Audience {
   Board board_;
   std::map<std::uint64_t, Member> members_;
   std::size_t onlookers_ = 0;
-  std::map<std::uint64_t, Ray> rays_;  // of pointers whose place is to be found
+  std::map<std::uint64_t, Ray> rays_;  // rays of pointers whose places must still be found
   std::set<std::uint64_t> finding_;    // people whose pointers' places are being found
-  std::uint64_t last_found_ = 0;       // whose ray was taken last
+  std::uint64_t last_found_ = 0;       // id of the person whose ray was taken last
   Subject presence_;
   Subject pointers_;
-  Subject marks_;                                                 // all of them
-  std::deque<std::shared_ptr<const std::string>> marks_changes_;  // the newest last
+  Subject marks_;                                                 // all marks
+  std::deque<std::shared_ptr<const std::string>> marks_changes_;  // newest last
   Subject held_times_;
   Subject scene_;
   std::uint64_t scene_revision_ = 0;

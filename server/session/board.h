@@ -1,6 +1,7 @@
-// People show one another on a session's picture: pointers, and marks that they draw. Both are
-// places in the world, so they stay where they are when the camera turns. A mark is shown with the
-// domain of the storm that it was drawn on, and kept while that of another is. A plain value.
+// Pointers and marks by which people show one another things on a session's picture. Both are
+// positions in the world, so they stay in place when the camera turns. A mark is shown with the
+// domain of the storm that it was drawn on. It is kept, but hidden, while a storm of another domain
+// is shown. A plain value.
 #pragma once
 
 #include <cstddef>
@@ -20,21 +21,22 @@ struct Pointer {
   glm::dvec3 position_m{0.0};
 };
 
-// A line.
+// A line that a person has drawn.
 struct Mark {
-  std::uint64_t id = 0;  // counts a session's marks from 1
+  std::uint64_t id = 0;  // number of the mark in its session, from 1
   std::uint64_t person_id = 0;
   std::vector<glm::dvec3> positions_m;
   glm::vec3 color{1.0F};  // linear sRGB
-  // Secret of who drew it, by which the marks follow the person to a new connection; empty: none.
+  // Secret key of the person who drew it. It assigns the marks to the person's new connection;
+  // empty: none.
   std::string owner_key{};
-  std::string domain{};  // of the storm that it lies on; empty: not known
+  std::string domain{};  // domain of the storm that it lies on; empty: not known
 
   bool operator==(const Mark&) const = default;
 };
 
 struct MarksChange {
-  std::vector<Mark> drawn;  // or now another person's
+  std::vector<Mark> drawn;  // new marks, and marks that now belong to another person
   std::vector<std::uint64_t> erased;
 };
 
@@ -45,33 +47,35 @@ class Board {
   Board() = default;
   explicit Board(std::vector<Mark> marks);
 
-  // A storm of that domain is shown. Marks of no known domain are of the first.
+  // Records that a storm of that domain is shown. Marks without a known domain get the first
+  // domain.
   void ShowDomain(const std::string& domain);
 
-  // Without a colour, one of the person's own. FAILED_PRECONDITION if too many marks are shown;
-  // where others are kept, the oldest of those makes room.
+  // Adds a mark. Without a colour, it gets the person's own colour. FAILED_PRECONDITION if too many
+  // marks are shown. If marks of other domains are kept, the oldest of those is erased instead.
   absl::StatusOr<std::uint64_t> Add(std::uint64_t person_id, std::vector<glm::dvec3> positions_m,
                                     const std::optional<glm::vec3>& color,
                                     const std::string& owner_key = "");
-  // The marks with that key are now the person's, who has come back with another id.
+  // Gives the marks with that key to the person, who has come back with another id.
   void HandOver(const std::string& owner_key, std::uint64_t person_id);
-  // True if one of `ids` is a mark of somebody else.
+  // Returns true if one of `ids` is another person's mark.
   bool HasOfOthers(const std::vector<std::uint64_t>& ids, std::uint64_t person_id) const;
-  // Erases `ids`, or every mark shown if there are none: of anybody, or only of that person.
+  // Erases `ids`, or all shown marks if `ids` is empty. With `person_id`, erases only that person's
+  // marks.
   void Erase(const std::vector<std::uint64_t>& ids, std::optional<std::uint64_t> person_id);
 
-  // Moves the person's pointer; without a place it goes.
+  // Moves the person's pointer. Without a position, removes it.
   void Point(std::uint64_t person_id, const std::optional<glm::dvec3>& position_m);
 
-  // Those of other domains, too.
+  // Returns all marks, including those of other domains.
   const std::vector<Mark>& marks() const { return marks_; }
   std::vector<Mark> MarksShown() const;
-  // The marks shown that were drawn or erased since the last call.
+  // Returns the shown marks that were drawn or erased since the last call.
   MarksChange TakeMarksChange();
-  // The largest id of those who drew them; 0 without marks.
+  // Returns the largest id of the people who drew the marks; 0 without marks.
   std::uint64_t LastPerson() const;
   const std::vector<Pointer>& pointers() const { return pointers_; }
-  // Count changes.
+  // These revisions count changes.
   std::uint64_t marks_revision() const { return marks_revision_; }
   std::uint64_t pointers_revision() const { return pointers_revision_; }
 

@@ -1,7 +1,7 @@
-// How soon after a change of a scene the next one of the same gesture is to be expected. Changes
-// that are made thirty times a second come at larger and uneven distances over a far or full link:
-// a scene that has just changed so rests only after a longer pause. A plain value that is told the
-// time.
+// Predicts how soon after a change of a scene the next change of the same gesture comes. Clients
+// send changes thirty times a second, but they arrive at larger and uneven intervals over a slow or
+// distant link. A scene changed in such a gesture is at rest only after a longer pause. A plain
+// value; the time is an argument.
 #pragma once
 
 #include <chrono>
@@ -14,11 +14,11 @@ class ChangeRhythm {
   using Time = std::chrono::steady_clock::time_point;
   using Duration = std::chrono::steady_clock::duration;
 
-  // A change that comes later begins another gesture.
+  // A change after a longer pause begins another gesture.
   static constexpr std::chrono::milliseconds kLongestPause{700};
 
-  // The scene has changed. Returns the usual pause before the next change: the longest of late,
-  // forgotten slowly; 0 after the first change of a gesture.
+  // Records a change of the scene. Returns the usual pause before the next change: the longest
+  // recent pause, which is forgotten slowly. It is 0 after the first change of a gesture.
   Duration Changed(Time now);
 
  private:

@@ -21,7 +21,7 @@ absl::Status NoSuchPerson(std::uint64_t id) {
       {.reason = "VIEWER_NOT_FOUND", .metadata = {{"viewer_id", absl::StrCat(id)}}});
 }
 
-// Numbers are for people who gave no name.
+// People without a name are called by their number.
 std::string NameOf(const Person& person) {
   return person.name.empty() ? absl::StrCat("viewer ", person.id) : person.name;
 }
@@ -338,7 +338,7 @@ void Roster::Give(Person& to) {
   steering_ = to.id;
   away_since_.reset();
   awaited_.reset();
-  // A steering person sees what is steered.
+  // The person who steers must see the view that they steer.
   ReturnToView(to);
   to.asks = false;
 }

@@ -62,7 +62,8 @@ absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
                                                  std::move(decoded->serialized), decoded->domain);
   }
   THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(too_old));
-  // Before anybody sees their new revisions, so that the next restart's are larger still.
+  // Saves the new revisions before clients can see them, so that the next restart gives larger
+  // ones.
   return FirstError(SaveChanges());
 }
 
@@ -76,10 +77,11 @@ SessionKeeper::Outcome SessionKeeper::SaveChanges() {
       ended.push_back(id);
       continue;
     }
-    // Before the record, which may be newer than they say.
+    // The version is read before the record, so that the record is at least as new as the version
+    // says.
     const SessionVersion version = kept.session->Version();
     const Clock::time_point use = kept.session->UsedUntil();
-    if (version.scene_revision == 0) continue;  // it is only being created
+    if (version.scene_revision == 0) continue;  // the session is still being created
     if (kept.saved == version && use < kept.saved_use + kUsePause) continue;
     records.push_back(kept.session->Record());
     saved[id] = {kept.session, version, use};

@@ -1,6 +1,6 @@
-// Keeps sessions in a store, on a thread of its own, so that no disk delays a frame or a handler:
-// brings them back when the server starts, saves those that have changed twice a second, and
-// removes those that were closed or have expired.
+// Keeps sessions in a store, on its own thread, so that the disk never delays a frame or a request.
+// Restores them when the server starts, saves changed sessions twice a second, and removes those
+// that were closed or have expired.
 #pragma once
 
 #include <chrono>
@@ -21,42 +21,44 @@
 
 namespace thunderhead::session {
 
-// A scene read back from its bytes, and the bytes that viewers are sent from now on.
+// A scene decoded from its bytes, and the bytes to send to viewers.
 struct DecodedScene {
   scene::Scene scene;
   std::string serialized;
-  std::optional<std::string> domain;  // of its storm, if that is there
+  std::optional<std::string> domain;  // domain of its storm, if the storm is available
 };
 using DecodeScene = std::function<absl::StatusOr<DecodedScene>(const std::string& serialized)>;
 
 class SessionKeeper {
  public:
   static constexpr std::chrono::milliseconds kPause{500};
-  // How far the use of a session may be ahead of its record's.
+  // Maximum time by which a session's last use may be newer than in its record.
   static constexpr std::chrono::seconds kUsePause{30};
 
-  // Puts the store's sessions into `sessions`, without those that are too old. A scene that cannot
-  // be decoded is logged and stays in the store until it is too old. Both must outlive the keeper.
+  // Restores the store's sessions into `sessions`, except those that are too old. If a scene cannot
+  // be decoded, the error is logged and its session stays in the store until it is too old. Both
+  // must outlive the keeper.
   static absl::StatusOr<std::unique_ptr<SessionKeeper>> Start(SessionStore& store,
                                                               Sessions& sessions,
                                                               const DecodeScene& decode);
-  // Saves what has changed.
+  // Saves all changes.
   ~SessionKeeper();
   SessionKeeper(const SessionKeeper&) = delete;
   SessionKeeper& operator=(const SessionKeeper&) = delete;
 
-  // How an attempt to save ended. One that failed, as on a full disk, is repeated by the keeper.
+  // The outcome of an attempt to save. The keeper repeats a failed attempt, for example on a full
+  // disk.
   struct Outcome {
-    absl::Status saved;    // of sessions that are open
-    absl::Status removed;  // of sessions that have ended
+    absl::Status saved;    // outcome for open sessions
+    absl::Status removed;  // outcome for ended sessions
   };
 
-  // Calls `done` on the keeper's thread after the next attempt to save all that is the case now.
+  // Calls `done` on the keeper's thread after the next attempt to save the current state.
   using Done = std::function<void(const Outcome&)>;
   void SaveThen(Done done);
 
  private:
-  // A session, and what the store has of it.
+  // A session and the state of it that is in the store.
   struct Kept {
     std::shared_ptr<Session> session;
     std::optional<SessionVersion> saved;

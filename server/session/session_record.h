@@ -1,4 +1,4 @@
-// The kept state of a session while the server is down. Plain values.
+// The state of a session that is kept while the server is down. Plain values.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace thunderhead::session {
 
-// Either of these opens the session; neither tells the other.
+// Two keys that each open the session. Neither can be derived from the other.
 struct SessionKeys {
   std::string presenter;
   std::string viewer;
@@ -22,7 +22,7 @@ struct SessionKeys {
 struct SessionRecord {
   std::string id;
   SessionKeys keys;
-  std::string owner;  // the identity that opened it; empty: nobody's
+  std::string owner;  // identity that opened it; empty: no owner
   Rules rules;
   KeptControl control;
   std::string scene;  // as the service serialized it; opaque here

@@ -1,4 +1,4 @@
-// Keeps sessions' records while the server is down. Used by one thread at a time; every call may
+// Keeps sessions' records while the server is down. Used by one thread at a time; each call may
 // block.
 #pragma once
 
@@ -15,11 +15,11 @@ class SessionStore {
  public:
   virtual ~SessionStore() = default;
 
-  // Adds the records, or replaces those with the same ids: all of them or, on an error, none.
+  // Adds the records or replaces those with the same ids. On an error, no record is changed.
   virtual absl::Status Save(const std::vector<SessionRecord>& records) = 0;
-  // Ids that are not there are no error.
+  // Removes the records with those ids; missing ids are not an error.
   virtual absl::Status Remove(const std::vector<std::string>& ids) = 0;
-  // In order of id. What cannot be read of a record is logged and left out.
+  // Returns the records ordered by id. Unreadable parts of a record are logged and left out.
   virtual absl::StatusOr<std::vector<SessionRecord>> Load() = 0;
 };
 

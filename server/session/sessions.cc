@@ -14,23 +14,23 @@
 namespace thunderhead::session {
 namespace {
 
-// A key opens its session.
+// A session key is a secret of 128 bits.
 constexpr int kKeyWords = 4;  // of 32 bits
 constexpr int kIdWords = 2;
 
-// More scenes than a session is ever ahead of its record, so that a session that is brought back
-// gives no revision to a second scene.
+// This is larger than the number of revisions by which a session can be ahead of its record. So a
+// restored session never gives a revision to a second scene.
 constexpr std::uint64_t kUnsavedRevisions = 1'000'000;
 
-// Abandoned sessions expire one after another.
+// Abandoned sessions expire one after another, so that one may soon be free.
 constexpr std::chrono::seconds kSessionRetryAfter{30};
 
 absl::Status Gone(const std::string& message, const std::string& reason = "SESSION_NOT_FOUND") {
   return base::WithDetails(absl::NotFoundError(message), {.reason = reason});
 }
 
-// A key may be a secret that only its last character was mistyped of, so the error prints its first
-// four alone.
+// A mistyped key may be a secret except for one character, so the error prints only its first four
+// characters.
 absl::Status NotFound(const std::string& key) {
   constexpr std::size_t kPrinted = 4;
   const std::string begin = key.size() > kPrinted ? key.substr(0, kPrinted) + "..." : key;
@@ -72,7 +72,7 @@ void Session::DropOverruled() {
     const std::lock_guard lock(mutex_);
     taken = taken_;
   }
-  // Asks the roster, which has a lock of its own.
+  // Runs without the lock because still_counts asks the roster, which has its own lock.
   for (const auto& [revision, update] : taken) {
     if (update.still_counts != nullptr && !update.still_counts()) Drop(revision);
   }
@@ -211,7 +211,7 @@ std::shared_ptr<OwnView> OwnView::Of(const std::shared_ptr<Session>& session, st
     std::erase_if(session->own_views_, [](const auto& other) { return other.expired(); });
     session->own_views_.push_back(view);
   }
-  // After it is known to the session, so that it misses no scene.
+  // The scene is read after the session knows the view, so that the view misses no scene.
   if (const auto newest = session->Newest(); newest.has_value()) view->Follow(*newest);
   return view;
 }
@@ -233,7 +233,7 @@ void OwnView::Show() {
   if (!scene_.has_value()) return;
   scene::Scene scene = *scene_->scene;
   scene.camera = camera_;
-  // The reference traces what many see; one who looks around has the default technique.
+  // Only sessions trace the reference. A view of one person uses the default technique.
   if (scene::IsTraced(scene.rendering.technique)) {
     scene.rendering.technique = scene::Rendering().technique;
   }
@@ -395,7 +395,7 @@ void Sessions::SetRosterTimeouts(const RosterTimeouts& timeouts) {
           return absl::OkStatus();
         },
         session->Now());
-    (void)set;  // the change itself never fails
+    (void)set;  // the change never fails
   }
 }
 
@@ -408,7 +408,7 @@ void Sessions::DropExpired() {
     const auto next = std::next(entry);
     if (session.last_used() < now - timeout) {
       const auto expired = Remove(entry);
-      // Also ends the stream of a viewer that is joining right now.
+      // This also ends the stream of a viewer that is joining right now.
       expired->Close(Gone("the session has expired; create a new one", "SESSION_EXPIRED"));
     }
     entry = next;

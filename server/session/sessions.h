@@ -1,6 +1,6 @@
-// The sessions of a server: each shows one scene, replaced by every update, to any number of
-// people, who come by one of its two keys. A session expires when nobody has used it for a while.
-// Safe from any thread. Knows no GL and no messages.
+// The sessions of a server. Each shows one scene, which every update replaces, to any number of
+// people. People join with one of its two keys. A session expires when it has not been used for a
+// while. Safe from any thread. Knows no GL and no message formats.
 #pragma once
 
 #include <chrono>
@@ -34,13 +34,13 @@ struct NewestScene {
   std::uint64_t revision = 0;
   std::shared_ptr<const scene::Scene> scene;
   Clock::time_point changed_at;
-  // Before the next change of the gesture that changed it; 0: none is to be expected.
+  // Usual pause before the next change of the same gesture. 0 if no next change is expected.
   Clock::duration usual_pause{};
   // The scene as the service serialized it for viewers; opaque here.
   std::shared_ptr<const std::string> serialized;
 };
 
-// Counts of changes to what is kept of a session.
+// Revisions of the parts of a session that are kept in the store.
 struct SessionVersion {
   std::uint64_t scene_revision = 0;  // 0: it has no scene yet
   std::uint64_t marks_revision = 0;
@@ -50,9 +50,9 @@ struct SessionVersion {
   bool operator==(const SessionVersion&) const = default;
 };
 
-// Events that a session tells its server of.
+// Events that a session reports to its server.
 struct SessionSignals {
-  std::function<void()> on_work;  // it may need a frame
+  std::function<void()> on_work;  // the session may need a frame
   std::function<void()> on_due;   // Audience::Tick is due soon
 };
 
@@ -60,8 +60,8 @@ class OwnView;
 
 // An update whose scene is not complete yet.
 struct IncompleteUpdate {
-  std::function<bool()> still_counts = {};  // its sender may have lost control; absent: it does
-  std::string serialized = {};              // the scene as far as it is known; may be left out
+  std::function<bool()> still_counts = {};  // false: its sender lost control
+  std::string serialized = {};              // the scene as far as it is known; may be empty
 };
 
 struct SerializedScene {
@@ -77,50 +77,50 @@ class Session {
           const RosterTimeouts& timeouts = {}, std::string owner = "",
           const base::TimeSource& time = base::SteadyTime());
 
-  // Names it in this process; not a secret.
+  // Identifies the session in this process; not a secret.
   const std::string& id() const { return id_; }
   const SessionKeys& keys() const { return keys_; }
-  // The identity that opened it; empty: nobody's.
+  // The identity that opened it; empty: no owner.
   const std::string& owner() const { return owner_; }
-  // True for what an OwnView draws, which nobody finds by a key.
+  // Returns true for the session that draws an OwnView. No key opens it.
   bool IsOwnView() const { return keys_.viewer.empty(); }
   delivery::FrameHub& hub() { return hub_; }
   delivery::VideoEncoders& video() { return video_; }
   Audience& audience() { return audience_; }
-  // The time that the session, its hub and its audience go by.
+  // Returns the time that the session, its hub and its audience use.
   Clock::time_point Now() const { return time_.Now(); }
 
-  // A new revision, larger than all before. Taken when an update arrives, before its scene is
-  // complete, so that the update that arrived last wins. Show or Drop comes after it.
+  // Returns a new revision, larger than all before. It is taken when an update arrives, before its
+  // scene is complete, so that the update that arrived last wins. Show or Drop must follow.
   std::uint64_t TakeRevision(IncompleteUpdate update = {});
-  // The same for a change to the revision `expected`. ABORTED if there has been another since, or
-  // one is on its way. Those on their way that count no more are dropped.
+  // Takes a revision for a change to revision `expected`. ABORTED if a newer revision was taken or
+  // shown. Drops pending revisions that are no longer valid first.
   absl::StatusOr<std::uint64_t> TakeRevisionAfter(std::uint64_t expected,
                                                   IncompleteUpdate update = {});
-  // The revision was taken for a scene that is not to be shown.
+  // Drops a revision whose scene will not be shown.
   void Drop(std::uint64_t revision);
-  // Replaces the newest scene unless that has a newer revision. `domain` is its storm's
-  // (storm_store/storm_store.h), if that is known. False if the revision was dropped: changes were
-  // made without it.
+  // Replaces the newest scene unless that has a newer revision. `domain` is the domain of its storm
+  // (storm_store/storm_store.h), if known. Returns false if the revision was dropped, because later
+  // changes were made without it.
   bool Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "",
             const std::optional<std::string>& domain = std::nullopt);
   std::optional<NewestScene> Newest() const;
-  // The scene of the newest update that counts, complete or not; none before the first.
+  // Returns the scene of the newest valid update, complete or not. None before the first update.
   std::optional<SerializedScene> NewestTaken();
 
-  // The scene of a record, with a larger revision than any client has seen.
+  // Shows the scene of a record, with a larger revision than any client has seen.
   void ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized,
                     const std::optional<std::string>& domain);
 
-  // Ends everybody's stream with `why`.
+  // Ends all viewers' streams with `why`.
   void Close(const absl::Status& why);
-  // True if it was closed or has expired; not if only the server stops.
+  // Returns true if the session was closed or has expired, but not if only the server stops.
   bool HasEnded() const;
 
   void Touch();
   Clock::time_point last_used() const;
   bool IsWatched() const;
-  // Now while somebody watches.
+  // Returns the time of the last use, which is now while there are viewers.
   Clock::time_point UsedUntil() const;
 
   SessionVersion Version() const;
@@ -129,7 +129,7 @@ class Session {
  private:
   friend class OwnView;
 
-  // Drops those on their way that count no more.
+  // Drops pending revisions that are no longer valid.
   void DropOverruled();
 
   const std::string id_;
@@ -142,22 +142,22 @@ class Session {
   Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;
-  std::map<std::uint64_t, IncompleteUpdate> taken_;  // by revision; neither shown nor dropped
+  std::map<std::uint64_t, IncompleteUpdate> taken_;  // by revision; neither shown nor dropped yet
   std::optional<NewestScene> newest_;
   ChangeRhythm rhythm_;
   Clock::time_point last_used_ = time_.Now();
   std::vector<std::weak_ptr<OwnView>> own_views_;
 };
 
-// The view of a person who looks around: the session's scene from a camera of its own. It is drawn
-// as another session, which nobody can find by a key.
+// The view of a person who looks around: the session's scene from the person's own camera. It is
+// drawn as another session, which no key opens.
 class OwnView {
  public:
-  // Of the session's newest scene from then on, for the identity `owner`.
+  // Creates a view that follows the session's newest scene, for the identity `owner`.
   static std::shared_ptr<OwnView> Of(const std::shared_ptr<Session>& session, std::string id,
                                      const scene::Camera& camera, std::string owner);
 
-  // The session that draws it.
+  // The session that draws the view.
   const std::shared_ptr<Session>& drawn() const { return drawn_; }
 
   void MoveCamera(const scene::Camera& camera);
@@ -172,23 +172,24 @@ class OwnView {
   const std::shared_ptr<Session> drawn_;
   std::mutex mutex_;
   scene::Camera camera_;
-  std::optional<NewestScene> scene_;  // the session's
+  std::optional<NewestScene> scene_;  // newest scene of the followed session
 };
 
 struct SessionsOptions {
   std::size_t max_sessions = 64;
   std::size_t max_sessions_per_owner = 32;
-  Clock::duration idle_timeout = std::chrono::minutes(15);  // with nobody there
-  // With people there who acknowledge and send nothing.
+  Clock::duration idle_timeout = std::chrono::minutes(15);  // without viewers
+  // Timeout with viewers that neither acknowledge nor send anything.
   Clock::duration watched_idle_timeout = std::chrono::hours(1);
-  // By the system's clock: a session that nobody used for longer is not brought back from a store.
+  // Maximum time, by the system's clock, since the last use of a stored session. Older sessions are
+  // not restored.
   std::chrono::hours max_absence = std::chrono::hours(24 * 30);
   RosterTimeouts roster_timeouts;
   AudienceFormat format;
   const base::TimeSource* time = &base::SteadyTime();  // must outlive the sessions
 };
 
-// A session, and the role of who came by the key.
+// A session, and the role that the key gives.
 struct FoundSession {
   std::shared_ptr<Session> session;
   Role role = Role::kViewer;
@@ -198,41 +199,40 @@ class Sessions {
  public:
   Sessions(const SessionsOptions& options, const SessionSignals& signals);
 
-  // RESOURCE_EXHAUSTED if there are too many, in all or of that owner, UNAVAILABLE after RefuseNew
-  // and CloseAll. Those without an owner have as many as there may be.
+  // Creates a session. RESOURCE_EXHAUSTED if there are too many in all or for that owner;
+  // UNAVAILABLE after RefuseNew and CloseAll. The limit per owner does not apply to an empty owner.
   absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {},
                                                   const std::string& owner = "");
-  // The session of a record from another run, as if everybody had just left: the time that the
-  // server was down does not count, as nobody could come back then.
+  // Restores the session of a record from another run, as if all people had just left. The server's
+  // downtime does not count as idle time because people could not come back then.
   std::shared_ptr<Session> Restore(const SessionRecord& record, scene::Scene scene,
                                    std::string serialized,
                                    const std::optional<std::string>& domain = std::nullopt);
-  // True for a record that was last used too long ago to be brought back.
+  // Returns true if a record was last used too long ago to be restored.
   bool IsTooOld(std::chrono::system_clock::time_point last_used) const;
-  // By either key. NOT_FOUND if it never existed, was closed or has expired; UNAVAILABLE after
-  // CloseAll. Counts as use.
+  // Finds a session by either key, which counts as use. NOT_FOUND if it never existed, was closed
+  // or has expired; UNAVAILABLE after CloseAll.
   absl::StatusOr<FoundSession> Find(const std::string& key);
-  // Ends the session and its viewers' streams. NOT_FOUND as Find; PERMISSION_DENIED for the
+  // Ends the session and its viewers' streams. NOT_FOUND as in Find; PERMISSION_DENIED for the
   // viewers' key.
   absl::Status Close(const std::string& presenter_key);
-  // No session is created from now on, for this reason. Those that there are go on; whoever watches
-  // one is woken.
+  // Refuses to create sessions from now on, with this reason. Existing sessions continue, and their
+  // viewers are woken.
   void RefuseNew(const absl::Status& why);
-  // Ends every session with `why`; none can be created or found afterwards.
+  // Ends all sessions with `why`. Afterwards no session can be created or found.
   void CloseAll(const absl::Status& why);
 
-  // A view of the session's scene from a camera of its own, for the identity `owner`, which is
-  // drawn while somebody holds it.
+  // Opens a view of the session's scene from its own camera, for the identity `owner`. It is drawn
+  // as long as the caller holds it.
   std::shared_ptr<OwnView> OpenView(const std::shared_ptr<Session>& session,
                                     const scene::Camera& camera, const std::string& owner);
 
-  // Replaces the timeouts of people in these and all later sessions, also for waits that have
-  // begun.
+  // Replaces the roster timeouts of all present and later sessions, also for waits that have begun.
   void SetRosterTimeouts(const RosterTimeouts& timeouts);
 
-  // The sessions that have not expired, in order of id.
+  // Returns the sessions that have not expired, ordered by id.
   std::vector<std::shared_ptr<Session>> All();
-  // The same with the own views: everything that may be drawn.
+  // Returns the same with the own views: everything that may be drawn.
   std::vector<std::shared_ptr<Session>> AllDrawn();
 
   std::size_t max_sessions() const { return options_.max_sessions; }

@@ -1,6 +1,6 @@
-// Looks after the people of every session on a thread of its own: finds where their pointers point,
-// ends what has run out, tells what is due and what is in memory, and wakes viewers who want few
-// frames a second.
+// Runs periodic work for the people of all sessions on its own thread. It finds the places of
+// pointers, ends expired states, sends due updates and the times in memory, and wakes viewers with
+// a limited frame rate.
 #pragma once
 
 #include <atomic>
@@ -15,7 +15,7 @@ namespace thunderhead::session {
 
 class Upkeep {
  public:
-  // `sessions` must notify `due` in their on_due, and give the time; all must outlive it.
+  // `sessions` must notify `due` in their on_due and provide the time. All must outlive it.
   Upkeep(Sessions& sessions, storm_store::StormStore& store, base::WakeSignal& due);
   ~Upkeep();
   Upkeep(const Upkeep&) = delete;
@@ -31,11 +31,12 @@ class Upkeep {
   std::thread thread_;
 };
 
-// Where the ray meets what the session shows: storm, ground, or near the storm's middle in the
-// clear sky and while the storm is not in memory.
+// Returns the point where the ray hits what the session shows: the storm or the ground. In the
+// clear sky, or while the storm is not in memory, returns a point near the storm's middle.
 glm::dvec3 PlaceSeen(const Session& session, storm_store::StormStore& store, const Ray& ray);
-// A line along the rays, of which there must be one: at the middle of the distances to what they
-// meet, so that it keeps its shape when the camera turns.
+// Returns a line along the rays, of which there must be at least one. All its points lie at the
+// median distance at which the rays hit something, so that the line keeps its shape when the camera
+// turns.
 std::vector<glm::dvec3> LineSeen(const Session& session, storm_store::StormStore& store,
                                  const std::vector<Ray>& rays);
 

@@ -1,4 +1,4 @@
-// common/bindings.glsl for C++.
+// Compiles common/bindings.glsl as C++.
 #pragma once
 
 namespace thunderhead::shaders {

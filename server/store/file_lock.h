@@ -1,5 +1,5 @@
-// A file or folder that one process at a time holds. The system releases it when the process ends,
-// however that happens.
+// A lock on a file or folder, held by one process at a time. The system releases it when the
+// process ends for any reason.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@ namespace thunderhead::store {
 
 class FileLock {
  public:
-  // Creates the file, for this user only. Waits a moment for a process that is just ending;
-  // FAILED_PRECONDITION if it holds the file longer.
+  // Creates and locks the file, accessible only to this user. Waits briefly for a process that is
+  // just ending. FAILED_PRECONDITION if another process holds the file for longer.
   static absl::StatusOr<FileLock> Take(const std::string& path);
-  // Of a folder that exists and is this user's, at once; none for any other, or if a process holds
-  // it.
+  // Locks an existing folder of this user without waiting. None if the folder belongs to another
+  // user, does not exist or is locked.
   static std::optional<FileLock> TryFolder(const std::string& folder);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&&) = delete;

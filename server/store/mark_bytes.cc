@@ -10,7 +10,8 @@ namespace thunderhead::store {
 namespace {
 
 constexpr std::size_t kWordBytes = 8;
-// Id, person, colour and number of positions; a position.
+// Number of words of a mark without its positions (id, person, colour, number of positions), and of
+// a position.
 constexpr std::size_t kMarkWords = 6;
 constexpr std::size_t kPositionWords = 3;
 
@@ -39,7 +40,7 @@ class Reader {
 
   double Number() { return std::bit_cast<double>(Word()); }
 
-  // In their order.
+  // The components are read in order.
   glm::dvec3 Vector() {
     const double x = Number();
     const double y = Number();

@@ -1,4 +1,5 @@
-// Marks as bytes, without their owners' keys and domains, little-endian whatever the machine.
+// Converts marks to and from bytes, without their owner keys and domains. The bytes are
+// little-endian on every machine.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@
 namespace thunderhead::store {
 
 std::string ToBytes(const std::vector<session::Mark>& marks);
-// DATA_LOSS for bytes that ToBytes does not make.
+// DATA_LOSS if ToBytes cannot have made the bytes.
 absl::StatusOr<std::vector<session::Mark>> MarksFrom(const std::string& bytes);
 
 }  // namespace thunderhead::store

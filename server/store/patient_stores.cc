@@ -17,7 +17,7 @@ using jobs::JobChange;
 using jobs::JobRecord;
 using session::SessionRecord;
 
-// Until the process ends: to close a store hangs as well.
+// Keeps an object until the process ends, because closing a store would hang as well.
 void KeepForEver(std::shared_ptr<const void> object) {
   static std::mutex mutex;
   static auto& kept = *new std::vector<std::shared_ptr<const void>>;
@@ -43,7 +43,7 @@ class Patient {
     if (!closed.ok()) KeepForEver(held);
   }
 
-  // `call` must own all that it uses but the store.
+  // `call` must own everything that it uses except the store.
   template <typename Call>
   absl::Status Do(Call call) const {
     absl::Status done = calls_->Ask(folder_, [store = store_, folder = folder_, call] {

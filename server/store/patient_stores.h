@@ -1,8 +1,8 @@
-// Stores whose storage may hang, as a network file system does that is gone: each call, also the
-// last one that closes the store, has a thread of its own and so long as `calls` has patience.
-// After that it is UNAVAILABLE with the reason STORAGE_HANGS, and so are all others, of both
-// stores, at once until it has returned. Load alone waits for as long as it takes, and the log
-// says so.
+// Stores whose storage may hang, such as a network file system that is unreachable. Each call,
+// including the one that closes the store, runs on a separate thread with the timeout of `calls`. A
+// call that times out is UNAVAILABLE with the reason STORAGE_HANGS. Until it returns, all other
+// calls of both stores fail at once in the same way. Only Load waits without a timeout; the log
+// reports the wait.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace thunderhead::store {
 
-// `folder` is the state folder, by which messages name the storage.
+// `folder` is the state folder; messages name the storage by it.
 std::shared_ptr<session::SessionStore> WithPatience(std::shared_ptr<session::SessionStore> store,
                                                     std::shared_ptr<base::PatientCalls> calls,
                                                     const std::string& folder);

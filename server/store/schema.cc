@@ -10,11 +10,11 @@
 namespace thunderhead::store {
 namespace {
 
-// "Thun": tells our files from other programs'.
+// "Thun" in ASCII. It distinguishes our files from other programs'.
 constexpr std::int64_t kApplicationId = 0x5468756e;
 
-// Step n leads from version n to n + 1; a step that has been released never changes. Marks are
-// apart from what changes with every movement of the camera.
+// Step n migrates version n to n + 1. A released step never changes. Marks have a separate table
+// because sessions are saved with every movement of the camera.
 constexpr std::array kSteps = {R"(
   CREATE TABLE sessions (
     id TEXT PRIMARY KEY NOT NULL,

@@ -13,10 +13,10 @@
 namespace thunderhead::store {
 namespace {
 
-// Backups read the file while the server runs.
+// Writes wait this long for backups, which read the file while the server runs.
 constexpr int kBusyTimeoutMs = 2000;
 
-// True where SQLite's own files, which are larger, do not fit any more.
+// Returns true if the disk has too little space for SQLite's own files.
 bool IsOnFullDisk(const std::string& path) {
   constexpr std::uintmax_t kSharedMemoryBytes = 64 << 10;
   std::error_code error;
@@ -75,7 +75,7 @@ absl::Status Database::Error() const {
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
-// Binding fails only for a parameter that the SQL does not have, and for lack of memory, which Next
+// Binding fails only for a parameter that the SQL does not have, or for lack of memory, which Next
 // reports.
 void Statement::Bind(int parameter, std::int64_t value) {
   sqlite3_bind_int64(handle_.get(), parameter, value);
@@ -93,7 +93,7 @@ void Statement::Bind(int parameter, std::string_view text) {
 }
 
 void Statement::BindBlob(int parameter, std::string_view bytes) {
-  // Without an address it would be NULL.
+  // A blob without an address would be NULL.
   const char* const data = bytes.empty() ? "" : bytes.data();
   sqlite3_bind_blob64(handle_.get(), parameter, data, bytes.size(), SQLITE_STATIC);
 }
@@ -135,7 +135,7 @@ Transaction::Transaction(Transaction&& other) noexcept
     : database_(std::exchange(other.database_, nullptr)) {}
 
 Transaction::~Transaction() {
-  // An error has ended it already.
+  // After an error SQLite may have rolled back already.
   if (database_ != nullptr) (void)database_->Execute("ROLLBACK");
 }
 

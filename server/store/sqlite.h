@@ -1,4 +1,4 @@
-// SQLite's C interface with owners and statuses.
+// Wrappers of SQLite's C interface with ownership and statuses.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace thunderhead::store {
 
 class Statement;
 
-// DATA_LOSS, with what to do about it.
+// DATA_LOSS with instructions for the operator.
 absl::Status DamagedFile(const std::string& path, const std::string& why);
 
 class Database {
@@ -24,12 +24,12 @@ class Database {
   // Opens an existing file.
   static absl::StatusOr<Database> Open(const std::string& path);
 
-  // Statements without results.
+  // Executes statements without results.
   absl::Status Execute(const std::string& sql);
   absl::StatusOr<Statement> Prepare(const std::string& sql);
-  // The one number that the query has as its result.
+  // Returns the single number that the query yields.
   absl::StatusOr<std::int64_t> Number(const std::string& sql);
-  // The error of the last call: DATA_LOSS for a damaged file, else UNAVAILABLE.
+  // Returns the error of the last call: DATA_LOSS for a damaged file, else UNAVAILABLE.
   absl::Status Error() const;
 
  private:
@@ -43,8 +43,8 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
-// Used again after each Run, or when Next has said that there is no further row. Parameters count
-// from 1, columns from 0. Text and blobs that are bound must live until then.
+// A prepared statement. It can be used again after each Run, or after Next has returned false.
+// Parameters count from 1, columns from 0. Bound text and blobs must live until then.
 class Statement {
  public:
   void Bind(int parameter, std::int64_t value);
@@ -53,9 +53,9 @@ class Statement {
   void BindNull(int parameter);
   void BindBlob(int parameter, std::string_view bytes);
 
-  // Without results.
+  // Runs a statement without results.
   absl::Status Run();
-  // True if there is another row.
+  // Fetches the next row. Returns false if there is none.
   absl::StatusOr<bool> Next();
 
   bool IsNull(int column) const;
@@ -76,7 +76,7 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
-// Undone unless committed.
+// A transaction that is rolled back unless it is committed.
 class Transaction {
  public:
   static absl::StatusOr<Transaction> Begin(Database& database);
@@ -89,7 +89,7 @@ class Transaction {
  private:
   explicit Transaction(Database& database) : database_(&database) {}
 
-  Database* database_;  // null: over
+  Database* database_;  // null if committed
 };
 
 }  // namespace thunderhead::store

@@ -42,10 +42,11 @@ constexpr char kLoadPictures[] =
     "drawn_ms, fetched, job_id, place, name, request, valid_time FROM job_pictures "
     "ORDER BY job_id, place";
 
-// The parameters and columns of a picture before those that say which it is.
+// The number of parameters and columns of a picture's state, which precede those that identify the
+// picture.
 constexpr int kStateColumns = 11;
 
-// As the tables have them, whatever becomes of the enumeration.
+// The numbers in the tables, independent of the enumeration's values.
 constexpr std::array kStates = {
     std::pair{std::int64_t{0}, PictureState::kWaiting},
     std::pair{std::int64_t{0}, PictureState::kDrawing},
@@ -199,7 +200,7 @@ class OpenJobStore final : public SqliteJobStore {
       JobRecord& job = records[index_by_id.at(pictures.Bytes(kStateColumns))];
       absl::StatusOr<PictureRecord> picture = PictureOf(pictures);
       if (!picture.ok()) {
-        // It keeps its place, as clients know the others by theirs.
+        // The picture keeps its place because clients identify the others by their places.
         base::LogError(base::Annotate(picture.status(), absl::StrCat("render job ", job.id)));
         picture.emplace();
         picture->state = PictureState::kFailed;

@@ -1,4 +1,4 @@
-// Render jobs in a server's state file.
+// A store for render jobs in a server's state file.
 #pragma once
 
 #include <memory>

@@ -32,7 +32,7 @@ constexpr char kSaveSession[] =
     "owner = excluded.owner, control_is_free = excluded.control_is_free, "
     "steering_key = excluded.steering_key, steering_name = excluded.steering_name, "
     "steering_id = excluded.steering_id";
-// Written only when they have changed.
+// Writes marks only when they have changed.
 constexpr char kSaveMarks[] =
     "INSERT INTO marks (session_id, marks, owner_keys, domains) VALUES (?, ?, ?, ?) "
     "ON CONFLICT (session_id) DO UPDATE SET "
@@ -46,14 +46,14 @@ constexpr char kLoad[] =
     "FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
 
-// A line for each mark.
+// Joins one text of each mark, one line per mark.
 std::string LinesOf(const std::vector<session::Mark>& marks, std::string session::Mark::*text) {
   std::string lines;
   for (const session::Mark& mark : marks) absl::StrAppend(&lines, mark.*text, "\n");
   return lines;
 }
 
-// Marks for which there is no line have none.
+// Splits the lines into the marks' texts. Marks without a line keep an empty text.
 void SetLines(std::string_view lines, std::string session::Mark::*text,
               std::vector<session::Mark>* marks) {
   for (session::Mark& mark : *marks) {

@@ -1,5 +1,5 @@
-// Sessions in a server's state file. What was saved outlives the end of the process; a loss of
-// power may cost the last seconds, never the file.
+// A store for sessions in a server's state file. Saved data survives the end of the process. A loss
+// of power may lose the last seconds, but never the file.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace thunderhead::store {
 class SqliteSessionStore : public session::SessionStore {
  public:
   static absl::StatusOr<std::unique_ptr<SqliteSessionStore>> In(std::shared_ptr<StateFile> file);
-  // The only part of its file; errors as StateFile::Open.
+  // Opens a file that holds nothing else. Errors as in StateFile::Open.
   static absl::StatusOr<std::unique_ptr<SqliteSessionStore>> Open(const std::string& path);
 };
 

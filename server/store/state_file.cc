@@ -15,7 +15,8 @@
 namespace thunderhead::store {
 namespace {
 
-// Before SQLite does, whose mode would be the user's default. Its other files get the mode of this.
+// Creates the file before SQLite does, which would use the user's default mode. SQLite's other
+// files get this file's mode.
 absl::Status CreateForThisUser(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   const bool done = file >= 0 && fchmod(file, 0600) == 0;
@@ -35,7 +36,8 @@ absl::Status CheckWhole(Database& database, const std::string& path) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<StateFile>> StateFile::Open(const std::string& path) {
-  // A file of its own, because SQLite's locks let a second process in between two transactions.
+  // The lock is a separate file because SQLite's own locks would let a second process in between
+  // two transactions.
   absl::StatusOr<FileLock> lock = FileLock::Take(absl::StrCat(path, ".lock"));
   if (!lock.ok()) {
     return base::Annotate(lock.status(), "each server needs a state folder of its own");

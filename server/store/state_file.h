@@ -1,5 +1,5 @@
-// The one SQLite file that a server keeps its state in. This process alone uses it while any part
-// of it is open; what was saved outlives the end of the process.
+// The single SQLite file of a server's state. Only this process uses it while it is open. Saved
+// data survives the end of the process.
 #pragma once
 
 #include <memory>
@@ -11,20 +11,21 @@
 
 namespace thunderhead::store {
 
-// How much of a transaction survives a loss of power; none is lost to the end of the process.
+// What a loss of power may cost. The end of the process costs nothing.
 enum class Durability {
-  kSoon,    // it may cost the last seconds
-  kAtOnce,  // nothing; each costs an fsync
+  kSoon,    // may lose the last seconds
+  kAtOnce,  // loses nothing; each transaction costs an fsync
 };
 
 class StateFile {
  public:
-  // Creates the file, for this user only, or brings the tables of an older version up to date.
-  // FAILED_PRECONDITION, naming the file and the remedy, if another process has it open, or it is
-  // of a newer version or another program's; DATA_LOSS if it is damaged.
+  // Creates the file, accessible only to this user, or updates the tables of an older version.
+  // FAILED_PRECONDITION, naming the file and the remedy, if another process has it open, or if it
+  // has a newer version or belongs to another program. DATA_LOSS if it is damaged.
   static absl::StatusOr<std::shared_ptr<StateFile>> Open(const std::string& path);
 
-  // A connection of its own for each thread that uses the file, which must not outlive this.
+  // Opens a connection. Each thread that uses the file needs its own, which must not outlive this
+  // object.
   absl::StatusOr<Database> Connect(Durability durability) const;
 
  private:

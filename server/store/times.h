@@ -1,4 +1,4 @@
-// Times as the tables have them: milliseconds since 1970.
+// Conversion of times to and from the tables' format: milliseconds since 1970.
 #pragma once
 
 #include <chrono>

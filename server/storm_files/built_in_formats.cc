@@ -1,4 +1,4 @@
-// The list of storm formats. A new one is a file of its own, and a line here.
+// The list of storm formats. A new format needs a separate file, and a line here.
 #include "storm_files/cf_format.h"
 #include "storm_files/storm_format.h"
 #include "storm_files/wrf_format.h"

@@ -13,26 +13,27 @@ namespace {
 
 constexpr std::size_t kMaxCells = 100'000;
 
-// Coordinates are often stored as floats, and rounded when written.
+// Tolerances. Coordinates are often stored as floats, and rounded when they are written.
 constexpr double kEvenTolerance = 1e-2;
 constexpr double kLatticeTolerance = 1e-4;
 
-// Limit of the number of cells that uneven layers become, over the number of layers.
+// Maximum number of cells for uneven layers, divided by the number of layers.
 constexpr int kMaxRefinement = 16;
 
 struct Coordinate {
-  std::vector<double> centres_m;  // as in the file
+  std::vector<double> centres_m;  // in the file's order
   std::vector<double> faces_m;    // one more, from bounds; empty if the file gives none
   std::optional<double> middle_deg;
 };
 
-// Faces from CF bounds, two for each cell; nothing if absent or not contiguous.
+// Returns the faces from CF bounds, two for each cell, or an empty list if there are no bounds.
+// Bounds that are not contiguous are an error.
 absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
                                                const std::string& dimension, std::size_t cells) {
   const auto name = file.TextAttribute(dimension, "bounds");
   std::vector<double> faces;
   if (!name.has_value() || !file.HasVariable(*name)) return faces;
-  // Bounds are in the units of their coordinate, and CF files usually leave theirs out.
+  // Bounds are in the units of their coordinate. CF files usually omit the units of the bounds.
   const std::string units = file.TextOrEmpty(*name, "units");
   if (!units.empty() && units != file.TextOrEmpty(dimension, "units")) {
     return absl::InvalidArgumentError(
@@ -62,7 +63,8 @@ absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
   return faces;
 }
 
-// True for longitudes and latitudes by their names, which may lack units.
+// Returns whether a coordinate is a longitude or latitude by its name, because its units may be
+// missing.
 bool IsAngle(const CfDescription& coordinate) {
   const std::string name = absl::AsciiStrToLower(
       coordinate.standard_name.empty() ? coordinate.name : coordinate.standard_name);
@@ -90,7 +92,7 @@ absl::StatusOr<double> MetresPerUnit(const netcdf::NetcdfFile& file,
           : "'; m, km or degrees are needed"));
 }
 
-// 1, or -1 for depths.
+// Returns 1, or -1 for depths.
 absl::StatusOr<double> UpwardSign(const netcdf::NetcdfFile& file, const CfDescription& coordinate) {
   const std::string positive = absl::AsciiStrToLower(coordinate.positive);
   if (positive.empty() || positive == "up") return 1.0;
@@ -145,7 +147,7 @@ absl::Status CheckMonotonic(const netcdf::NetcdfFile& file, const std::string& d
   return absl::OkStatus();
 }
 
-// True if the steps of `rising` are equal up to rounding.
+// Returns whether the steps of `rising` are equal, apart from rounding.
 bool IsEven(const std::vector<double>& rising) {
   const auto steps = static_cast<double>(rising.size() - 1);
   const double step = (rising.back() - rising.front()) / steps;
@@ -158,11 +160,11 @@ bool IsEven(const std::vector<double>& rising) {
 
 struct Faces {
   std::vector<double> faces_m;  // empty if there are none
-  double max_change = 1.0;      // of thickness from one cell to the next, as a factor
+  double max_change = 1.0;      // largest ratio of thickness between neighbouring cells
 };
 
-// The faces of cells with centres `centres_m` and lowest face `low_m`; none unless thicknesses are
-// positive and change by at most a factor of two from cell to cell.
+// Returns the faces of cells with centres `centres_m` and lowest face `low_m`. Returns none unless
+// thicknesses are positive and change by at most a factor of two from cell to cell.
 Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
   constexpr double kMaxChange = 2.001;
   Faces faces{{low_m}, 1.0};
@@ -179,8 +181,9 @@ Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
   return faces;
 }
 
-// The faces of two or more cells around `centres_m`: such that these are the cells' exact centres,
-// starting at the ground if possible; else half-way between neighbours.
+// Returns the faces of two or more cells around `centres_m`. If possible, these are the cells'
+// exact centres, and the cells start at the ground. Otherwise faces are half-way between
+// neighbours.
 std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   const double even_low_m = 1.5 * centres_m[0] - 0.5 * centres_m[1];
   std::vector<double> faces_m;
@@ -204,7 +207,8 @@ std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   return faces_m;
 }
 
-// A single cell without bounds is assumed to begin at 0, like a layer on the ground.
+// Returns the faces of a single cell without bounds. It is assumed to begin at 0, like a layer on
+// the ground.
 absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file,
                                                const std::string& dimension, CfDirection direction,
                                                double centre_m, double size_without_bounds_m) {
@@ -232,8 +236,8 @@ double Thinnest_m(const std::vector<double>& faces_m) {
   return thinnest_m;
 }
 
-// The least number of cells per thinnest layer such that all layers' faces are faces of cells; 0 if
-// there is none.
+// Returns the least number of cells per thinnest layer such that all layers' faces are faces of
+// cells. Returns 0 if there is none.
 int CommonDivisor(const std::vector<double>& faces_m, int max_cells) {
   const double thinnest_m = Thinnest_m(faces_m);
   const double depth_m = faces_m.back() - faces_m.front();
@@ -269,7 +273,7 @@ void EvenOut(const std::vector<double>& faces_m, CfAxis* axis) {
   axis->low_m = faces_m.front();
   axis->spacing_m = depth_m / axis->cells;
   axis->shares.assign(static_cast<std::size_t>(axis->cells), {});
-  int lowest = 0;  // of the layers that reach into this cell or above
+  int lowest = 0;  // lowest layer that reaches into this cell or above
   for (int cell = 0; cell < axis->cells; ++cell) {
     const double low_m = axis->low_m + cell * axis->spacing_m;
     while (lowest + 1 < layers && faces_m[static_cast<std::size_t>(lowest) + 1] <= low_m) ++lowest;

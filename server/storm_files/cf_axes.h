@@ -1,5 +1,5 @@
 // One spatial axis of a CF file: its cells in metres and, for heights, how layers of uneven
-// thickness are averaged onto even ones. Knows no variables.
+// thickness are averaged onto even cells. This code does not interpret other variables.
 #pragma once
 
 #include <string>
@@ -11,23 +11,23 @@
 
 namespace thunderhead::storm_files {
 
-// Share of a layer of the file in a cell of the grid.
+// The share of a file's layer in a cell of the grid.
 struct LayerShare {
   int layer = 0;       // counted upwards
-  double share = 0.0;  // of the cell's height
+  double share = 0.0;  // share of the cell's height
 };
 
 struct CfAxis {
   std::string dimension;
-  int file_cells = 0;     // in the file
+  int file_cells = 0;     // number of cells in the file
   bool reversed = false;  // in the file the axis runs west, south or down
-  int cells = 0;          // of the grid
+  int cells = 0;          // number of cells of the grid
   double low_m = 0.0;     // the face of the first cell
   double spacing_m = 0.0;
-  // For each cell of the grid the layers in it; empty if cells are the file's own layers.
+  // For each cell of the grid, the layers in it. Empty if cells are the file's own layers.
   std::vector<std::vector<LayerShare>> shares;
   bool exact = true;  // no layer's boundary lies inside a cell
-  // The middle, if the file gives degrees.
+  // The coordinate of the middle, if the file gives degrees.
   std::optional<double> middle_deg;
 };
 
@@ -37,17 +37,17 @@ struct CfSizes {
   double single_cell_m = 0.0;  // width of a single cell at 0 without bounds; 0: unknown
 };
 
-// The axis along `dimension`, from the coordinate variable of that name and its bounds. Errors name
-// the coordinate and what it lacks.
+// Returns the axis along `dimension`, from the coordinate variable of that name and its bounds.
+// Errors name the coordinate and what is wrong with it.
 absl::StatusOr<CfAxis> ReadCfAxis(const netcdf::NetcdfFile& file, const std::string& dimension,
                                   CfDirection direction, const CfSizes& sizes);
 
-// Attributes of a variable, or of a dimension without a coordinate variable.
+// Returns the attributes of a variable, or of a dimension without a coordinate variable.
 CfDescription DescribeCf(const netcdf::NetcdfFile& file, const std::string& variable);
 
-// Chooses even cells for layers between `faces_m` (ascending): as thick as the largest common
-// divisor of the layers' thicknesses if that does not give too many cells, else about as the
-// thinnest layer.
+// Chooses even cells for layers between `faces_m` (ascending). The cells are as thick as the
+// largest common divisor of the layers' thicknesses, unless that gives too many cells. Otherwise
+// they are about as thick as the thinnest layer.
 void EvenOut(const std::vector<double>& faces_m, CfAxis* axis);
 
 }  // namespace thunderhead::storm_files

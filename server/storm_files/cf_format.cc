@@ -31,7 +31,7 @@ class CfRecordReader final : public RecordReader {
   const CfMetadata metadata_;
 };
 
-// The same in files of one run: the variables and their layers.
+// Returns a text that is the same for all files of one run: the variables and their layers.
 std::string RunOf(const CfMetadata& metadata) {
   std::string run;
   for (const CfField& field : metadata.fields) absl::StrAppend(&run, field.variable.name, " ");
@@ -72,8 +72,8 @@ class CfFormat final : public StormFormat {
     if (x.middle_deg.has_value() && y.middle_deg.has_value()) {
       file.longitude_deg = x.middle_deg;
       file.latitude_deg = y.middle_deg;
-      // How degrees became metres: evenly, as at the middle. Degrees of a rotated grid are no
-      // places on Earth.
+      // The reader converts degrees to metres evenly, with the scale at the middle. Degrees of a
+      // rotated grid are not places on Earth.
       const CfDescription described = DescribeCf(*unknown.netcdf, x.dimension);
       if (!absl::StartsWith(described.standard_name, "grid_")) {
         file.projection = absl::StrFormat(

@@ -1,4 +1,4 @@
-// CF netCDF files as a format of storm files.
+// Support for CF netCDF files as a format of storm files.
 #pragma once
 
 #include <memory>

@@ -73,14 +73,14 @@ absl::Status CheckQuantityUnits(const netcdf::NetcdfFile& file, const CfDescript
       quantity.quantity == volume::Quantity::kExtinction ? "'m-1'" : "'kg kg-1' or 'kg m-3'");
 }
 
-// The hydrometeors, or the extinction alone if there is one: it includes all of them.
+// Finds the hydrometeors, or the extinction alone if there is one, because it includes all of them.
 absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
                         CfMetadata* metadata) {
   std::vector<CfField>& fields = metadata->fields;
   for (const CfDescription& variable : variables) {
     const std::optional<CfQuantity> quantity = QuantityOf(variable);
     if (!quantity.has_value()) continue;
-    // Column totals and the like may have the same names.
+    // Column totals and similar variables may have the same names.
     THUNDERHEAD_ASSIGN_OR_RETURN(const auto shape, file.Shape(variable.name));
     if (shape.size() < 3) continue;
     THUNDERHEAD_RETURN_IF_ERROR(CheckQuantityUnits(file, variable, *quantity));
@@ -115,7 +115,7 @@ bool Has(const CfMetadata& metadata, AirVariable variable) {
       metadata.air, [variable](const CfAirField& field) { return field.air.variable == variable; });
 }
 
-// The variables needed to convert mixing ratios to masses per volume.
+// Finds the variables needed to convert mixing ratios to masses per volume.
 absl::Status FindAir(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
                      CfMetadata* metadata) {
   const auto ratio = std::ranges::find_if(metadata->fields, [](const CfField& field) {
@@ -158,7 +158,7 @@ absl::Status ReadAxes(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   };
   const bool single_y = file.DimensionLength(names[static_cast<std::size_t>(first.y)]) == 1U;
   CfSizes sizes{kMetresPerDegree, 0.0};
-  // A slice one cell wide is taken to be as wide as its other cells.
+  // A slice that is one cell wide is assumed to be as wide as its other cells.
   if (single_y && read(first.x, CfDirection::kX, sizes, &x).ok()) sizes.single_cell_m = x.spacing_m;
   THUNDERHEAD_RETURN_IF_ERROR(read(first.y, CfDirection::kY, sizes, &y));
   const double latitude_deg = y.middle_deg.value_or(0.0);
@@ -173,7 +173,7 @@ absl::Status ReadAxes(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   return absl::OkStatus();
 }
 
-// All variables must lie on the axes of the first.
+// Checks that the variable is on the same axes as the first variable.
 absl::Status CheckSameAxes(const netcdf::NetcdfFile& file, const CfVariable& variable,
                            const CfMetadata& metadata) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto names, file.Dimensions(variable.name));
@@ -189,7 +189,8 @@ absl::Status CheckSameAxes(const netcdf::NetcdfFile& file, const CfVariable& var
   return absl::OkStatus();
 }
 
-// Where a variable of wind or turbulent energy lies; an error says why it cannot be used.
+// Returns the dimensions of a variable of wind or turbulent energy. An error says why it cannot be
+// used.
 absl::StatusOr<CfVariable> ArrangeWind(const netcdf::NetcdfFile& file,
                                        const CfDescription& variable, const CfWind& wind,
                                        const CfMetadata& metadata) {
@@ -202,7 +203,7 @@ absl::StatusOr<CfVariable> ArrangeWind(const netcdf::NetcdfFile& file,
   return arranged;
 }
 
-// The wind and the turbulent energy, as far as the file has them on the fields' own grid.
+// Finds the wind and the turbulent energy, if the file has them on the fields' own grid.
 void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
               CfMetadata* metadata) {
   const auto has = [&](WindVariable wind) {
@@ -229,12 +230,14 @@ void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& 
   });
 }
 
-// A storm without a date counts as idealised and begins in year 1, as in WRF.
+// Returns the start of a storm without a date. It counts as idealised and begins in year 1, as in
+// WRF.
 absl::Time IdealisedStart() {
   return absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
 }
 
-// CF's default calendar is the Julian one before this day, and dates here are all Gregorian.
+// Returns the first day on which CF's default calendar is Gregorian. Before it, that calendar is
+// Julian, but all dates here are Gregorian.
 absl::Time FirstGregorianDay() {
   return absl::FromCivil(absl::CivilSecond(1582, 10, 15), absl::UTCTimeZone());
 }
@@ -258,7 +261,8 @@ absl::Status CheckCalendar(const netcdf::NetcdfFile& file, const std::string& na
       "count from a later date, or set the attribute calendar to 'proleptic_gregorian'"));
 }
 
-// The units of the coordinate of time; nothing if it has none and its only time needs none.
+// Returns the units of the time coordinate. Returns nothing if it has none and there is only one
+// time, which needs none.
 absl::StatusOr<std::optional<TimeUnits>> ReadTimeUnits(const netcdf::NetcdfFile& file,
                                                        const std::string& name,
                                                        std::size_t records) {
@@ -317,7 +321,7 @@ absl::Status ReadCfTimes(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   return CheckCalendar(file, name, *units->origin, metadata->times);
 }
 
-// The ground's height is optional: one that cannot be read is left out.
+// Finds the ground's height. It is optional, so a height that cannot be read is left out.
 std::optional<CfSurface> FindSurface(const netcdf::NetcdfFile& file,
                                      const std::vector<CfDescription>& variables,
                                      const CfMetadata& metadata) {

@@ -1,5 +1,5 @@
 // Metadata of a CF netCDF file: its axes in metres, times, hydrometeors or extinction, and state of
-// the air. Reads no fields. Knows no cache and no series.
+// the air. This code reads no fields, and does not depend on caches or on series of files.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace thunderhead::storm_files {
 // A variable on x, y and z, in any order.
 struct CfVariable {
   std::string name;
-  // Index of each axis among its dimensions; `time` is -1 if it has none.
+  // The index of each axis among the variable's dimensions. `time` is -1 if there is no such axis.
   int x = -1;
   int y = -1;
   int z = -1;
@@ -44,10 +44,10 @@ struct CfWindField {
 // The height of the ground on y, x.
 struct CfSurface {
   std::string variable;
-  double metres = 1.0;  // in one of its units
+  double metres = 1.0;  // metres in one unit of the variable
 };
 
-// Radius of the sphere on which degrees become metres.
+// The radius of the sphere on which degrees are converted to metres.
 inline constexpr double kCfEarthRadius_m = 6.371e6;
 
 struct CfMetadata {
@@ -62,7 +62,8 @@ struct CfMetadata {
   std::string source;  // the file's title, else its source
 };
 
-// True if a variable's name or standard name is that of a quantity that can be drawn.
+// Returns whether the file has a variable whose name or standard name is that of a quantity that
+// can be drawn.
 bool LooksLikeCf(const netcdf::NetcdfFile& file);
 
 // Reads and checks the metadata. Errors name the file, the variable and what is missing.

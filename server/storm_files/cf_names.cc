@@ -61,8 +61,8 @@ bool IsOneOf(std::string_view text, std::initializer_list<std::string_view> list
   return std::ranges::find(list, text) != list.end();
 }
 
-// The substance in a standard name of an amount of water, and whether that is a fraction of moist
-// air.
+// Returns the substance in a standard name of an amount of water, and whether the amount is a
+// fraction of moist air.
 std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   absl::string_view substance = standard_name;
   CfQuantity quantity;
@@ -110,7 +110,7 @@ void ApplyUnits(const std::string& units, CfQuantity* quantity) {
   const bool extinction = quantity->quantity == volume::Quantity::kExtinction;
   const std::string plain = PlainUnits(units);
   if (plain.empty()) {
-    // Extinction is 1/m unless the file says otherwise; an amount of water may be per kg or per m3.
+    // Extinction is 1/m unless the file says otherwise. An amount of water may be per kg or per m3.
     quantity->known_units = extinction;
     return;
   }

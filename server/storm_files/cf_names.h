@@ -1,5 +1,5 @@
 // Recognises the quantity of a CF variable by its standard name, name and units, and the direction
-// of a dimension. Pure look-up: knows no files.
+// of a dimension. These functions only look up names and do not depend on files.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace thunderhead::storm_files {
 
-// A variable's attributes; those that it lacks are empty.
+// A variable's attributes. Missing attributes are empty.
 struct CfDescription {
   std::string name;
   std::string standard_name;
@@ -19,8 +19,8 @@ struct CfDescription {
   std::string positive;
 };
 
-// Units without blanks, stars, hats, dots and brackets, in lower case: "kg m**-3" is "kgm-3". "Mg"
-// keeps its capital, as these are a thousand million "mg".
+// Returns units in lower case without blanks, stars, carets, dots, brackets and underscores: "kg
+// m**-3" becomes "kgm-3". "Mg" keeps its capital, because one "Mg" is a thousand million "mg".
 std::string PlainUnits(std::string_view units);
 
 // A variable that can be drawn. Values times `scale` are in the quantity's unit.
@@ -32,7 +32,7 @@ struct CfQuantity {
   bool known_units = true;    // false: recognised by name, but in units that cannot be converted
 };
 
-// Nothing if the variable is neither a hydrometeor nor extinction.
+// Returns nothing if the variable is neither a hydrometeor nor extinction.
 std::optional<CfQuantity> QuantityOf(const CfDescription& variable);
 
 // Variables of the state of the air.
@@ -60,14 +60,15 @@ std::optional<CfWind> WindVariableOf(const CfDescription& variable);
 
 enum class CfDirection { kX, kY, kZ, kTime };
 
-// The direction of a coordinate, from its axis attribute, standard name, units, `positive` or name.
+// Returns the direction of a coordinate, from its axis attribute, standard name, units, `positive`
+// or name.
 std::optional<CfDirection> DirectionOf(const CfDescription& coordinate);
 
-// The unit in metres; nothing if it is not a length. An empty unit means metres.
+// Returns the unit in metres, or nothing if it is not a length. An empty unit means metres.
 std::optional<double> MetresIn(std::string_view units);
 
-// True for degrees along x (of longitude) or y (of latitude), and for degrees that do not say
-// which, as of a rotated grid.
+// Returns whether the units are degrees along x (of longitude) or y (of latitude), or degrees
+// without a direction, such as those of a rotated grid.
 bool IsDegrees(std::string_view units, CfDirection direction);
 
 }  // namespace thunderhead::storm_files

@@ -21,7 +21,7 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Values below kMinAmount are codes for "missing"; air never holds more than kMaxAmount.
+// Values below kMinAmount are codes for "missing". Air never holds more than kMaxAmount.
 constexpr float kMinAmount = -0.5F;
 constexpr float kMaxAmount = 0.5F;
 
@@ -72,7 +72,8 @@ class CfTimeReader {
   std::vector<std::pair<AirVariable, std::vector<float>>> air_;
 };
 
-// The values of the record in the file's own layers, x fastest, then northwards, then upwards.
+// Returns the values of the record in the file's own layers, x fastest, then northwards, then
+// upwards.
 absl::StatusOr<std::vector<float>> CfTimeReader::ReadLayers(const CfVariable& variable) const {
   const auto rank = static_cast<std::size_t>(variable.dimensions);
   std::vector<std::size_t> start(rank, 0);
@@ -86,7 +87,7 @@ absl::StatusOr<std::vector<float>> CfTimeReader::ReadLayers(const CfVariable& va
   if (variable.time >= 0) start[static_cast<std::size_t>(variable.time)] = record_;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,
                                file_.ReadPart(variable.name, start, count));
-  // Strides of x, y and z in the array read; a reversed axis is traversed from its end.
+  // Strides of x, y and z in the array that was read. A reversed axis is traversed from its end.
   std::array<std::ptrdiff_t, 3> strides{};
   std::ptrdiff_t origin = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -124,7 +125,7 @@ absl::Status CfTimeReader::ReadAir() {
   return absl::OkStatus();
 }
 
-// The density (kg/m3) by which to multiply a mixing ratio in `cell`; NaN if unknown.
+// Returns the density (kg/m3) by which to multiply a mixing ratio in `cell`, or NaN if unknown.
 float CfTimeReader::DensityAt(std::size_t cell, bool moist) const {
   const std::vector<float>* vapour = Air(AirVariable::kVapour);
   const double q_v = vapour != nullptr ? std::max((*vapour)[cell], 0.0F) : 0.0;
@@ -212,7 +213,8 @@ absl::StatusOr<volume::HydrometeorField> CfTimeReader::ReadField(const CfField& 
   return field;
 }
 
-// The ground's height is the file's, else sea level or, if lower, the bottom of the domain.
+// Sets the ground's height from the file. Without it, the ground is at sea level or, if lower, at
+// the bottom of the domain.
 absl::Status CfTimeReader::ReadTerrain(volume::HydrometeorFields* fields) const {
   const auto ground_m = static_cast<float>(std::min(0.0, grid_.low_corner_m.z));
   const auto nx = static_cast<std::size_t>(grid_.cells.x);
@@ -234,7 +236,7 @@ absl::Status CfTimeReader::ReadTerrain(volume::HydrometeorFields* fields) const 
   return absl::OkStatus();
 }
 
-// On the grid; empty if the file does not have it.
+// Returns the wind on the grid, or an empty array if the file does not have it.
 absl::StatusOr<std::vector<float>> CfTimeReader::ReadWind(WindVariable wind) const {
   const auto field = std::ranges::find(metadata_.wind, wind, &CfWindField::wind);
   if (field == metadata_.wind.end()) return std::vector<float>();
@@ -280,7 +282,8 @@ absl::Status CfTimeReader::ReadMotion(volume::HydrometeorFields* fields) const {
   return absl::OkStatus();
 }
 
-// Fields that refer to moist and to dry air in one file share the density of the first one.
+// Returns the mean density. Fields of one file that refer to moist and to dry air share the density
+// of the first field.
 volume::AirDensity CfTimeReader::MeanDensity(bool moist) const {
   const CfAxis& axis = metadata_.axes[2];
   const std::size_t columns = grid_.Offset(0, 0, 1);

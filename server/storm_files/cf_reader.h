@@ -1,5 +1,6 @@
-// Reads one time of a CF file into HydrometeorFields: any order of dimensions, any direction of
-// axes, uneven layers evened out, mixing ratios times the air's density. Knows no cache.
+// Reads one time of a CF file into HydrometeorFields. Dimensions may be in any order, and axes in
+// any direction. Uneven layers are averaged onto even cells, and mixing ratios are multiplied by
+// the air's density. This code does not depend on the cache.
 #pragma once
 
 #include <cstddef>

@@ -42,7 +42,7 @@ int Write(const CfCloud& cloud, const std::string& path) {
                            Axis(file, "y", grid.cells.y, "Y", "projection_y_coordinate"),
                            Axis(file, "z", grid.cells.z, "Z", "altitude")};
   const bool extinction = cloud.quantity == volume::Quantity::kExtinction;
-  // Dimensions are numbered in the order of their definition: x, y, z.
+  // NetCDF numbers dimensions in the order of their definition: x, y, z.
   const int field = file.Variable(extinction ? "extinction" : "lwc", NC_FLOAT, {2, 1, 0});
   if (!extinction) {
     file.Text(field, "standard_name", "mass_concentration_of_cloud_liquid_water_in_air");

@@ -1,5 +1,6 @@
-// Writes a field on a regular grid as a CF netCDF storm file; reading it back gives the same
-// values. Writes to a temporary name and renames, so that a reader never sees half a file.
+// Writes a field on a regular grid as a CF netCDF storm file. Reading it back gives the same
+// values. The file is written under a temporary name and then renamed, so that a reader never sees
+// half a file.
 #pragma once
 
 #include <string>
@@ -20,7 +21,7 @@ struct CfCloud {
   std::string comment;  // its parameters
 };
 
-// The variable `lwc` (kg m-3) or `extinction` (m-1) on z, y, x in metres, compressed.
+// Writes the variable `lwc` (kg m-3) or `extinction` (m-1) on z, y, x in metres, compressed.
 absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path);
 
 }  // namespace thunderhead::storm_files

@@ -30,7 +30,7 @@ constexpr std::array kUnitsOfTime = {
     UnitOfTime{"day", 86'400.0}, UnitOfTime{"days", 86'400.0},
 };
 
-// Reads a text from its beginning. A part that does not fit is left where it is.
+// Reads a text from its beginning. A part that does not match is not consumed.
 class Scanner {
  public:
   explicit Scanner(absl::string_view text) : rest_(text) {}
@@ -49,7 +49,7 @@ class Scanner {
     return rest_.size() < before;
   }
 
-  // Takes all digits that follow; nothing if they are none or more than `max_digits`.
+  // Takes all digits that follow. Takes nothing if there are none or more than `max_digits`.
   std::optional<int> TakeNumber(std::size_t max_digits) {
     const std::size_t digits = Digits();
     if (digits == 0 || digits > max_digits) return std::nullopt;
@@ -59,7 +59,7 @@ class Scanner {
     return number;
   }
 
-  // Takes a decimal point and what follows it: 0 if there is none.
+  // Takes a decimal point and the digits after it. Returns 0 if there is none.
   double TakeFraction() {
     double fraction = 0.0;
     if (!Take(".")) return fraction;
@@ -90,12 +90,12 @@ std::optional<absl::CivilDay> TakeDate(Scanner& text) {
   const std::optional<int> day = text.TakeNumber(2);
   if (!day.has_value()) return std::nullopt;
   const absl::CivilDay date(*year, *month, *day);
-  // A day that does not exist has become another.
+  // CivilDay turns a day that does not exist into another day.
   if (date.month() != *month || date.day() != *day) return std::nullopt;
   return date;
 }
 
-// "18", "18:00" or "18:00:00.5".
+// Takes a time of day: "18", "18:00" or "18:00:00.5".
 std::optional<absl::Duration> TakeTimeOfDay(Scanner& text) {
   const std::optional<int> hour = text.TakeNumber(2);
   if (!hour.has_value() || *hour > 23) return std::nullopt;
@@ -110,7 +110,7 @@ std::optional<absl::Duration> TakeTimeOfDay(Scanner& text) {
   return time + absl::Seconds(*second) + absl::Seconds(text.TakeFraction());
 }
 
-// What follows the sign: "6", "05", "5:30", "05:30" or "0530".
+// Takes the text after the sign: "6", "05", "5:30", "05:30" or "0530".
 std::optional<absl::Duration> TakeOffset(Scanner& text) {
   const std::size_t digits = text.Digits();
   if (digits == 3) return std::nullopt;  // "530" may be 5:30 or 53:0

@@ -1,4 +1,4 @@
-// Dates, times of day and units of time as storm files write them. Pure: knows no files.
+// Parses dates, times of day and units of time in storm files. This code does not depend on files.
 #pragma once
 
 #include <optional>
@@ -8,19 +8,20 @@
 
 namespace thunderhead::storm_files {
 
-// Parses a date of the years 0 to 9999, with or without a time of day and an offset from UTC, such
-// as "2013-05-20_18:00:00", "2013-5-20 18:00:0.5 +05:30" or "2013-05-20". The calendar is the
-// proleptic Gregorian one, a date alone means midnight, and a text without an offset is in UTC.
-// Returns nothing for any other text, for hours above 23 (so for 24:00:00) and for leap seconds.
+// Parses a date of the years 0 to 9999, with or without a time of day and an offset from UTC.
+// Examples are "2013-05-20_18:00:00", "2013-5-20 18:00:0.5 +05:30" and "2013-05-20". The calendar
+// is the proleptic Gregorian one. A date alone means midnight, and a text without an offset is in
+// UTC. Returns nothing for any other text, for hours above 23 (so for 24:00:00) and for leap
+// seconds.
 std::optional<absl::Time> ParseDateTime(std::string_view text);
 
 struct TimeUnits {
-  double seconds = 1.0;              // in one unit
+  double seconds = 1.0;              // seconds in one unit
   std::optional<absl::Time> origin;  // nothing for a duration without a date
 };
 
-// Parses units such as "minutes since 2013-05-20 18:00" or "s": seconds, minutes, hours or days, as
-// months and years have no fixed length.
+// Parses units such as "minutes since 2013-05-20 18:00" or "s". The units may be seconds, minutes,
+// hours or days, but not months and years, because these have no fixed length.
 std::optional<TimeUnits> ParseTimeUnits(std::string_view units);
 
 }  // namespace thunderhead::storm_files

@@ -11,7 +11,8 @@ namespace {
 
 constexpr float kSmallestNormal = std::numeric_limits<float>::min();
 
-// Advection undershoots by 1e-13 or so; values below this are codes for "missing", such as -999.
+// Advection undershoots zero by about 1e-13. Values below this limit are codes for "missing", such
+// as -999.
 constexpr float kMinMixingRatio = -0.5F;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -21,7 +22,7 @@ struct ScanRange {
   float maximum = -kInfinity;
 };
 
-// One level: `values` in place, mass per area added to `water_path`.
+// Converts one level: `values` in place, and adds mass per area to `water_path`.
 void ScanLevel(const LayerAir& air, int level, float* values, volume::FieldStatistics& statistics,
                ScanRange& range, std::vector<double>& water_path) {
   const std::size_t offset = level * air.columns;

@@ -9,14 +9,14 @@
 namespace thunderhead::storm_files {
 
 // Replaces mixing ratios (kg per kg of dry air, NaN where missing) by concentrations (kg/m3), in
-// place: negatives and missing cells become zero, and are counted.
+// place. Negative and missing values become zero and are counted.
 volume::FieldStatistics MixingRatioToConcentration(const LayerAir& air, std::vector<float>& values);
 
-// The smallest box of cells with condensate; sets subnormal values to zero.
+// Returns the smallest box of cells with condensate. Sets subnormal values to zero.
 volume::CellBox FlushAndBound(const volume::RegularGrid& grid,
                               std::vector<float>& concentration_kg_per_m3);
 
-// The smallest box that contains both.
+// Returns the smallest box that contains both.
 volume::CellBox Union(const volume::CellBox& a, const volume::CellBox& b);
 
 }  // namespace thunderhead::storm_files

@@ -13,7 +13,7 @@ namespace {
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 float DensityOf(float pressure_Pa, float potential_temperature_K, float vapour_kg_per_kg) {
-  // Comparisons fail for NaN. Bounds are far outside any atmosphere: they catch fill codes like
+  // Comparisons fail for NaN. The bounds are far outside any atmosphere and catch fill codes like
   // -999.
   constexpr float kHighestPressure_Pa = 1e6F;
   constexpr float kHighestTheta_K = 1e5F;

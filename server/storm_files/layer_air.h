@@ -12,25 +12,25 @@ struct LayerAir {
   std::size_t columns = 0;
   std::vector<float> interface_height_m;         // (levels + 1) * columns; NaN where missing
   std::vector<float> dry_air_density_kg_per_m3;  // levels * columns; NaN where an input is missing
-  std::vector<float> temperature_K;              // the same; empty where nothing depends on it
+  std::vector<float> temperature_K;              // the same size; empty if nothing depends on it
 };
 
-// Heights from the sum of perturbation and base geopotential (m2/s2), in place. Implausible ones
-// become NaN.
+// Computes heights from the sum of perturbation and base geopotential (m2/s2), in place.
+// Implausible heights become NaN.
 void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& geopotential);
 
-// The state of the layers, from the file; values that are missing are NaN.
+// The state of the layers, from the file. Missing values are NaN.
 struct LayerState {
   std::vector<float> pressure_Pa;
   std::vector<float> potential_temperature_K;
   std::vector<float> vapour_kg_per_kg;  // empty: dry air
 };
 
-// The temperature of every layer; meaningless where the density is NaN.
+// Returns the temperature of every layer. It is meaningless where the density is NaN.
 std::vector<float> Temperature(const LayerState& state);
 
-// The density of dry air in every layer; reuses the memory of `state.pressure_Pa`. The density of a
-// layer with missing or unordered interfaces is NaN.
+// Returns the density of dry air in every layer. Reuses the memory of `state.pressure_Pa`. The
+// density of a layer with missing or unordered interfaces is NaN.
 std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
                                  std::size_t columns);
 

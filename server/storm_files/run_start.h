@@ -1,4 +1,4 @@
-// When the run began that a storm file is of.
+// Finds out when the run that wrote a storm file began.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,8 @@
 
 namespace thunderhead::storm_files {
 
-// Nothing if the file does not tell: only WRF's files do so far (SIMULATION_START_DATE).
+// Returns nothing if the file does not contain the start. Only WRF's files contain it so far
+// (SIMULATION_START_DATE).
 std::optional<absl::Time> RunStart(const StormFile& file);
 
 }  // namespace thunderhead::storm_files

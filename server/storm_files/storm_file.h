@@ -1,5 +1,5 @@
-// One file of a storm, whatever its format: its description, as a catalogue of storms needs it, and
-// the reader of its records.
+// One file of a storm, whatever its format: the description that a catalogue of storms needs, and
+// the reader of the file's records.
 #pragma once
 
 #include <cstddef>
@@ -17,31 +17,32 @@
 
 namespace thunderhead::storm_files {
 
-// Called before each variable with the share done so far, 0 to 1; an error ends the reading with
-// that error. May be empty.
+// A function that is called before each variable with the share done so far, 0 to 1. If it returns
+// an error, the reading stops with that error. It may be empty.
 using ReadCheckpoint = std::function<absl::Status(double share)>;
 
-// Reads the records of one file that its format has described. Holds no open file between calls;
-// safe to call from any thread. Errors name the file, the variable and what to do; there is never
-// half a result.
+// Reads the records of one file that its format has described. It holds no open file between calls,
+// and is safe to call from any thread. Errors name the file, the variable and what to do. There is
+// never a partial result.
 class RecordReader {
  public:
   virtual ~RecordReader() = default;
 
-  // Reads record `record`. `grid` is the storm's height grid, chosen from this record if absent; a
-  // format whose heights are the same at all times need not look at it.
+  // Reads record `record`. `grid` is the storm's height grid. If absent, the grid is chosen from
+  // this record. A format whose heights are the same at all times can ignore it.
   virtual absl::StatusOr<volume::HydrometeorFields> Read(
       std::size_t record, const std::optional<VerticalGrid>& grid,
       const ReadCheckpoint& checkpoint) const = 0;
 
-  // The height grid of a storm whose first time is this record.
+  // Returns the height grid of a storm whose first time is this record.
   virtual absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t record) const = 0;
 };
 
-// The most times that a file may have.
+// Maximum number of times in a file.
 inline constexpr std::size_t kMaxTimes = 1'000'000;
 
-// INVALID_ARGUMENT if the file at `path` has more records than that. Called before they are read.
+// Returns INVALID_ARGUMENT if the file at `path` has more records than kMaxTimes. Called before
+// they are read.
 absl::Status CheckRecords(const std::string& path, std::size_t records);
 
 struct StormFile {
@@ -49,21 +50,22 @@ struct StormFile {
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
   double dx_m = 0.0;
   double dy_m = 0.0;
-  std::vector<absl::Time> times;             // of each record of the file, in the file's order
+  std::vector<absl::Time> times;             // one for each record, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
   std::string about;                         // for people, e.g. "WRF V4.7.1, idealised"
-  int domain = 1;                            // of nested grids, counted from 1
-  std::string run;                           // files of different runs differ in it
-  std::optional<double> latitude_deg;        // of the middle
+  int domain = 1;                            // number of the nested grid, counted from 1
+  std::string run;                           // differs between files of different runs
+  std::optional<double> latitude_deg;        // latitude of the middle
   std::optional<double> longitude_deg;
-  std::string projection;  // of the grid, as PROJ writes it; empty if it has none
+  std::string projection;  // the grid's projection, as PROJ writes it; empty if none
   std::shared_ptr<const RecordReader> reader;
-  // Another one if another file took its place, or it was written anew; the same while it only gets
-  // more times.
+  // A number that changes if another file replaced this one, or if it was written anew. It stays
+  // the same while the file only gets more times.
   std::uint64_t version = 0;
-  // Which file was described (base::FileStamp::Id), where somebody watches its path; 0 elsewhere.
+  // Identifies the file that was described (base::FileStamp::Id), if its path is watched. Otherwise
+  // it is 0.
   std::uint64_t id = 0;
-  // The device that it was on when it was described (base::FileStamp::device); 0: unknown.
+  // The device of the file when it was described (base::FileStamp::device). 0 means unknown.
   std::uint64_t device = 0;
 };
 

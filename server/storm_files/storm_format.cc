@@ -10,7 +10,7 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Checks conditions on files of every format that other rooms rely on.
+// Checks conditions on files of every format that other libraries rely on.
 absl::Status CheckDescribed(StormFile& file) {
   const auto& cells = file.cells;
   THUNDERHEAD_RETURN_IF_ERROR(
@@ -51,7 +51,7 @@ absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const 
   if (elsewhere_) return elsewhere_(path);
   const UnknownFile file{path, netcdf::NetcdfFile::Open(path)};
   FormatFit best = FormatFit::kNone;
-  std::vector<const StormFormat*> fitting;  // as well as `best`
+  std::vector<const StormFormat*> fitting;  // fit as well as `best`
   for (const std::shared_ptr<const StormFormat>& format : formats_) {
     const FormatFit fit = format->Sniff(file);
     if (fit == FormatFit::kNone || fit < best) continue;

@@ -1,5 +1,5 @@
-// A format of storm files: how a file of it is recognised, described and read. Which formats there
-// are stands in built_in_formats.cc and nowhere else.
+// A format of storm files: how a file is recognised, described and read. The only list of formats
+// is in built_in_formats.cc.
 #pragma once
 
 #include <functional>
@@ -15,61 +15,61 @@
 
 namespace thunderhead::storm_files {
 
-// A file of unknown format, opened once for all formats to look at.
+// A file of unknown format. It is opened once for all formats.
 struct UnknownFile {
   std::string path;
   absl::StatusOr<netcdf::NetcdfFile> netcdf;  // the error says why it cannot be opened as netCDF
 };
 
-// How closely a file fits a format. The closest fit wins: a model's own layout before a convention
-// that the model's files may happen to follow as well.
+// How closely a file fits a format. The closest fit wins. A model's own layout wins over a
+// convention, because the model's files may also follow the convention.
 enum class FormatFit {
   kNone,
   kConvention,   // follows a convention shared by many programs
   kModelLayout,  // has the layout of one model's files
 };
 
-// Has no state: one instance serves all files and threads.
+// A format has no state: one instance serves all files and threads.
 class StormFormat {
  public:
   virtual ~StormFormat() = default;
 
-  // For messages: "WRF output".
+  // Returns the name for messages: "WRF output".
   virtual std::string_view Name() const = 0;
 
-  // For messages: the files to give, e.g. "wrfout_...".
+  // Returns an example of a file for messages, e.g. "wrfout_...".
   virtual std::string_view Example() const = 0;
 
-  // For messages: the name with what a file that does not fit lacks, e.g. "WRF output (it has no
-  // dimension bottom_top)".
+  // Returns the name for messages, with what a file that does not fit lacks, e.g. "WRF output (it
+  // has no dimension bottom_top)".
   virtual std::string_view Requirement() const = 0;
 
-  // A quick look: reads no fields, and never fails.
+  // Checks the file quickly. Reads no fields and never fails.
   virtual FormatFit Sniff(const UnknownFile& file) const = 0;
 
-  // Reads and checks the metadata of a file that this format fits, and gives it its reader. Errors
-  // name the file, the variable and what it lacks.
+  // Reads and checks the metadata of a file that fits this format, and sets its reader. Errors name
+  // the file, the variable and what it lacks.
   virtual absl::StatusOr<StormFile> Describe(const UnknownFile& file) const = 0;
 };
 
-// The formats that a store of storms reads. A plain value: to add a format to a copy changes no
-// other.
+// The formats that a store of storms reads. This is a plain value, so adding a format to a copy
+// changes no other copy.
 class StormFormats {
  public:
-  // All formats of this build.
+  // Returns all formats of this build.
   static StormFormats BuiltIn();
 
   void Add(std::shared_ptr<const StormFormat> format) { formats_.push_back(std::move(format)); }
 
-  // Has another process describe every file, and read it by the reader that it gives it.
+  // Makes another process describe every file. The files' readers then come from that process, too.
   using Elsewhere = std::function<absl::StatusOr<StormFile>(const std::string& path)>;
   void LeaveTo(Elsewhere elsewhere) { elsewhere_ = std::move(elsewhere); }
 
-  // Describes the file at `path` by the format that fits it best. Two that fit equally well, or
-  // none, are an error.
+  // Describes the file at `path` by the format that fits it best. It is an error if no format fits,
+  // or if two fit equally well.
   absl::StatusOr<StormFile> Describe(const std::string& path) const;
 
-  // The formats' examples for a message: "wrfout_..., or CF netCDF".
+  // Returns the formats' examples for a message: "wrfout_..., or CF netCDF".
   std::string Examples() const;
 
  private:

@@ -11,7 +11,8 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Columns worked on together: a cache line of floats, so that each line is fetched once.
+// Number of columns processed together. It is a cache line of floats, so that each line is fetched
+// once.
 constexpr std::size_t kTile = 16;
 
 struct HeightRange {
@@ -20,7 +21,7 @@ struct HeightRange {
 };
 
 HeightRange RangeOf(const std::vector<float>& interface_height_m) {
-  // NaN fails both comparisons and so leaves the range as it is.
+  // NaN fails both comparisons, so it leaves the range as it is.
   float low_m = std::numeric_limits<float>::infinity();
   float high_m = -std::numeric_limits<float>::infinity();
   for (const float height_m : interface_height_m) {
@@ -30,7 +31,7 @@ HeightRange RangeOf(const std::vector<float>& interface_height_m) {
   return {low_m, high_m};
 }
 
-// The smallest over levels of the mean thickness of a level's layers.
+// Returns the smallest over levels of the mean thickness of a level's layers.
 double ThinnestLevel_m(const std::vector<float>& interface_height_m, int levels,
                        std::size_t columns) {
   double thinnest_m = std::numeric_limits<double>::infinity();
@@ -67,8 +68,8 @@ Layer LayerAt(const Layers& layers, std::size_t column, int level) {
 
 bool IsThere(const Layer& layer) { return layer.top_m > layer.bottom_m; }
 
-// The monotonised central slope: at the layer's ends the profile stays between its own and the
-// neighbours' means.
+// Returns the monotonised central slope. With it, the profile at the layer's ends stays between the
+// means of the layer and of its neighbours.
 double LimitedSlope_per_m(const Layers& layers, std::size_t column, int level, const Layer& layer) {
   if (level == 0 || level + 1 == layers.levels) return 0.0;
   const Layer below = LayerAt(layers, column, level - 1);
@@ -83,7 +84,7 @@ double LimitedSlope_per_m(const Layers& layers, std::size_t column, int level, c
   return std::copysign(std::min(std::abs(central), limit), central);
 }
 
-// A tile of columns copied together, so that the large arrays are traversed once.
+// A tile of columns that is copied at once, so that the large arrays are traversed once.
 class Tile {
  public:
   Tile(int levels, const VerticalGrid& grid)
@@ -93,7 +94,7 @@ class Tile {
         concentration_(levels * kTile),
         target_(grid.cells * kTile) {}
 
-  // False if the tile is empty.
+  // Returns false if the tile is empty.
   bool Load(const std::vector<float>& concentration, std::size_t columns, std::size_t first,
             std::size_t count) {
     float largest = 0.0F;
@@ -140,7 +141,7 @@ VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, in
   // With at most a quarter more cells than levels, memory stays below 1.5 times the file's
   // uncompressed size.
   const int max_cells = std::max(1, levels * 5 / 4);
-  // Later times' layers stand a little higher or lower; room for that keeps the grid the same for
+  // The layers of later times are a little higher or lower. The margin keeps the grid the same for
   // all of them.
   constexpr double kRoomAbove = 0.005;
   const double extent_m =
@@ -153,7 +154,7 @@ VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, in
 
 VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m) {
   const HeightRange range = RangeOf(interface_height_m);
-  // Heights are in single precision: differences of centimetres are rounding.
+  // Heights are in single precision, so differences of centimetres are rounding.
   constexpr double kSame_m = 0.05;
   VerticalGrid extended = grid;
   if (range.low_m < grid.low_m - kSame_m) {

@@ -1,7 +1,7 @@
-// Remaps terrain-following layers to a regular height grid, conserving every column's mass: a
+// Remaps terrain-following layers to a regular height grid and conserves every column's mass. A
 // target cell gets the integral of the layers over it. Within a layer the profile is linear, with
-// the slope limited so that no new extreme appears (van Leer 1977). Pure arithmetic; knows no
-// files.
+// its slope limited so that no new extreme appears (van Leer 1977). This code is pure arithmetic
+// and does not depend on files.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct VerticalGrid {
   double High_m() const { return low_m + spacing_m * cells; }
 };
 
-// The layers of a block of columns, all arrays with the column running fastest, then upwards.
-// Heights that are NaN or do not rise mark a missing layer.
+// The layers of a block of columns. In all arrays the column runs fastest, then levels upwards. A
+// layer is missing if its heights are NaN or do not increase.
 struct Layers {
   const float* interface_height_m;  // (levels + 1) * stride values
   const float* concentration;       // levels * stride values, none below zero and none NaN
@@ -26,22 +26,21 @@ struct Layers {
   std::size_t stride;  // from one level of a column to its next
 };
 
-// A grid that reaches from the lowest to the highest interface of `columns` columns with a little
-// room above, as fine as the thinnest layer but with at most 1.25 times as many cells as levels.
-// `cells` is zero if all layers are missing.
+// Returns a grid that reaches from the lowest to the highest interface of `columns` columns, with a
+// small margin above. It is as fine as the thinnest layer, but has at most 1.25 times as many cells
+// as levels. `cells` is zero if all layers are missing.
 VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
                                 std::size_t columns);
 
-// `grid` extended by whole cells below and above until it contains every interface.
+// Returns `grid` extended by whole cells below and above until it contains every interface.
 VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m);
 
-// Adds the column at `column` of `layers` to `target`, `grid.cells` means that start at zero and
-// lie `target_stride` apart. Mass outside the grid goes into its outermost cells.
+// Adds the column at `column` of `layers` to `target`. The target is `grid.cells` means that start
+// at zero and are `target_stride` apart. Mass outside the grid goes into its outermost cells.
 void RemapColumn(const Layers& layers, std::size_t column, const VerticalGrid& grid, float* target,
                  std::size_t target_stride);
 
-// Remaps `columns` columns; the result is `grid.cells` * `columns` values, column fastest, then
-// upwards.
+// Remaps `columns` columns. Returns `grid.cells` * `columns` values, column fastest, then upwards.
 std::vector<float> RemapColumns(const std::vector<float>& interface_height_m,
                                 const std::vector<float>& concentration, int levels,
                                 std::size_t columns, const VerticalGrid& grid);

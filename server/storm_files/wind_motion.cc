@@ -16,7 +16,7 @@ namespace {
 constexpr double kSteeringDepth_m = 6e3;
 constexpr float kEnergyOfDeformation = 0.4F;  // root of the energy over l |D|: 0.2^2 / 0.1
 
-// Values at the middles of cells.
+// Values at the centres of cells.
 struct Centred {
   const std::vector<float>& values;
   glm::ivec3 cells;
@@ -32,7 +32,7 @@ struct Centred {
   }
 };
 
-// Means of both faces along `axis`.
+// Returns the means of both faces along `axis`.
 std::vector<float> MiddlesOf(const std::vector<float>& faces, const glm::ivec3& cells, int axis) {
   glm::ivec3 size = cells;
   size[axis] += 1;
@@ -52,7 +52,7 @@ std::vector<float> MiddlesOf(const std::vector<float>& faces, const glm::ivec3& 
   return middles;
 }
 
-// Distances of the middles of a cell's neighbours.
+// Distances between the centres of a cell's neighbours.
 struct Spans {
   float x_m;
   float y_m;
@@ -66,7 +66,7 @@ glm::vec3 GradientAt(const Centred& component, const glm::ivec3& cell, const Spa
           (component.At(x, y, z + 1) - component.At(x, y, z - 1)) / spans.z_m};
 }
 
-// |D|^2 = 2 S_ij S_ij.
+// Returns |D|^2 = 2 S_ij S_ij.
 float DeformationSquared(const glm::vec3& u, const glm::vec3& v, const glm::vec3& w) {
   const float xy = u.y + v.x;
   const float xz = u.z + w.x;
@@ -74,7 +74,7 @@ float DeformationSquared(const glm::vec3& u, const glm::vec3& v, const glm::vec3
   return 2.0F * (u.x * u.x + v.y * v.y + w.z * w.z) + xy * xy + xz * xz + yz * yz;
 }
 
-// The mean height of the mass of cloud water, or of all that is frozen.
+// Returns the mean height of the mass of cloud water, or of all frozen hydrometeors.
 std::optional<double> MeanHeight_m(const volume::HydrometeorFields& fields, bool frozen) {
   double mass = 0.0;
   double moment = 0.0;
@@ -96,7 +96,7 @@ std::optional<double> MeanHeight_m(const volume::HydrometeorFields& fields, bool
   return moment / mass;
 }
 
-// The wind of the level at a height.
+// Returns the wind of the level at a height.
 glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds,
                   const std::vector<double>& interface_height_m) {
   std::size_t level = 0;

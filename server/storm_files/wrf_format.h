@@ -1,4 +1,4 @@
-// WRF output as a format of storm files.
+// Support for WRF output as a format of storm files.
 #pragma once
 
 #include <memory>

@@ -25,7 +25,7 @@ using physics::Hydrometeor;
 constexpr std::array<std::string_view, physics::kHydrometeorCount> kHydrometeorVariables = {
     "QCLOUD", "QRAIN", "QICE", "QSNOW", "QGRAUP", "QHAIL"};
 
-// Accepted spellings of a unit, after removing blanks, stars, hats, dots and brackets.
+// Accepted spellings of a unit, after removing blanks, stars, carets, dots and brackets.
 struct Unit {
   std::string_view name;
   std::array<std::string_view, 4> spellings;
@@ -43,8 +43,8 @@ constexpr Unit kPercent = {"%", {"%", "percent"}};
 constexpr Unit kNorth = {"degree_north", {"degreenorth", "degreesnorth", "degree", "degrees"}};
 constexpr Unit kEast = {"degree_east", {"degreeeast", "degreeseast", "degree", "degrees"}};
 
-// Variables of particle sizes. Radii come before numbers, for which a size distribution must be
-// assumed.
+// Variables of particle sizes. Radii come before numbers, because a number needs an assumed size
+// distribution.
 struct SizeName {
   Hydrometeor hydrometeor;
   std::string_view variable;
@@ -76,7 +76,7 @@ absl::Status CheckUnits(const netcdf::NetcdfFile& file, const std::string& varia
                    std::string(wanted), "' is needed; convert it (and its units attribute) first"));
 }
 
-// `shape` as text, for errors.
+// Returns `shape` as text for errors.
 std::string AsText(const std::vector<std::size_t>& shape) {
   return absl::StrCat("(", absl::StrJoin(shape, ", "), ")");
 }
@@ -136,15 +136,15 @@ absl::Status ReadGrid(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
-// A time of the model has a time of day to the second; a row that is only partly written is
-// shorter.
+// Parses a time. A time of the model has a time of day to the second. A row that is only partly
+// written is shorter.
 std::optional<absl::Time> ParseWrfTime(const std::string& text) {
   constexpr std::size_t kWhole = std::string_view("2013-05-20_20:00:00").size();
   if (absl::StripAsciiWhitespace(text).size() < kWhole) return std::nullopt;
   return ParseDateTime(text);
 }
 
-// When the run began, by the attribute `name`; nothing if the file does not have it.
+// Returns when the run began, by the attribute `name`, or nothing if the file does not have it.
 absl::StatusOr<std::optional<absl::Time>> ReadStart(const netcdf::NetcdfFile& file,
                                                     const std::string& name) {
   const std::string text = file.TextOrEmpty("", name);
@@ -164,7 +164,8 @@ absl::Status NoTimes(const netcdf::NetcdfFile& file) {
                    "again when it has finished"));
 }
 
-// The units of XTIME: minutes since the start of the run, unless the file says otherwise.
+// Returns the units of XTIME. They are minutes since the start of the run unless the file says
+// otherwise.
 absl::StatusOr<TimeUnits> ReadXtimeUnits(const netcdf::NetcdfFile& file) {
   const std::string text = file.TextOrEmpty("XTIME", "units");
   const std::optional<TimeUnits> units = ParseTimeUnits(text.empty() ? "minutes" : text);
@@ -183,7 +184,7 @@ absl::StatusOr<TimeUnits> ReadXtimeUnits(const netcdf::NetcdfFile& file) {
   return TimeUnits{units->seconds, start};
 }
 
-// Times from XTIME, for files whose Times were left out.
+// Returns times from XTIME, for files whose Times were left out.
 absl::StatusOr<std::vector<absl::Time>> TimesFromXtime(const netcdf::NetcdfFile& file) {
   TimeUnits units;
   if (file.HasVariable("XTIME")) {
@@ -236,7 +237,7 @@ absl::StatusOr<std::vector<absl::Time>> ReadWrfTimes(const netcdf::NetcdfFile& f
   return times;
 }
 
-// A variable of unexpected shape or units is skipped.
+// Finds the variables of particle sizes. Skips a variable of unexpected shape or units.
 void FindSizes(const netcdf::NetcdfFile& file, const std::vector<std::size_t>& in_layers,
                WrfMetadata& metadata) {
   for (const SizeName& name : kSizeNames) {
@@ -255,7 +256,7 @@ void FindSizes(const netcdf::NetcdfFile& file, const std::vector<std::size_t>& i
   }
 }
 
-// A variable of unexpected shape or units is skipped.
+// Finds the variables of the air's motion. Skips a variable of unexpected shape or units.
 void FindMotion(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   const std::size_t records = metadata.times.size();
   const auto nx = static_cast<std::size_t>(metadata.cells.x);
@@ -320,8 +321,8 @@ absl::Status CheckVariables(const netcdf::NetcdfFile& file, WrfMetadata& metadat
       "; write at least one to the model's history output"));
 }
 
-// Mean over the cells around the middle of the domain; longitudes are unwrapped around the first of
-// them.
+// Returns the mean over the cells around the middle of the domain. Longitudes are unwrapped around
+// the first of them.
 absl::StatusOr<double> Middle(const netcdf::NetcdfFile& file, const std::string& variable,
                               const WrfMetadata& metadata) {
   const auto nx = static_cast<std::size_t>(metadata.cells.x);
@@ -339,8 +340,8 @@ absl::StatusOr<double> Middle(const netcdf::NetcdfFile& file, const std::string&
   return sum_deg / static_cast<double>(values.size());
 }
 
-// The projection of the grid as PROJ writes it, on WRF's sphere; empty for one that is missing or
-// is none in metres (a grid of degrees).
+// Returns the projection of the grid as PROJ writes it, on WRF's sphere. Returns an empty text if
+// it is missing or is not in metres (a grid of degrees).
 std::string ProjectionOf(const netcdf::NetcdfFile& file) {
   const auto number = [&](const char* name) { return file.NumberAttribute("", name); };
   const std::optional<double> first_deg = number("TRUELAT1");
@@ -384,7 +385,7 @@ absl::Status ReadPlace(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
-// WRF's tables of classes by their name, else by how many classes they have.
+// Returns WRF's table of classes by its name, or else by its number of classes.
 std::optional<physics::LandUseScheme> LandUseSchemeOf(const netcdf::NetcdfFile& file) {
   const std::string name = file.TextAttribute("", "MMINLU").value_or("");
   if (absl::StrContains(name, "MODI")) return physics::LandUseScheme::kModis;
@@ -395,8 +396,8 @@ std::optional<physics::LandUseScheme> LandUseSchemeOf(const netcdf::NetcdfFile& 
   return std::nullopt;
 }
 
-// The ground's cover of a run with a place. Classes of an unknown table are left out, and so is a
-// variable of unexpected shape or units.
+// Finds the land cover of a run with a place. Skips classes of an unknown table, and variables of
+// unexpected shape or units.
 WrfLand FindLand(const netcdf::NetcdfFile& file, const WrfMetadata& metadata) {
   WrfLand land;
   if (metadata.idealised || !metadata.latitude_deg.has_value()) return land;
@@ -440,7 +441,7 @@ WrfLand FindLand(const netcdf::NetcdfFile& file, const WrfMetadata& metadata) {
   return land;
 }
 
-// The schemes by their numbers in WRF.
+// Returns the microphysics scheme by its number in WRF.
 physics::Microphysics MicrophysicsOf(const netcdf::NetcdfFile& file) {
   const double scheme = file.NumberAttribute("", "MP_PHYSICS").value_or(0.0);
   if (scheme == 8.0) return physics::Microphysics::kThompson;
@@ -449,7 +450,7 @@ physics::Microphysics MicrophysicsOf(const netcdf::NetcdfFile& file) {
   return with_hail ? physics::Microphysics::kWsm6WithHail : physics::Microphysics::kWsm6;
 }
 
-// " OUTPUT FROM WRF V4.7.1 MODEL" -> "WRF V4.7.1".
+// Returns the model's name: "WRF V4.7.1" for " OUTPUT FROM WRF V4.7.1 MODEL".
 std::string ModelName(const netcdf::NetcdfFile& file) {
   const std::string title = file.TextAttribute("", "TITLE").value_or("");
   absl::string_view name = absl::StripAsciiWhitespace(title);

@@ -1,5 +1,6 @@
-// Metadata of a WRF output file: grid, times, fields, place on Earth; and a check of the variables,
-// dimensions and units that reading needs. Reads no fields. Knows no cache and no series.
+// Metadata of a WRF output file: grid, times, fields and place on Earth. Reading it also checks the
+// variables, dimensions and units that the reader needs. This code reads no fields, and does not
+// depend on caches or on series of files.
 #pragma once
 
 #include <array>
@@ -19,14 +20,14 @@
 
 namespace thunderhead::storm_files {
 
-// Variables of the ground's cover, by name; empty those that the file does not have.
+// Names of the variables of the land cover. A name is empty if the file lacks the variable.
 struct WrfLand {
   physics::LandUseScheme scheme = physics::LandUseScheme::kUsgs;
   std::string land_use;
   std::string mask;  // XLAND (2 is water) or LANDMASK (0 is water)
   std::string albedo;
   std::string green;       // percent
-  std::string snow_share;  // of the cell
+  std::string snow_share;  // share of the cell
   std::string snow_depth;  // in m, in place of the share
 };
 
@@ -35,14 +36,14 @@ struct WrfMetadata {
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
   double dx_m = 0.0;
   double dy_m = 0.0;
-  std::vector<absl::Time> times;             // of each record of the file, in the file's order
+  std::vector<absl::Time> times;             // one for each record, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
-  // Indexed by physics::IndexOf: the variable of the field's particle sizes; without a name if
-  // there is none.
+  // The variable of each field's particle sizes, indexed by physics::IndexOf. It has no name if
+  // there is no such variable.
   std::array<volume::SizeVariable, physics::kHydrometeorCount> sizes;
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
-  // The variable of turbulent kinetic energy; no name: none. On interfaces, and doubled, as
-  // boundary layer schemes have it.
+  // The variable of turbulent kinetic energy, without a name if there is none. Boundary layer
+  // schemes write it on interfaces and doubled.
   struct Energy {
     std::string name;
     bool at_interfaces = false;
@@ -57,19 +58,19 @@ struct WrfMetadata {
   bool idealised = false;              // no place on Earth
   int domain = 1;                      // GRID_ID, counted from 1
   std::string simulation_start;        // as in the file; differs between runs
-  std::optional<double> latitude_deg;  // of the middle
+  std::optional<double> latitude_deg;  // latitude of the middle
   std::optional<double> longitude_deg;
   std::string projection;  // as PROJ writes it; empty if it has none
 };
 
-// WRF's name of a hydrometeor's mixing ratio, e.g. "QCLOUD".
+// Returns WRF's name of a hydrometeor's mixing ratio, e.g. "QCLOUD".
 std::string_view WrfVariableOf(physics::Hydrometeor hydrometeor);
 
 // Reads and checks the metadata of the file at `path`. Errors name the file, the variable and what
 // to do.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path);
 
-// The same for an open file.
+// Does the same for an open file.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file);
 
 }  // namespace thunderhead::storm_files

@@ -23,10 +23,10 @@ using physics::Hydrometeor;
 
 constexpr float kBaseTheta_K = 300.0F;  // WRF's T is potential temperature less this
 
-// Air never carries half its mass in condensate; a file with such values is in g/kg.
+// Air never carries half its mass in condensate. A file with such values is in g/kg.
 constexpr float kMaxMixingRatio = 0.5F;
 
-// Snow as deep as this hides short plants.
+// Snow of this depth hides short plants.
 constexpr float kCoveringSnow_m = 0.1F;
 
 struct RemappedField {
@@ -35,8 +35,9 @@ struct RemappedField {
   std::vector<float> buffer;  // returned for the next variable to reuse
 };
 
-// Reads one record. Variables are read on the calling thread, one at a time, while another thread
-// remaps the one before: unpacking (netCDF) and remapping take about equally long.
+// Reads one record. Variables are read on the calling thread, one at a time. Another thread remaps
+// the previous variable meanwhile, because unpacking (netCDF) and remapping take about equally
+// long.
 class TimeReader {
  public:
   TimeReader(const WrfMetadata& metadata, std::size_t record, netcdf::NetcdfFile file)
@@ -99,7 +100,7 @@ absl::Status TimeReader::Advance() {
 absl::Status TimeReader::ReadVariable(const std::string& variable, std::size_t cells,
                                       std::vector<float>& values) {
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
-  // Before memory is taken for it.
+  // The length is checked before memory is allocated for it.
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length, file_.RecordLength(variable));
   if (length != cells) {
     return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ", length,
@@ -148,7 +149,7 @@ absl::StatusOr<LayerState> TimeReader::ReadState() {
   return state;
 }
 
-// Missing terrain is taken from the bottom of the lowest layer.
+// Reads the terrain. Missing heights are taken from the bottom of the lowest layer.
 absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
   std::vector<float>& terrain = result.terrain_height_m;
   terrain.assign(air_.columns, std::nanf(""));
@@ -163,7 +164,7 @@ absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
   return absl::OkStatus();
 }
 
-// Keeps the ground's cover of this time alone, as snow changes.
+// Reads the land cover of this time only, because snow changes.
 absl::Status TimeReader::ReadLand(volume::HydrometeorFields& result) {
   const WrfLand& names = metadata_.land;
   if (names.land_use.empty()) return absl::OkStatus();
@@ -233,7 +234,7 @@ absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor, std::ve
   return remapped;
 }
 
-// The origin of a field's sizes, still without sizes.
+// Returns the origin of a field's sizes, still without sizes.
 volume::ParticleSizes TimeReader::OriginOf(Hydrometeor hydrometeor) const {
   volume::ParticleSizes sizes;
   const volume::SizeVariable& variable = metadata_.sizes[physics::IndexOf(hydrometeor)];
@@ -248,8 +249,8 @@ volume::ParticleSizes TimeReader::OriginOf(Hydrometeor hydrometeor) const {
   return sizes;
 }
 
-// Extinction is proportional to concentration over radius; that ratio is remapped, so that each
-// column keeps its optical depth. `radii` is empty if the file has none.
+// Remaps sizes. Extinction is proportional to concentration over radius, so that ratio is remapped,
+// and each column keeps its optical depth. `radii` is empty if the file has none.
 void TimeReader::RemapSizes(const std::vector<float>& concentration, std::vector<float> radii,
                             volume::HydrometeorField& field) const {
   radii.resize(concentration.size(), std::nanf(""));
@@ -270,7 +271,7 @@ absl::Status TimeReader::Take(std::future<absl::StatusOr<RemappedField>>& pendin
   return absl::OkStatus();
 }
 
-// True if the scheme's distribution of snow is asked for.
+// Returns whether the scheme's distribution of snow is needed.
 bool TimeReader::NeedsTemperature() const {
   return physics::HasDistribution(metadata_.microphysics, Hydrometeor::kSnow) &&
          std::ranges::find(metadata_.fields, Hydrometeor::kSnow) != metadata_.fields.end();
@@ -340,7 +341,7 @@ absl::StatusOr<StaggeredWind> TimeReader::ReadWind() {
   return wind;
 }
 
-// Turbulent kinetic energy in layers, m2/s2.
+// Returns turbulent kinetic energy in layers, m2/s2.
 absl::StatusOr<std::vector<float>> TimeReader::ReadEnergy() {
   const WrfMetadata::Energy& variable = metadata_.energy;
   const int levels = air_.levels + (variable.at_interfaces ? 1 : 0);
@@ -352,7 +353,7 @@ absl::StatusOr<std::vector<float>> TimeReader::ReadEnergy() {
   return energy;
 }
 
-// Values from 0 to 255 in layers, on the regular grid; missing ones are 0.
+// Remaps values from 0 to 255 in layers to the regular grid. Missing values become 0.
 std::vector<std::uint8_t> TimeReader::RemapBytes(const std::vector<float>& values) const {
   const std::vector<float> remapped =
       RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
@@ -396,7 +397,7 @@ absl::Status TimeReader::ReadMotion(volume::HydrometeorFields& result) {
   return absl::OkStatus();
 }
 
-// Removes the empty ones of the cells added above the storm's grid.
+// Removes the empty cells among those that were added above the storm's grid.
 void TrimTop(const VerticalGrid& storm_grid, volume::HydrometeorFields& fields) {
   volume::RegularGrid& grid = fields.grid;
   const double storm_top = (storm_grid.High_m() - grid.low_corner_m.z) / grid.spacing_m.z;
@@ -437,8 +438,8 @@ absl::StatusOr<volume::HydrometeorFields> TimeReader::Read(const std::optional<V
   return result;
 }
 
-// Runs `read` on a reader of the file. Running out of memory is an error of the input and must not
-// end the server.
+// Runs `read` on a reader of the file. Running out of memory counts as an error of the input,
+// because it must not end the server.
 template <typename Result, typename ReadFunction>
 absl::StatusOr<Result> WithReader(const WrfMetadata& metadata, std::size_t record,
                                   ReadFunction read) {

@@ -1,6 +1,6 @@
-// Reads one time of a WRF output file into HydrometeorFields: heights and dry-air density from the
-// file's own state, each hydrometeor's mixing ratio times that density, remapped to a regular
-// height grid. Knows no series and no cache.
+// Reads one time of a WRF output file into HydrometeorFields. Heights and dry-air density come from
+// the file's own state. Each hydrometeor's mixing ratio is multiplied by that density and remapped
+// to a regular height grid. This code does not depend on series of files or on the cache.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@
 
 namespace thunderhead::storm_files {
 
-// Reads record `record` of the file that `metadata` describes. `grid` is the storm's height grid,
-// chosen from this time's heights if absent; a time whose condensate reaches beyond it gets more
-// cells of the same spacing. Errors name the file, the variable and what to do; there is never half
-// a result.
+// Reads record `record` of the file that `metadata` describes. `grid` is the storm's height grid.
+// If absent, the grid is chosen from this time's heights. A time whose condensate reaches beyond
+// the grid gets more cells of the same spacing. Errors name the file, the variable and what to do.
+// There is never a partial result.
 absl::StatusOr<volume::HydrometeorFields> ReadWrfTime(const WrfMetadata& metadata,
                                                       std::size_t record,
                                                       const std::optional<VerticalGrid>& grid,
                                                       const ReadCheckpoint& checkpoint);
 
-// The height grid that ReadWrfTime would choose for that record.
+// Returns the height grid that ReadWrfTime would choose for that record.
 absl::StatusOr<VerticalGrid> ReadWrfVerticalGrid(const WrfMetadata& metadata, std::size_t record);
 
 }  // namespace thunderhead::storm_files

@@ -19,7 +19,7 @@
 namespace thunderhead::storm_store {
 namespace {
 
-// How far a set of the data leaves the finest one, by which it was simplified.
+// One data set, and the tolerance with which it was simplified from the finest one.
 struct Detail {
   char letter;
   double tolerance_m;
@@ -28,22 +28,25 @@ constexpr std::array kDetails = {Detail{'f', 40.0}, Detail{'h', 200.0}, Detail{'
                                  Detail{'l', 5000.0}, Detail{'c', 25'000.0}};
 
 constexpr int kTexels = 1024;  // along the longer side
-// Lines go on beyond the domain by its longer side, within these limits.
+// Lines continue beyond the domain by its longer side, within these limits.
 constexpr double kLeastMargin_m = 100e3;
 constexpr double kMostMargin_m = 200e3;
 
-// Islands and lakes of a smaller area, in texels, are left out: their lines would fill them.
+// Islands and lakes of a smaller area, in texels, are left out, because their lines would fill
+// them.
 constexpr double kLeastArea_texels = 64.0;
 
-// The data's lines are straight in degrees; shorter pieces keep them so on the map.
+// The data's lines are straight in degrees. Splitting them into pieces keeps them straight in
+// degrees on the map.
 constexpr double kLongestPiece_deg = 0.1;
 // A piece that is longer on the map goes around the Earth, from one side of the map to the other.
 constexpr double kLongestPiece_m = 50e3;
 
-// Places of the grid, along each side, whose bins are read, and those beside them.
+// Number of probed places along each side of the grid. The bins there and their neighbours are
+// read.
 constexpr int kProbes = 256;
 
-// Borders between states paint over a smaller share of the ground.
+// Borders between states cover a smaller share of the ground's colour.
 constexpr float kInnerStrength = 0.6F;
 
 std::string FileOf(const std::string& folder, const char* kind, char letter) {
@@ -70,7 +73,7 @@ struct Bins {
   }
 };
 
-// The bins that hold a part of the grid, and those beside them.
+// Returns the bins that hold a part of the grid, and their neighbours.
 std::vector<int> BinsUnder(const Bins& bins, const volume::MapProjection& projection,
                            const volume::BorderGrid& grid) {
   std::vector<bool> wanted(static_cast<std::size_t>(bins.columns) *
@@ -99,7 +102,7 @@ std::vector<int> BinsUnder(const Bins& bins, const volume::MapProjection& projec
   return found;
 }
 
-// One of the binned files, with what it says of its segments.
+// One of the binned files, with the data about its segments.
 class BinnedFile {
  public:
   static absl::StatusOr<BinnedFile> Open(const std::string& path) {
@@ -130,7 +133,7 @@ class BinnedFile {
   const Bins& AllBins() const { return bins_; }
   bool Has(const std::string& variable) const { return file_.HasVariable(variable); }
 
-  // Whole numbers, one for each of something.
+  // Reads a variable of whole numbers.
   absl::StatusOr<std::vector<int>> Integers(const std::string& variable) const {
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> read, file_.ReadDoubles(variable));
     std::vector<int> values;
@@ -216,8 +219,8 @@ class BinnedFile {
     return Range{static_cast<std::size_t>(first), static_cast<std::size_t>(first + count)};
   }
 
-  // Of 65535 parts of a bin's side. The files have them as signed shorts, one of which is netCDF's
-  // code for a missing value and read as such.
+  // Converts 1/65535 parts of a bin's side to degrees. The files store them as signed shorts. One
+  // of these values is netCDF's code for a missing value and is read as NaN.
   double Degrees(float stored) const {
     const int part = std::isnan(stored) ? -32'767 : static_cast<int>(stored);
     return bins_.side_deg * static_cast<std::uint16_t>(part) / 65'535.0;
@@ -230,7 +233,7 @@ class BinnedFile {
   std::vector<int> first_point_;
 };
 
-// A line between points in degrees on the map, in as many parts as the map's seams leave.
+// Adds a line between points in degrees to the map, split where it crosses the map's seams.
 void AddLine(const std::vector<volume::EarthPlace>& points, const volume::MapProjection& projection,
              float strength, std::vector<volume::BorderLine>& lines) {
   volume::BorderLine line{{}, strength};
@@ -264,14 +267,14 @@ void AddLine(const std::vector<volume::EarthPlace>& points, const volume::MapPro
 absl::Status AddCoasts(const std::string& path, const volume::MapProjection& projection,
                        const volume::BorderGrid& grid, std::vector<volume::BorderLine>& lines) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const BinnedFile file, BinnedFile::Open(path));
-  // Points from bit 9, level from bit 6; the rest is for filling.
+  // The number of points begins at bit 9, the level at bit 6. The other bits are for filling.
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<int> points,
                                file.Integers("Embedded_npts_levels_exit_entry_for_a_segment"));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<int> polygons, file.Integers("Id_of_GSHHS_ID"));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> areas_km2,
                                file.Doubles("The_km_squared_area_of_polygons"));
   if (points.size() != file.Segments() || polygons.size() != file.Segments()) return file.Damaged();
-  constexpr int kGroundedIce = 6;  // below Antarctica's ice shelves, of whose front there is a line
+  constexpr int kGroundedIce = 6;  // under Antarctica's ice shelves, whose front has its own line
   std::vector<int> levels;
   for (int& embedded : points) {
     levels.push_back((embedded >> 6) & 7);

@@ -1,6 +1,7 @@
 // Coasts and borders of the whole Earth from the data package GSHHG, in the binned netCDF files
-// that GMT reads (Wessel and Smith 1996, J. Geophys. Res. 101, 8741-8743; on Debian gmt-gshhg-low
-// and gmt-gshhg-high): read for a storm with a place on Earth. Safe to call from any thread.
+// that GMT reads (Wessel and Smith 1996, J. Geophys. Res. 101, 8741-8743). Debian's packages are
+// gmt-gshhg-low and gmt-gshhg-high. The data are read for a storm with a place on Earth. This code
+// is safe to call from any thread.
 #pragma once
 
 #include <map>
@@ -19,24 +20,24 @@
 
 namespace thunderhead::storm_store {
 
-// Where Debian's packages put the files.
+// The folder in which Debian's packages install the files.
 inline constexpr char kBorderFolder[] = "/usr/share/gmt-gshhg";
 
-// The part of the world's plane that lines are drawn on around the columns of a grid.
+// Returns the part of the world's plane around the columns of a grid on which lines are drawn.
 volume::BorderGrid BorderGridOf(const volume::RegularGrid& grid);
 
 class BorderData {
  public:
-  // The data in that folder; null if there are none.
+  // Returns the data in that folder, or null if there are none.
   static std::shared_ptr<BorderData> Find(const std::string& folder);
 
-  // The lines around a storm's grid, of the coarsest data that are as fine as the map's texels.
-  // Null for a storm without a map projection, and where the data cannot be read, which the log
-  // tells. A map that somebody holds is given again.
+  // Returns the lines around a storm's grid, from the coarsest data that are as fine as the map's
+  // texels. Returns null for a storm without a map projection. If the data cannot be read, returns
+  // null and logs the error. A map that is still in use is returned again.
   std::shared_ptr<const volume::BorderMap> MapOf(const StormInfo& storm,
                                                  const volume::RegularGrid& grid);
 
-  // The lines on that grid.
+  // Returns the lines on that grid.
   absl::StatusOr<std::vector<volume::BorderLine>> LinesOf(const volume::MapProjection& projection,
                                                           const volume::BorderGrid& grid) const;
 
@@ -48,7 +49,7 @@ class BorderData {
       : folder_(std::move(folder)), details_(std::move(details)) {}
 
   const std::string folder_;
-  const std::string details_;  // letters of those in the folder, the finest first
+  const std::string details_;  // letters of the data sets in the folder, the finest first
   std::mutex mutex_;           // held while a map is made
   std::map<Key, std::weak_ptr<const volume::BorderMap>> maps_;
 };

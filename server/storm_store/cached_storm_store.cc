@@ -12,7 +12,7 @@
 
 namespace thunderhead::storm_store {
 
-// Ends the store's threads when its owner lets it go.
+// An owner that ends the store's threads when it is destroyed.
 class CachedStormStore::Handle final : public StormStore {
  public:
   explicit Handle(std::shared_ptr<CachedStormStore> store) : store_(std::move(store)) {
@@ -191,7 +191,7 @@ std::optional<std::chrono::steady_clock::time_point> CachedStormStore::OldestUnu
 }
 
 void CachedStormStore::DropOldestUnused() {
-  std::shared_ptr<const volume::HydrometeorFields> dropped;  // freed after the lock
+  std::shared_ptr<const volume::HydrometeorFields> dropped;  // freed after the lock is released
   const Lock lock(mutex_);
   dropped = cache_.TakeOldestUnused();
 }

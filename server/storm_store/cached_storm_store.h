@@ -1,10 +1,11 @@
-// The store behind what StormStore::Open gives: a catalogue, a cache, threads that read what is
-// asked for, and one that reads ahead. A time is read once however many callers ask for it; reads
-// that a caller waits for go before read-ahead, and before files that the catalogue looks at.
+// The implementation of the store that StormStore::Open returns. It has a catalogue, a cache,
+// threads that read requested times, and a thread that reads ahead. A time is read once, however
+// many callers ask for it. Reads with a waiting caller have priority over read-ahead, and over
+// files that the catalogue examines.
 //
-// Reads go one after another, since several at once would need the memory of several. Only while
-// one takes long does another begin beside it, of another file. A storage that hangs holds up the
-// threads that read from it, but never the last one, and no caller beyond the deadline.
+// Reads run one after another, because several at once would need the memory of several. Only while
+// one takes long does another read begin, of another file. A storage that hangs blocks the threads
+// that read from it, but never the last one. No caller waits beyond the deadline.
 #pragma once
 
 #include <array>
@@ -32,10 +33,11 @@ class CachedStormStore final : public StormStore,
                                public std::enable_shared_from_this<CachedStormStore>,
                                private base::MemoryBudget::Cache {
  public:
-  // Reads nothing until it is Owned.
+  // Creates a store that reads nothing until it is passed to Owned.
   CachedStormStore(const std::vector<CataloguedStorm>& storms, const StormStoreOptions& options);
 
-  // The store, whose threads run until the owner destroys it; one that hangs keeps it in memory.
+  // Returns an owner of the store. The store's threads run until the owner is destroyed. A thread
+  // that hangs keeps the store in memory.
   static std::unique_ptr<StormStore> Owned(std::shared_ptr<CachedStormStore> store);
 
   CachedStormStore(const CachedStormStore&) = delete;
@@ -54,16 +56,17 @@ class CachedStormStore final : public StormStore,
   std::size_t PendingReads() const override;
   std::optional<HungRead> Hung() const override;
 
-  // Makes the storms of the paths those `found`, and tells the listener what has changed. Storms
-  // that were added stay. A time whose file is gone stays while somebody holds its fields.
+  // Replaces the storms of the paths by those `found`, and tells the listener what has changed.
+  // Storms that were added stay. A time whose file is gone stays while its fields are in use.
   void Renew(const std::vector<CataloguedStorm>& found);
 
-  // Waits until no caller waits for a read, but not for ever.
+  // Waits until no caller waits for a read, up to a time limit.
   void LetReadersGoFirst();
 
-  // Renews the store's storms from now on, as `scan` finds them.
+  // Keeps the store's storms up to date from now on, with the results of `scan`.
   void Follow(std::unique_ptr<CatalogueScan> scan);
-  // Returns whether the first search has ended, after LiveCatalogueOptions::first_search at most.
+  // Waits for the first search, LiveCatalogueOptions::first_search at most. Returns whether it has
+  // ended.
   bool AwaitFirstSearch();
   bool IsSearching() const override;
 
@@ -72,92 +75,92 @@ class CachedStormStore final : public StormStore,
   using Fields = absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>>;
   enum class Purpose { kAsked, kAhead };
 
-  // A caller's listener, which is removed when the caller stops waiting.
+  // A caller's listener. It is removed when the caller stops waiting.
   struct Listener {
     std::mutex mutex;  // held during a call; no lock is taken with it
     ReadProgress progress;
   };
 
-  // A thread's read under way.
+  // A thread's read in progress.
   struct Activity {
-    bool reads = false;  // and does not pause
+    bool reads = false;  // false while it pauses
     std::string file;
-    std::uint64_t device = 0;  // of that file
+    std::uint64_t device = 0;  // device of that file
     std::chrono::steady_clock::time_point began;
-    std::chrono::steady_clock::time_point went_on;  // since when nothing has come
+    std::chrono::steady_clock::time_point went_on;  // time of the last progress
     bool told_of_hang = false;
   };
 
-  // The height grid of a storm, and the file of its first time when it was chosen.
+  // The height grid of a storm, and the file of its first time when the grid was chosen.
   struct ChosenGrid {
     storm_files::VerticalGrid grid;
     std::string path;
     std::uint64_t version = 0;
   };
 
-  // A storm and what the store keeps of it.
+  // A storm, and what the store keeps for it.
   struct Held {
     std::shared_ptr<const CataloguedStorm> storm;  // null: removed
     std::vector<int> numbers;                      // one for each time, never used again
     int next_number = 0;
-    bool added = false;              // by Add, so not in the paths
+    bool added = false;              // added by Add, so not found under the paths
     std::optional<ChosenGrid> grid;  // the same for all times
 
     StormInfoPtr Info() const { return {storm, &storm->info}; }
   };
 
-  // A time and what it is read from, whatever becomes of the storm meanwhile.
+  // A time and its source. It stays valid if the storm changes meanwhile.
   struct Place {
     TimeKey key;
     std::shared_ptr<const CataloguedStorm> storm;
     std::size_t time = 0;  // index into the storm's times
   };
 
-  // A read that is due or in progress, shared by all callers that wait for it.
+  // A read that is queued or in progress, shared by all callers that wait for it.
   struct PendingRead {
     Place place;
     Purpose purpose = Purpose::kAsked;
-    Activity* activity = nullptr;  // of the thread that reads it, once it has begun
+    Activity* activity = nullptr;  // activity of the reading thread, once it has begun
     int waiters = 0;               // callers that wait
     std::vector<std::shared_ptr<Listener>> listeners;
     std::optional<Fields> result;
   };
 
-  // All below are called with `lock` held on mutex_ and return with it held.
+  // The functions below are called with `lock` held on mutex_ and return with it held.
   using Lock = std::unique_lock<std::mutex>;
   std::optional<std::size_t> PlaceOf(std::string_view id) const;
   absl::Status NoSuchStorm(std::string_view id) const;
   absl::StatusOr<Place> PlaceOf(std::string_view id, int time_index) const;
   std::optional<Place> PlaceOf(const TimeKey& key) const;
   std::shared_ptr<PendingRead> Begin(const Place& place, Purpose purpose);
-  // The read of that time that is pending, or another one. An error if it would wait behind a
-  // storage that hangs and is its own.
+  // Returns the pending read of that time, or a new one. Returns an error if a new read would wait
+  // behind another read that hangs on the same storage.
   absl::StatusOr<std::shared_ptr<PendingRead>> ReadOf(const Place& place);
-  // True if that read may begin beside those under way.
+  // Returns whether that read may begin in parallel to those in progress.
   bool MayBegin(const PendingRead& read) const;
   // Takes the first read that may begin, if there is one.
   std::shared_ptr<PendingRead> TakeDue();
-  // When another read may begin although this one has not ended.
+  // Returns when another read may begin although this one has not ended.
   std::chrono::steady_clock::time_point MayReadBesideAt(const Activity& activity) const;
-  // On a reading thread, whose activity is given.
+  // Reads a time on a reading thread, which passes its activity.
   void Read(Lock& lock, PendingRead& read, Activity& activity);
   Fields ReadFile(Lock& lock, PendingRead& read, Activity& activity);
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
                  const ReadProgress& progress);
   std::optional<HungRead> HungIn(const Activity& activity) const;
-  // The same; the log tells of each once.
+  // Like HungIn, but logs each hang once.
   std::optional<HungRead> NoteHang(Activity& activity) const;
   base::TimeSource::Clock::time_point Now() const { return options_.time->Now(); }
-  // When the activity hangs unless it goes on.
+  // Returns when the activity counts as hanging unless it makes progress.
   std::chrono::steady_clock::time_point HangsAt(const Activity& activity) const;
-  // The read that hangs and keeps `read` from going on: itself, or one of its storage before it
-  // begins.
+  // Returns the hanging read that blocks `read`. That is `read` itself or, before it begins,
+  // another read on its storage.
   std::optional<HungRead> HoldsUp(const PendingRead& read);
-  // A read that callers wait for and that hangs, of the storage of that place.
+  // Returns a requested read that hangs on the storage of that place.
   std::optional<HungRead> HungOnStorageOf(const Place& place);
   absl::StatusOr<std::optional<storm_files::VerticalGrid>> VerticalGridOf(Lock& lock,
                                                                           const Place& place);
-  // Makes it the storm's, if that has none.
+  // Makes the grid the storm's, unless the storm has one.
   void Choose(const Place& place, const storm_files::VerticalGrid& grid);
   void WantAfter(const Place& place);
   std::optional<Place> NextWanted();
@@ -166,12 +169,12 @@ class CachedStormStore final : public StormStore,
   StormChange Replace(std::size_t place, std::optional<CataloguedStorm> found);
   std::string FreeId(const std::string& wanted, std::size_t place) const;
 
-  // When a file that has just been replaced may be described.
+  // Returns the delay after which a file that has just been replaced may be described.
   std::chrono::milliseconds ReplacedRetryAfter() const;
   absl::Status Checkpoint(PendingRead& read, Activity& activity, double share);
-  // Until the end, what is due.
+  // Runs queued reads until the end.
   void ReadDue(Activity& activity);
-  // Waits until no other read that callers wait for is under way, or the end.
+  // Waits until no other requested read is in progress, or until the end.
   void LetOthersEnd(Lock& lock, Activity& activity);
   void ReadAhead();
 
@@ -185,24 +188,24 @@ class CachedStormStore final : public StormStore,
 
   mutable std::mutex mutex_;
   std::deque<Held> storms_;          // elements are never removed: indices stay
-  std::vector<std::size_t> order_;   // of those that are listed
+  std::vector<std::size_t> order_;   // places of the listed storms
   std::condition_variable changed_;  // a read ended, a time was wanted, a caller waits, the first
                                      // search or the store ended
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
-  std::deque<std::shared_ptr<PendingRead>> asked_;  // due, in order
-  std::array<Activity, 4> reading_asked_;           // of each thread that reads what is asked for
+  std::deque<std::shared_ptr<PendingRead>> asked_;  // queued, in order
+  std::array<Activity, 4> reading_asked_;           // one per thread that reads requested times
   Activity reading_ahead_;
   std::vector<TimeKey> wanted_;  // to be read ahead, in order
   int asked_reads_ = 0;
   bool ending_ = false;
-  bool searching_ = false;  // for the first time
+  bool searching_ = false;  // true during the first search
 
-  std::mutex listening_;  // held while the listener is called; before mutex_
+  std::mutex listening_;  // held while the listener is called; locked before mutex_
   CatalogueListener listener_;
-  bool following_ = false;  // changes are news
+  bool following_ = false;  // changes are reported
 
-  // From Start to End.
+  // These exist from Start to End.
   std::unique_ptr<LiveCatalogue> live_;
   std::optional<base::MemoryBudget::Member> member_;
   std::vector<base::LooseThread> threads_;

@@ -1,4 +1,4 @@
-// How the store reads: what a caller waits for, and ahead.
+// How the store reads the times that callers wait for, and reads ahead.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -24,21 +24,21 @@ namespace fs = std::filesystem;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
-// After this time another read may begin beside one.
+// After a read has taken this long, another may begin in parallel.
 constexpr std::chrono::seconds kTakesLong{5};
 
-// When to look again whether a storage that held up read-ahead answers.
+// How often to check whether a storage that blocked read-ahead answers again.
 constexpr std::chrono::milliseconds kLookAgain{500};
 
-// When to try again what a storage that hangs has not given.
+// Retry delay for a time on a storage that hangs.
 constexpr std::chrono::seconds kRetryAfter{10};
 
-// Reading and describing a file that has settled.
+// Estimated time to read and describe a file that has settled.
 constexpr std::chrono::seconds kToDescribe{1};
 
 constexpr std::string_view kReplaced = "FILE_REPLACED";
 
-// Saturates.
+// Returns the product, or the largest value if it overflows.
 std::size_t SaturatingProduct(std::size_t a, std::size_t b) {
   constexpr std::size_t kMax = std::numeric_limits<std::size_t>::max();
   return a != 0 && b > kMax / a ? kMax : a * b;
@@ -47,14 +47,14 @@ std::size_t SaturatingProduct(std::size_t a, std::size_t b) {
 // Memory that reading a time takes, estimated from the storm's description alone.
 struct ReadMemory {
   std::size_t fields = 0;
-  std::size_t scratch = 0;  // until it is read
+  std::size_t scratch = 0;  // needed only while reading
 };
 
 ReadMemory MemoryFor(const storm_files::StormFile& file,
                      const std::optional<storm_files::VerticalGrid>& grid) {
-  // A field is a float and half a float of size a cell; of the air's motion there are two bytes.
+  // A field takes a float and half a float of size a cell. The air's motion takes two bytes.
   const std::size_t per_cell = file.fields.size() * 6 + 2;
-  // Pressure, temperature, heights and the like, a float a cell of the file each.
+  // Pressure, temperature, heights and similar arrays take a float a cell of the file each.
   constexpr std::size_t kScratch = 10 * sizeof(float);
   const auto columns = SaturatingProduct(static_cast<std::size_t>(file.cells.x),
                                          static_cast<std::size_t>(file.cells.y));
@@ -74,8 +74,8 @@ absl::Status Hangs(const HungRead& hung) {
       {.reason = "STORAGE_HANGS", .metadata = {{"file", hung.file}}, .retry_after = kRetryAfter});
 }
 
-// An error if the path leads to another file than the one that was described, whose times may be
-// others.
+// Returns an error if the path now leads to another file than the one that was described, because
+// its times may differ.
 absl::Status CheckNotReplaced(const storm_files::StormFile& file,
                               std::chrono::milliseconds retry_after) {
   const std::optional<base::FileStamp> now = file.id != 0 ? base::StampOf(file.path) : std::nullopt;
@@ -88,15 +88,15 @@ absl::Status CheckNotReplaced(const storm_files::StormFile& file,
        .retry_after = retry_after});
 }
 
-// True for a file that lies on one storage with another of that path and device: on one device or,
-// where that is not known, in one folder.
+// Returns whether a file is on the same storage as a file with that path and device. Files on one
+// device are, or files in one folder if the device is unknown.
 bool AreOfOneStorage(const storm_files::StormFile& file, const std::string& path,
                      std::uint64_t device) {
   if (file.device != 0 && device != 0) return file.device == device;
   return fs::path(file.path).parent_path() == fs::path(path).parent_path();
 }
 
-// Fields with their share of the budget, which lasts as long as somebody holds them.
+// Fields with their share of the budget, which lasts as long as the fields are in use.
 struct CountedFields {
   volume::HydrometeorFields fields;
   base::MemoryReservation reserved;
@@ -114,7 +114,7 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> CachedStormStor
       THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<PendingRead> read, ReadOf(place));
       fields = WaitFor(lock, read, progress);
     }
-    // The read may have been a read-ahead that was cancelled just now: try again.
+    // The read may have been a read-ahead that was cancelled just now, so try again.
     if (absl::IsCancelled(fields.status()) && !ending_) continue;
     if (base::DetailsOf(fields.status()).reason == kReplaced) {
       // The other file may have been described while this one was being read.
@@ -159,11 +159,12 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
                                                    const ReadProgress& progress) {
   const auto listener = std::make_shared<Listener>();
   listener->progress = progress;
-  // Keeps it alive after its removal from pending_, where `read` may lie.
+  // Keeps the read alive after its removal from pending_, because `read` may be a reference into
+  // it.
   const std::shared_ptr<PendingRead> shared = read;
   ++shared->waiters;
   if (progress) shared->listeners.push_back(listener);
-  changed_.notify_all();  // the reading thread; a paused read-ahead of this time may now go on
+  changed_.notify_all();  // wakes the reading thread, or a paused read-ahead
   while (!shared->result.has_value()) {
     const std::optional<HungRead> hung = HoldsUp(*shared);
     if (ending_ || hung.has_value()) {
@@ -240,7 +241,7 @@ std::optional<HungRead> CachedStormStore::NoteHang(Activity& activity) const {
 }
 
 steady_clock::time_point CachedStormStore::HangsAt(const Activity& activity) const {
-  // Once it begins or goes on, whoever waits looks again.
+  // Waiting callers check again once the activity begins or makes progress.
   if (!activity.reads) return Now() + options_.read_deadline;
   return activity.went_on + options_.read_deadline;
 }
@@ -260,7 +261,7 @@ void CachedStormStore::ReadDue(Activity& activity) {
       Read(lock, *read, activity);
       continue;
     }
-    // A read that is due may begin once those under way have taken long.
+    // A queued read may begin once those in progress have taken long.
     std::optional<steady_clock::time_point> next;
     if (!asked_.empty()) {
       for (const Activity& other : reading_asked_) {
@@ -312,14 +313,14 @@ void CachedStormStore::ReadAhead() {
 void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   const TimeKey key = read.place.key;
   const bool is_asked = read.purpose == Purpose::kAsked;
-  // The caller may have given up meanwhile.
+  // The caller may have stopped waiting meanwhile.
   Fields fields = absl::CancelledError("nobody waits for it any more");
   if (!is_asked || read.waiters > 0) {
     const storm_files::StormFile& file = FileOf(*read.place.storm, read.place.time);
     activity = {
         .reads = true, .file = file.path, .device = file.device, .began = Now(), .went_on = Now()};
     read.activity = &activity;
-    changed_.notify_all();  // those who wait for it: from now on it may hang
+    changed_.notify_all();  // for waiting callers: it may hang from now on
     fields = ReadFile(lock, read, activity);
     activity.reads = false;
     if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
@@ -387,7 +388,7 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   const bool others_read = std::ranges::count(reading_asked_, true, &Activity::reads) > 1;
   if (absl::IsResourceExhausted(fields.status()) && !base::DetailsOf(fields.status()).permanent &&
       read.purpose == Purpose::kAsked && others_read) {
-    // They may hold the memory that this read needs.
+    // The other reads may hold the memory that this read needs.
     LetOthersEnd(lock, activity);
     lock.unlock();
     fields = read_counted();
@@ -399,9 +400,9 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   return fields;
 }
 
-// The storm's height grid comes from its first time, whichever time is read first, so that a time's
-// picture does not depend on which times were viewed before. It stays when an earlier time arrives
-// later. Nothing if this is the first time itself, or if the first cannot be read.
+// Returns the height grid of the storm's first time, whichever time is read first. A time's image
+// therefore does not depend on which times were viewed before. The grid stays when an earlier time
+// arrives later. Returns nothing if this is the first time itself, or if the first cannot be read.
 absl::StatusOr<std::optional<storm_files::VerticalGrid>> CachedStormStore::VerticalGridOf(
     Lock& lock, const Place& place) {
   const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;
@@ -427,7 +428,7 @@ absl::StatusOr<std::optional<storm_files::VerticalGrid>> CachedStormStore::Verti
 
 void CachedStormStore::Choose(const Place& place, const storm_files::VerticalGrid& grid) {
   std::optional<ChosenGrid>& chosen = storms_[place.key.storm].grid;
-  // Of a storm that has been replaced meanwhile it is not that of what is there now.
+  // If the storm has been replaced meanwhile, the grid does not belong to the current storm.
   if (chosen.has_value() || !PlaceOf(place.key).has_value()) return;
   const CataloguedStorm& storm = *place.storm;
   const storm_files::StormFile& first = storm.files[storm.sources.front().file];
@@ -474,7 +475,8 @@ void CachedStormStore::WantAfter(const Place& place) {
   int ahead = 0;
   for (auto next = at + 1; next != held.numbers.end() && ahead < options_.read_ahead;
        ++next, ++ahead) {
-    // Do not read a time that would evict the one in view; all times are taken to be equally large.
+    // A time must not be read ahead if it would evict the time in view. All times are assumed to be
+    // equally large.
     bytes += cache_.NewestBytes();
     if (bytes > options_.byte_budget) break;
     wanted_.push_back({place.key.storm, *next});

@@ -1,4 +1,4 @@
-// How the store follows its folders.
+// How the store follows changes in its folders.
 #include <algorithm>
 #include <chrono>
 #include <set>
@@ -12,7 +12,8 @@
 namespace thunderhead::storm_store {
 namespace {
 
-// A storage that hangs must not end the catalogue for storms elsewhere.
+// The catalogue must not wait longer, because a storage that hangs must not stop it for other
+// storms.
 constexpr std::chrono::seconds kLongestCourtesy{10};
 
 void Log(const StormChange& change) {
@@ -49,7 +50,7 @@ void CachedStormStore::TakeFound(const CatalogueScan::Result& found) {
     const std::lock_guard lock(listening_);
     following_ = true;
   }
-  // The only storm may be a file that is still being written.
+  // The only storm may be a file that is still being written, so the search continues.
   if (found.storms.empty() && found.look_again_at.has_value()) return;
   {
     const Lock lock(mutex_);
@@ -94,7 +95,7 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
       const StormChange change = Replace(place, std::move(storm));
       if (change.before != change.after) changes.push_back(change);
     };
-    // First those that go, which leave their ids to others.
+    // Removes storms first, so that other storms can take their ids.
     for (std::size_t place = 0; place < known.size(); ++place) {
       if (match[place].has_value()) place_of[*match[place]] = place;
       if (known[place] != nullptr && !match[place].has_value()) take(place, std::nullopt);
@@ -111,7 +112,7 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
       take(*place_of[i], found[i]);
       order.push_back(*place_of[i]);
     }
-    // Then those that are only in memory, and those that were added.
+    // Storms that are only in memory, and storms that were added, come last.
     for (const std::size_t place : order_) {
       const bool stays = storms_[place].storm != nullptr;
       if (stays && std::ranges::find(order, place) == order.end()) order.push_back(place);
@@ -127,7 +128,7 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
 }
 
 // Replaces the storm at `place`, if there is one, by `found`. Times that `found` lacks stay while
-// somebody holds them.
+// they are in use.
 StormChange CachedStormStore::Replace(std::size_t place, std::optional<CataloguedStorm> found) {
   Held& held = storms_[place];
   StormChange change;
@@ -162,7 +163,7 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
     cache_.Remove({place, number});
     std::erase(wanted_, TimeKey{place, number});
   }
-  // Another run may have other levels.
+  // Another run may have other levels, so the grid is chosen again.
   const auto is_first = [&](const storm_files::StormFile& file) {
     return file.path == held.grid->path && file.version != held.grid->version;
   };
@@ -176,7 +177,7 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
   return change;
 }
 
-// The id for the storm at `place`, or one with a number behind it if another storm has it.
+// Returns the id for the storm at `place`. A number is appended if another storm has the id.
 std::string CachedStormStore::FreeId(const std::string& wanted, std::size_t place) const {
   std::string id = wanted;
   const auto is_taken = [&] {

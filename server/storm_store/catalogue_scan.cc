@@ -14,7 +14,7 @@
 namespace thunderhead::storm_store {
 namespace {
 
-// True if the same file has got more times. With the same ones it was written anew.
+// Returns whether the same file has got more times. A file with the same times was written anew.
 bool GoesOn(const storm_files::StormFile& before, const storm_files::StormFile& after) {
   return after.times.size() > before.times.size() &&
          std::ranges::equal(before.times, std::span(after.times).first(before.times.size()));
@@ -93,16 +93,17 @@ void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, 
   if (fresh || known.stamp != stamp) {
     const bool same_file = !fresh && known.stamp.file == stamp.file;
     const bool grows = same_file && known.stamp.size_bytes <= stamp.size_bytes;
-    // The times of a file whose place another has taken are there until that is read. One that is
-    // still being written then was not moved here whole: until it is complete there are none.
+    // If a file replaced another one in one step, the old times stay listed until the new file has
+    // been read. If the new file is still being written, it was not moved here whole, and nothing
+    // is listed until it is complete.
     const bool written = same_file && known.replaces;
     if ((same_file && !grows) || written) Lose(known);
     known.replaces = !same_file && known.description.has_value();
     known.stamp = stamp;
     known.unchanged_since = now;
-    // A file that was there before the first scan may have rested for long. Those that have not are
-    // all waited for from now on, so that a folder's files settle together: the first of them alone
-    // would be a storm of its own name.
+    // A file that was there before the first scan may have been unchanged for long. All other files
+    // start their settling time now, so that a folder's files settle together. If the first of them
+    // settled alone, it would become a storm with a different name.
     known.settled =
         fresh && scans_ == 1 &&
         now - base::UnchangedSince(stamp.changed_ns, Time::min(), now) >= options_.settle;
@@ -121,7 +122,7 @@ void CatalogueScan::Open(const std::string& path, Time now, Known& known) {
   known.tried_at = now;
   options_.before_file();
   absl::StatusOr<storm_files::StormFile> file = DescribeFile(path, options_.formats);
-  // Read while it was written: not what it will be.
+  // The file was being written while it was read, so its description is out of date.
   if (StampOf(path) != known.stamp) {
     known.tried_at.reset();
     known.settled = false;

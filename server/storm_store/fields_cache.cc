@@ -37,7 +37,7 @@ bool FieldsCache::InUse(const TimeKey& key) const {
 }
 
 void FieldsCache::RemoveStorm(std::size_t storm) {
-  // Keys are ordered by storm.
+  // The loop works because keys are ordered by storm.
   auto at = entries_.lower_bound(TimeKey{storm, 0});
   while (at != entries_.end() && at->first.storm == storm) Remove(TimeKey((at++)->first));
 }

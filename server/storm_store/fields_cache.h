@@ -1,5 +1,6 @@
-// A cache of storms' times with a byte budget; the least recently used are evicted first, but none
-// that somebody else holds, as that would free nothing. Not thread-safe.
+// A cache of storms' times with a byte budget. It evicts the least recently used times first. It
+// does not evict times that are in use elsewhere, because that would free nothing. It is not
+// thread-safe.
 #pragma once
 
 #include <chrono>
@@ -14,8 +15,8 @@
 
 namespace thunderhead::storm_store {
 
-// A time of a storm: its place in the store, and the time's number there, which stays when other
-// times come and go.
+// A time of a storm: the storm's place in the store, and the time's number there. The number does
+// not change when other times are added or removed.
 struct TimeKey {
   std::size_t storm = 0;
   int time = 0;
@@ -30,24 +31,26 @@ class FieldsCache {
  public:
   explicit FieldsCache(std::size_t byte_budget) : byte_budget_(byte_budget) {}
 
-  // The fields, which become the most recently used; null if they are not cached.
+  // Returns the fields, which become the most recently used. Returns null if they are not cached.
   std::shared_ptr<const volume::HydrometeorFields> Use(const TimeKey& key);
 
   bool Holds(const TimeKey& key) const { return entries_.contains(key); }
 
-  // Caches `fields` as the most recently used and evicts others until the budget is met or none is
+  // Caches `fields` as the most recently used. Evicts others until the budget is met or none is
   // left that may be evicted.
   void Insert(const TimeKey& key, std::shared_ptr<const volume::HydrometeorFields> fields);
 
   // Caches `fields` as less recently used than the newest entry (the one in view), if both fit.
   void InsertAhead(const TimeKey& key, std::shared_ptr<const volume::HydrometeorFields> fields);
 
-  // True if somebody else holds the fields too.
+  // Returns whether the fields are also in use outside the cache.
   bool InUse(const TimeKey& key) const;
 
-  // When the least recently used of those that nobody else holds was used; none if there is none.
+  // Returns when the least recently used of the entries that are not in use was used, or nothing if
+  // there is none.
   std::optional<std::chrono::steady_clock::time_point> OldestUnused() const;
-  // Evicts that one, if there is one; returns it, as freeing much memory takes a while.
+  // Evicts that entry, if there is one. Returns its fields, because freeing much memory takes a
+  // while.
   std::shared_ptr<const volume::HydrometeorFields> TakeOldestUnused();
 
   // Evicts one time, if it is cached.
@@ -58,7 +61,7 @@ class FieldsCache {
 
   std::size_t Bytes() const { return bytes_; }
 
-  // Bytes of the most recently used entry.
+  // Returns the bytes of the most recently used entry.
   std::size_t NewestBytes() const;
 
  private:
@@ -71,7 +74,7 @@ class FieldsCache {
 
   void Add(const TimeKey& key, std::shared_ptr<const volume::HydrometeorFields> fields,
            std::list<TimeKey>::iterator before);
-  // The least recently used that nobody else holds, or the end.
+  // Returns the least recently used entry that is not in use elsewhere, or the end.
   std::list<TimeKey>::const_reverse_iterator FindOldestUnused() const;
   void Shrink();
 

@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Events come in bursts, and a scan looks at every file.
+// Events come in bursts, and a scan examines every file, so there is a pause between scans.
 constexpr milliseconds kShortestPause{300};
 
 }  // namespace
@@ -61,11 +61,11 @@ void LiveCatalogue::Running::Scan() {
   if (!complaint.empty()) spdlog::info("the folders of storms can be listed again");
   complaint.clear();
   newest = *std::move(result);
-  // Also without a change: somebody may have left what was deleted.
+  // The store is also renewed without a change, because a deleted time may no longer be in use.
   renew(newest);
 }
 
-// True if there is a folder that was not watched during the scan.
+// Returns whether there is a folder that was not watched during the scan.
 bool LiveCatalogue::Running::WatchFolders() {
   bool any = false;
   for (const std::string& folder : newest.folders) any = events.Watch(folder) || any;

@@ -1,5 +1,6 @@
-// Keeps a store's storms those of its folders, on a thread of its own: scans them at once, after
-// the kernel's events, when a file that was written may be complete, and now and then.
+// Keeps a store's storms in step with its folders, on a separate thread. It scans the folders at
+// the start and after the kernel's events. It also scans when a file that was being written may be
+// complete, and at regular intervals.
 #pragma once
 
 #include <atomic>
@@ -17,13 +18,13 @@ namespace thunderhead::storm_store {
 
 class LiveCatalogue {
  public:
-  // Takes the result of each scan, whose storms are all that there are now.
+  // A function that takes the result of each scan, with all storms that exist now.
   using Renew = std::function<void(const CatalogueScan::Result&)>;
 
   // `renew` must own what it uses. `time` must outlive the thread.
   LiveCatalogue(std::unique_ptr<CatalogueScan> scan, const LiveCatalogueOptions& options,
                 const base::TimeSource& time, Renew renew);
-  // Waits for a scan under way, unless it hangs.
+  // Waits for a scan in progress, unless it hangs.
   ~LiveCatalogue();
   LiveCatalogue(const LiveCatalogue&) = delete;
   LiveCatalogue& operator=(const LiveCatalogue&) = delete;
@@ -31,7 +32,7 @@ class LiveCatalogue {
  private:
   using Time = CatalogueScan::Time;
 
-  // Belongs to the thread, which may outlive this.
+  // The thread's state. The thread may outlive the LiveCatalogue.
   struct Running {
     void Run();
     void Scan();
@@ -44,7 +45,7 @@ class LiveCatalogue {
     const std::unique_ptr<CatalogueScan> scan;
     CatalogueScan::Result newest = {};
     base::FolderEvents events = {};
-    std::string complaint = {};  // logged last
+    std::string complaint = {};  // the message that was logged last
     std::atomic<bool> stopping = false;
   };
 

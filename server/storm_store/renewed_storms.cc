@@ -31,7 +31,7 @@ void InsertDeleted(const CataloguedStorm& from, std::size_t time, CataloguedStor
 
 std::vector<std::optional<std::size_t>> MatchStorms(
     const std::vector<const CataloguedStorm*>& known, const std::vector<CataloguedStorm>& found) {
-  // Most files in common first; of equal ones the earlier.
+  // Pairs are sorted by the number of common files, then by their order.
   std::vector<std::tuple<std::size_t, std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < known.size(); ++k) {
     if (known[k] == nullptr) continue;

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Bounds of the walk below one path that the user gave.
+// Limits of the search below one path that the user gave.
 constexpr int kDeepestFolder = 8;
 constexpr std::size_t kMostEntries = 200'000;  // files and folders
 constexpr std::chrono::minutes kLongestWalk{10};
@@ -34,16 +34,16 @@ constexpr std::chrono::minutes kLongestWalk{10};
 struct NamedStorm {
   std::string name;
   std::vector<storm_files::StormFile> files;
-  std::size_t path = 0;  // which of those the user gave
+  std::size_t path = 0;  // index of the user's path
 };
 
-// ISO 8601, e.g. "0001-01-01T00:40:00Z".
+// Formats a time as ISO 8601, e.g. "0001-01-01T00:40:00Z".
 std::string FormatValidTime(absl::Time time) {
   return absl::FormatTime("%E4Y-%m-%dT%H:%M:%SZ", time, absl::UTCTimeZone());
 }
 
-// An id that is safe in a URL and on a command line: in "wrfout_d01_0001-01-01_00:10:00" colons
-// become hyphens.
+// Returns an id that is safe in a URL and on a command line. Colons become hyphens in
+// "wrfout_d01_0001-01-01_00:10:00", for example.
 std::string IdFrom(const std::string& name) {
   constexpr std::size_t kLongest = 128;
   std::string id = name.substr(0, kLongest);
@@ -55,7 +55,8 @@ std::string IdFrom(const std::string& name) {
   return id.empty() ? "storm" : id;
 }
 
-// The file's name without a netCDF extension. Other dots stay: they may be part of a date.
+// Returns the file's name without a netCDF extension. Other dots stay, because they may be part of
+// a date.
 std::string NameOfFile(const fs::path& path) {
   const std::string extension = path.extension().string();
   const bool known = extension == ".nc" || extension == ".nc4" || extension == ".cdf";
@@ -68,14 +69,14 @@ std::string NameOfFolder(const fs::path& path) {
   return (error ? path : canonical).filename().string();
 }
 
-// Equal for files that may be parts of one run.
+// Returns a key that is equal for files that may be parts of one run.
 auto RunKey(const storm_files::StormFile& file) {
   return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
                          file.dy_m, file.run, file.fields);
 }
 
-// True for the files of one run, which overlap at most at their ends, as after a restart. Separate
-// runs on the same grid, such as an ensemble's, share most of their times.
+// Returns whether the files belong to one run, whose files overlap at most at their ends, as after
+// a restart. Separate runs on the same grid, such as an ensemble's, share most of their times.
 bool ContinueOneAnother(const std::vector<storm_files::StormFile>& files) {
   std::set<absl::Time> distinct;
   std::size_t total = 0;
@@ -88,11 +89,11 @@ bool ContinueOneAnother(const std::vector<storm_files::StormFile>& files) {
 
 // The rules by which a search follows symbolic links. All paths are canonical.
 struct LinkRules {
-  std::vector<fs::path> targets;    // links lead into these alone
+  std::vector<fs::path> targets;    // links may lead only into these
   std::vector<fs::path> untrusted;  // links in these are not followed
 };
 
-// The walk below one path that the user gave.
+// The state of the search below one path that the user gave.
 struct FolderWalk {
   const StormSearch& search;
   const LinkRules& links;
@@ -121,7 +122,7 @@ bool IsWithinAny(const fs::path& path, const std::vector<fs::path>& folders) {
   return std::ranges::any_of(folders, [&](const fs::path& each) { return IsWithin(path, each); });
 }
 
-// PERMISSION_DENIED for a symbolic link that is not followed.
+// Returns PERMISSION_DENIED for a symbolic link that is not followed.
 absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
   std::error_code error;
   const fs::path folder = fs::canonical(link.parent_path(), error);
@@ -178,8 +179,7 @@ absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
   return folder;
 }
 
-// Groups a folder's files into runs; files that do not continue one another become storms of their
-// own.
+// Groups a folder's files into runs. Files that do not continue one another become separate storms.
 std::vector<NamedStorm> GroupRuns(const fs::path& folder,
                                   std::vector<storm_files::StormFile> files) {
   std::vector<NamedStorm> storms;
@@ -196,7 +196,7 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder,
       storms.back().files.push_back(std::move(file));
     }
   }
-  // Nested domains of one run are often in one folder; their names get the domain's number.
+  // Nested domains of one run are often in one folder, so their names get the domain's number.
   if (series.size() > 1) {
     for (const std::size_t i : series) {
       absl::StrAppend(&storms[i].name, "-d", absl::Dec(storms[i].files[0].domain, absl::kZeroPad2));
@@ -205,7 +205,8 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder,
   return storms;
 }
 
-// Searches a folder and those below it, each once: links can make one folder appear in many places.
+// Searches a folder and those below it. Each is searched once, because links can make one folder
+// appear in many places.
 absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
                           std::vector<NamedStorm>& storms) {
   struct stat identity {};
@@ -224,7 +225,7 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
     }
     if (absl::IsCancelled(metadata.status())) continue;
     walk.first_failure.Update(metadata.status());
-    // A file of another kind, such as a read-me, is normal; a storm that cannot be read deserves a
+    // A file of another kind, such as a read-me, is normal. A storm that cannot be read deserves a
     // warning.
     const bool other = absl::IsInvalidArgument(metadata.status());
     spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}",
@@ -313,7 +314,7 @@ absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy&
     const fs::path normal = fs::absolute(each).lexically_normal();
     return normal.has_filename() ? normal : normal.parent_path();
   };
-  // No link is followed in an untrusted folder, so what is found there lies there.
+  // No link is followed in an untrusted folder, so a file found there must really be there.
   for (const std::string& untrusted : links.untrusted) {
     std::error_code error;
     const fs::path folder = fs::canonical(untrusted, error);

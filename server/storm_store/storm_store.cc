@@ -19,7 +19,7 @@ namespace thunderhead::storm_store {
 std::string DomainOf(const StormInfo& storm) {
   std::string domain = absl::StrFormat("%d %d %.1f %.1f", storm.file_cells.x, storm.file_cells.y,
                                        storm.dx_m, storm.dy_m);
-  // To about a metre.
+  // Degrees are precise to about a metre.
   for (const std::optional<double>& degrees : {storm.latitude_deg, storm.longitude_deg}) {
     if (degrees.has_value()) absl::StrAppendFormat(&domain, " %.5f", *degrees);
   }
@@ -28,7 +28,8 @@ std::string DomainOf(const StormInfo& storm) {
 
 namespace {
 
-// A missing path is an error, probably of typing; so is a named file of no known format.
+// Checks the paths. A missing path is an error, because it is probably mistyped. A named file of
+// unknown format is an error, too.
 absl::Status CheckPaths(const std::vector<std::string>& paths,
                         const storm_files::StormFormats& formats) {
   for (const std::string& path : paths) {
@@ -45,7 +46,7 @@ absl::Status CheckPaths(const std::vector<std::string>& paths,
   return absl::OkStatus();
 }
 
-// The storms of the paths, whatever happens there.
+// Opens the storms of the paths and follows changes there.
 absl::StatusOr<std::unique_ptr<StormStore>> OpenLive(const std::vector<std::string>& paths,
                                                      const StormStoreOptions& options) {
   const auto store = std::make_shared<CachedStormStore>(std::vector<CataloguedStorm>{}, options);

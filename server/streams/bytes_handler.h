@@ -1,6 +1,6 @@
-// Whoever waits for the bytes of a stream, and the bytes themselves, as one type each: what Asio,
-// Beast and OpenSSL do for a read or write is compiled once for a stream, not once for each of its
-// callers.
+// The completion handler of a stream's read or write, and its buffers, as one type each. So the
+// code of Asio, Beast and OpenSSL for a read or write is compiled once per stream type, and not
+// once per caller.
 #pragma once
 
 #include <array>
@@ -14,21 +14,21 @@
 
 namespace thunderhead::streams {
 
-// The completion handler of a read or write, of whatever type it was.
+// The type-erased completion handler of a read or write.
 class BytesHandler {
  public:
-  // Asio's names for where it is to be called.
+  // Asio requires these names for the executor that calls the handler.
   using executor_type = boost::asio::any_io_executor;
   executor_type get_executor() const { return executor_; }
 
-  // Called on `executor` unless `handler` has one of its own.
+  // The handler is called on `executor` unless it has its own executor.
   template <typename Handler>
   BytesHandler(Handler handler, const executor_type& executor)
       : executor_(boost::asio::get_associated_executor(handler, executor)),
         call_(std::make_unique<CallOf<Handler>>(std::move(handler))) {}
 
   void operator()(boost::system::error_code error, size_t bytes) {
-    // The handler may end what it is kept in.
+    // The handler may destroy the object that holds this one.
     const std::unique_ptr<Call> call = std::move(call_);
     call->Run(error, bytes);
   }
@@ -51,7 +51,7 @@ class BytesHandler {
   std::unique_ptr<Call> call_;
 };
 
-// The first buffers of a sequence of any type; a read or write of some bytes needs no more.
+// The first buffers of a sequence of any type. A partial read or write needs no further buffers.
 template <typename Buffer>
 class FewBuffers {
  public:

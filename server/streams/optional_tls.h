@@ -1,5 +1,5 @@
-// The bytes of a connection, plain or by TLS, to Asio and Beast a stream like any other, with one
-// timeout for what is begun after it is set. Used on one thread.
+// An Asio stream over plain TCP or TLS, with one timeout for the operations that begin after it is
+// set. Used on one thread.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -21,15 +21,15 @@
 
 namespace thunderhead::streams {
 
-// Compiled once for each RatePolicy, Beast's hook for rate limits: who derives from it declares it
-// as an extern template and instantiates it in one file.
+// The class is compiled once for each RatePolicy, Beast's hook for rate limits. A file that derives
+// from it declares it as an extern template, and one file instantiates it.
 template <typename RatePolicy>
 class OptionalTls {
  public:
-  // Asio's name for it.
+  // Asio requires this name.
   using executor_type = boost::asio::any_io_executor;
 
-  // Of a socket, or of an executor on which one is to connect. `tls` null: plain.
+  // Wraps a socket, or an executor on which to connect. A null `tls` means plain TCP.
   template <typename Source>
   OptionalTls(Source source, std::shared_ptr<boost::asio::ssl::context> tls)
       : context_(std::move(tls)), plain_(std::move(source)) {
@@ -60,28 +60,28 @@ class OptionalTls {
   using Plain = boost::beast::basic_stream<boost::asio::ip::tcp, executor_type, RatePolicy>;
 
   Plain& PlainStream() { return plain_; }
-  // Null where there is no TLS.
+  // Returns null if there is no TLS.
   boost::asio::ssl::stream<Plain&>* TlsStream() {
     return tls_.has_value() ? &tls_->next_layer() : nullptr;
   }
 
-  // As async_write_some, past an overridden Write.
+  // Works like async_write_some, but bypasses an overridden Write.
   template <typename Buffers, typename Token>
   auto async_send_some(const Buffers& buffers, Token&& token) {
     return Begin<&OptionalTls::Send>(buffers, std::forward<Token>(token));
   }
 
-  // Called by async_read_some; a stream that limits the time of its reads overrides it.
+  // Called by async_read_some. A stream that limits the time of its reads overrides it.
   virtual void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
   void Send(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
-  // Called by async_write_some; sends, unless a stream that keeps count of its writes overrides it.
+  // Called by async_write_some. Sends the bytes. A stream that counts its writes overrides it.
   virtual void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
 
  private:
-  // Makes one TLS record of several small buffers.
+  // A flat_stream makes one TLS record of several small buffers.
   using Tls = boost::beast::flat_stream<boost::asio::ssl::stream<Plain&>>;
 
-  // Calls `kOperation` with the handler that Asio makes of the token.
+  // Calls `kOperation` with the handler that Asio makes from the token.
   template <auto kOperation, typename Buffers, typename Token>
   auto Begin(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
@@ -92,7 +92,7 @@ class OptionalTls {
         token, buffers);
   }
 
-  const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives what is made of it
+  const std::shared_ptr<boost::asio::ssl::context> context_;  // outlives tls_
   Plain plain_;
   std::optional<Tls> tls_;
 };

@@ -1,4 +1,4 @@
-// Metrics in Prometheus's text format.
+// Writes metrics in Prometheus's text format.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace thunderhead::telemetry {
 
-// A value at the time of asking, such as the number of sessions.
+// A value at the time of the request, such as the number of sessions.
 struct Gauge {
   std::string name;  // with its unit, e.g. "thunderhead_memory_bytes"
   std::string help;
   double value = 0.0;
-  // Absent for most; gauges of one name that differ by it follow one another.
+  // Most gauges have no label. Gauges of one name with different label values must be adjacent.
   std::string label = {};
   std::string label_value = {};
 };
 
 std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges);
 
-// Bytes of memory that the process occupies; 0 if the system does not tell.
+// Returns the bytes of memory that the process occupies, or 0 if the system does not report it.
 double ResidentBytes();
 
 }  // namespace thunderhead::telemetry

@@ -1,5 +1,5 @@
-// The figures of a running server: counters and histograms that cost an atomic operation or
-// two, in one place for the whole process. Knows nothing of what it counts but the names.
+// The metrics of a running server: counters and histograms that cost an atomic operation or two, in
+// one place for the whole process. This code depends only on the names of what it counts.
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ class Counter {
   std::atomic<std::uint64_t> value_{0};
 };
 
-// Seconds, in buckets that each reach twice as far as the one before: 1 ms to 16 s, and beyond.
+// A histogram of seconds. Each bucket reaches twice as far as the one before, from 1 ms to 16 s,
+// and the last has no upper bound.
 class Histogram {
  public:
   static constexpr std::size_t kBounds = 15;
@@ -34,7 +35,8 @@ class Histogram {
 
   void Observe(double seconds);
 
-  // Of one bucket, not of those below it; that at kBounds is of what is beyond.
+  // Returns the count of one bucket, without those below it. The bucket at kBounds counts the
+  // values beyond the last bound.
   std::uint64_t Count(std::size_t bucket) const {
     return counts_[bucket].load(std::memory_order_relaxed);
   }
@@ -45,13 +47,13 @@ class Histogram {
   Counter sum_us_;
 };
 
-// One of a kind for each value of a label. Those found stay where they are: a place that counts
-// often looks up its own once.
+// One counter or histogram for each value of a label. References stay valid, so code that counts
+// often can look one up once.
 template <typename Kind>
 class Labelled {
  public:
-  // Values that are known beforehand are told from the start, at 0: Prometheus sees no increase in
-  // what it has not seen before, so an alert would miss the first.
+  // Values that are known beforehand are reported from the start, at 0. Prometheus sees no increase
+  // in a series that it has not seen before, so an alert would miss the first event.
   explicit Labelled(std::initializer_list<std::string_view> known = {}) {
     for (const std::string_view value : known) Of(value);
   }
@@ -73,24 +75,24 @@ class Labelled {
   std::map<std::string, Kind, std::less<>> kinds_;
 };
 
-// The names that operators see stand in exposition.cc.
+// The names that operators see are in exposition.cc.
 struct Metrics {
   Labelled<Counter> frames;    // drawn and encoded, by technique
-  Labelled<Histogram> stages;  // of frames, by stage
-  Histogram update_to_frame;   // from a change of the scene to a viewer's acknowledgement of it
-  Counter frames_sent;         // to viewers
-  Counter frames_skipped;      // newer ones came first
-  Counter frame_bytes_sent;    // of their pictures
-  Labelled<Counter> refusals;  // answers that are errors, by reason
+  Labelled<Histogram> stages;  // duration of frames' stages, by stage
+  Histogram update_to_frame;   // from a scene change to a viewer's acknowledgement
+  Counter frames_sent;         // frames sent to viewers
+  Counter frames_skipped;      // replaced by newer ones before they were sent
+  Counter frame_bytes_sent;    // bytes of the frames sent
+  Labelled<Counter> refusals;  // error responses, by reason
   Counter sessions_opened;
   Counter session_save_failures;  // attempts to save sessions that failed
-  Labelled<Counter> job_pictures{"drawn", "failed", "dropped"};  // of render jobs, by outcome
+  Labelled<Counter> job_pictures{"drawn", "failed", "dropped"};  // render jobs' images, by outcome
   Counter device_losses;  // the device was reset, or could not be opened again
-  // Of storm files' readers, by what happened.
+  // Failures of storm files' readers, by what happened.
   Labelled<Counter> reader_failures{"time", "killed", "crashed", "nonsense"};
 };
 
-// The process's.
+// Returns the metrics of the process.
 Metrics& Counted();
 
 }  // namespace thunderhead::telemetry

@@ -24,7 +24,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using Response = http::response<http::string_body>;
 
-// With more connections the oldest of them is closed.
+// Beyond this number of connections the oldest is closed.
 constexpr std::size_t kMaxConnections = 64;
 constexpr std::size_t kMaxRequestBytes = 16 << 10;
 constexpr std::chrono::milliseconds kAcceptPause{100};
@@ -58,13 +58,13 @@ Response Answer(const http::request<http::empty_body>& request, const OperatorPa
   return Text(good ? http::status::ok : http::status::service_unavailable, health.state + "\n");
 }
 
-// One request and its answer, within the patience. Keeps itself until then.
+// One request and its response, within the timeout. The object keeps itself alive until then.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, const OperatorPages& pages)
       : stream_(std::move(socket)), pages_(pages) {}
 
-  // `patience` is for all of it.
+  // `patience` is the timeout of the whole exchange.
   void Start(std::chrono::milliseconds patience) {
     stream_.expires_after(patience);
     http::async_read(stream_, buffer_, request_,
@@ -98,7 +98,7 @@ class RunningPort final : public OperatorPort {
       : pages_(std::move(pages)), patience_(patience), acceptor_(io_), pause_(io_) {}
 
   ~RunningPort() override {
-    // This ends open connections, too.
+    // Stopping also ends open connections.
     io_.stop();
     if (thread_.joinable()) thread_.join();
   }
@@ -130,7 +130,7 @@ class RunningPort final : public OperatorPort {
         Accept();
         return;
       }
-      // Probably out of descriptors.
+      // The process is probably out of file descriptors.
       pause_.expires_after(kAcceptPause);
       pause_.async_wait([this](const error_code& ended) {
         if (!ended) Accept();
@@ -155,7 +155,7 @@ class RunningPort final : public OperatorPort {
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;
   std::uint16_t port_ = 0;
-  std::deque<std::weak_ptr<Connection>> connections_;  // in their order; on the thread
+  std::deque<std::weak_ptr<Connection>> connections_;  // oldest first; used only on the thread
   std::thread thread_;
 };
 

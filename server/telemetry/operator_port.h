@@ -1,5 +1,6 @@
-// The operator's port: HTTP for Prometheus and for whoever restarts servers. Answers all that ask
-// at once, each within seconds, on a thread of its own; who says nothing holds up nobody.
+// The operator's port: HTTP for Prometheus and for supervisors that restart servers. It answers all
+// clients concurrently, each within seconds, on a separate thread. A client that sends nothing does
+// not block others.
 #pragma once
 
 #include <chrono>
@@ -22,18 +23,19 @@ struct Health {
 struct OperatorPages {
   std::function<std::string()> metrics;  // in Prometheus's text format
   std::function<Health()> health;
-  // Whether this server answers to the name of a Host header; empty: to any. A foreign web site may
-  // have a name of its own lead here (DNS rebinding).
+  // Returns whether this server answers to the name in a Host header. If empty, it answers to any
+  // name. The check prevents DNS rebinding, in which a foreign web site makes its name lead here.
   std::function<bool(std::string_view host)> allows_host;
 };
 
 class OperatorPort {
  public:
-  // The longest time that a client may take to ask and to listen.
+  // The longest time that a client may take to send its request and receive the response.
   static constexpr std::chrono::seconds kPatience{2};
 
-  // GET /metrics, /healthz and /readyz on that address, port 0 for a free one. A client that takes
-  // longer than `patience` is cut off. UNAVAILABLE if the address cannot be listened on.
+  // Serves GET /metrics, /healthz and /readyz on that address. Port 0 means a free port. A client
+  // that takes longer than `patience` is disconnected. Returns UNAVAILABLE if it cannot listen on
+  // the address.
   static absl::StatusOr<std::unique_ptr<OperatorPort>> Open(
       const std::string& host, std::uint16_t port, OperatorPages pages,
       std::chrono::milliseconds patience = kPatience);

@@ -1,5 +1,6 @@
-// Tells systemd that the process makes progress, where its unit has WatchdogSec: without such a
-// message for that time, systemd restarts it. Needs no library: a message is a datagram.
+// Tells systemd that the process makes progress, if its unit has WatchdogSec. Without such a
+// message for that time, systemd restarts the process. No library is needed, because a message is a
+// datagram.
 #pragma once
 
 #include <chrono>
@@ -14,9 +15,9 @@ namespace thunderhead::telemetry {
 
 class Watchdog {
  public:
-  // As the environment says (sd_watchdog_enabled(3)); null if no supervisor waits for messages. As
-  // long as `alive` is true, they are sent on a thread of its own, three in the time that
-  // systemd waits. INVALID_ARGUMENT for an environment that makes no sense.
+  // Starts as the environment says (sd_watchdog_enabled(3)). Returns null if no supervisor waits
+  // for messages. While `alive` is true, a separate thread sends three messages in the time that
+  // systemd waits. Returns INVALID_ARGUMENT for an invalid environment.
   static absl::StatusOr<std::unique_ptr<Watchdog>> StartIfAsked(std::function<bool()> alive);
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;

@@ -9,7 +9,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Columns of a block along an axis that are looked at.
+// Number of sampled columns along an axis of a block.
 constexpr int kSampledColumns = 4;
 
 }  // namespace
@@ -61,7 +61,8 @@ AirDensity AirDensityMeans::Means() const {
   AirDensity air{blocks_, std::vector<float>(sums_.size(), 0.0F)};
   for (int y = 0; y < blocks_.y; ++y) {
     for (int x = 0; x < blocks_.x; ++x) {
-      // From the lowest level with air upwards, and then from there down to the ground.
+      // Levels above the lowest level with air take the density below them. Levels under it take
+      // its density.
       int lowest = grid_.cells.z;
       float below = 0.0F;
       for (int z = 0; z < grid_.cells.z; ++z) {
@@ -72,7 +73,7 @@ AirDensity AirDensityMeans::Means() const {
         }
         air.kg_per_m3[at] = below;
       }
-      if (lowest == grid_.cells.z) return {};  // a block without air tells nothing
+      if (lowest == grid_.cells.z) return {};  // the density of a block without air is unknown
       for (int z = 0; z < lowest; ++z) {
         air.kg_per_m3[Offset({x, y}, z)] = air.kg_per_m3[Offset({x, y}, lowest)];
       }

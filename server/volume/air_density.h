@@ -1,6 +1,6 @@
-// The air that a storm's mixing ratios refer to. Only masses per volume are kept cell by cell; the
-// density by which they were multiplied is smooth, so means over blocks of columns bring the ratios
-// back. Knows no files.
+// The air that a storm's mixing ratios refer to. Only masses per volume are kept cell by cell. The
+// air density by which the mixing ratios were multiplied is smooth, so block means of it recover
+// the ratios. This code does not depend on files.
 #pragma once
 
 #include <vector>
@@ -10,29 +10,29 @@
 
 namespace thunderhead::volume {
 
-// Along each axis; at most one a column.
+// Number of blocks along each axis. There is at most one for each column.
 inline constexpr int kAirBlocks = 16;
 
-// Densities on the storm's grid; between the middles of blocks they are linear.
+// Air densities on the storm's grid. They are linear between the centres of blocks.
 struct AirDensity {
   glm::ivec2 blocks{0};
-  std::vector<float> kg_per_m3;  // a value a block and level, x fastest; empty if nothing tells
+  std::vector<float> kg_per_m3;  // one value for each block and level, x fastest; empty if unknown
 
   bool Empty() const { return kg_per_m3.empty(); }
-  // At the middle of column (x, y), level z; above 0 unless it is empty, which is 0.
+  // Returns the density at the centre of column (x, y), level z. It is above 0, or 0 if Empty().
   float At(const RegularGrid& grid, int x, int y, int z) const;
 };
 
-// Means of samples. A level without any has the density of the nearest one with some, as below
-// mountains.
+// Computes means of samples. A level without samples gets the density of the nearest level with
+// samples, for example below mountains.
 class AirDensityMeans {
  public:
   explicit AirDensityMeans(const RegularGrid& grid);
 
-  // The steps along each axis between columns that are enough for the mean.
+  // Returns the step along each axis between the columns that need to be sampled.
   glm::ivec2 Stride() const;
 
-  // Air of this density in column (x, y) from a height to another; NaN is left out.
+  // Adds air of this density in column (x, y) between two heights. NaN is ignored.
   void Add(int x, int y, double bottom_m, double top_m, float density_kg_per_m3);
 
   AirDensity Means() const;

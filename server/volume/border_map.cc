@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kNone = -1;
 constexpr float kFar = std::numeric_limits<float>::max();
-// Around a piece of a line, texels whose distance from it is found at once.
+// The distance of texels is computed directly up to this distance from a piece of a line.
 constexpr float kBeside_texels = 1.5F;
 
 // A straight piece of a line, in texels.
@@ -24,7 +24,7 @@ struct Piece {
   float inverse_squared_length = 0.0F;
   float strength = 1.0F;
 
-  // A place less its nearest point of the piece.
+  // Returns the offset of a place from the nearest point of the piece.
   glm::vec2 Offset(const glm::vec2& place) const {
     const glm::vec2 off = place - from;
     const float share = std::clamp(glm::dot(off, along) * inverse_squared_length, 0.0F, 1.0F);
@@ -50,7 +50,7 @@ std::vector<Piece> PiecesOf(const std::vector<BorderLine>& lines, const BorderGr
   return pieces;
 }
 
-// The piece nearest to each texel's middle.
+// Finds the piece that is nearest to each texel's centre.
 class Nearest {
  public:
   Nearest(std::span<const Piece> pieces, const glm::ivec2& texels)
@@ -105,7 +105,7 @@ class Nearest {
     Try(piece_[Index(from_x, from_y)], x, y);
   }
 
-  // The row's texels take pieces from the row at `y + from` and from one another.
+  // Lets the row's texels take pieces from the row at `y + from` and from one another.
   void SpreadRow(int y, int from) {
     for (int x = 0; x < texels_.x; ++x) {
       for (int side = -1; side <= 1; ++side) TryThatOf(x + side, y + from, x, y);
@@ -114,7 +114,7 @@ class Nearest {
     for (int x = texels_.x - 1; x >= 0; --x) TryThatOf(x + 1, y, x, y);
   }
 
-  // Danielsson's distance transform (1980), upwards and downwards.
+  // Applies Danielsson's distance transform (1980), upwards and downwards.
   void Spread() {
     for (int y = 0; y < texels_.y; ++y) SpreadRow(y, -1);
     for (int y = texels_.y - 1; y >= 0; --y) SpreadRow(y, 1);

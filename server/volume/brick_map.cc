@@ -12,7 +12,7 @@ namespace {
 constexpr double kBrickInCoarsestCells = 1.0;
 constexpr double kBlockInCoarsestCells = 4.0;
 constexpr int kMaxCellsAcross = 16;
-constexpr int kMaxAlong = 1024;  // bricks or blocks along an axis
+constexpr int kMaxAlong = 1024;  // maximum number of bricks or blocks along an axis
 constexpr int kFarthest = 254;
 
 // Content of a cell or a brick, in increasing order.
@@ -25,9 +25,9 @@ std::size_t Count(const glm::ivec3& size) {
          static_cast<std::size_t>(size.z);
 }
 
-// Cells along each side of a brick or block that is roughly a cube, its side `side_in_coarsest`
-// times the longest side of a cell; larger if more than kMaxAlong of them, with one for the
-// remainder, would lie along an axis.
+// Returns the number of cells along each side of a brick or block that is roughly a cube. The side
+// is `side_in_coarsest` times the longest side of a cell. It is longer if an axis would hold more
+// than kMaxAlong bricks, including one for the remainder.
 glm::ivec3 CellsAcross(const RegularGrid& grid, double side_in_coarsest) {
   const glm::dvec3& spacing_m = grid.spacing_m;
   const double side_m = side_in_coarsest * std::max({spacing_m.x, spacing_m.y, spacing_m.z});
@@ -36,12 +36,12 @@ glm::ivec3 CellsAcross(const RegularGrid& grid, double side_in_coarsest) {
                   grid.cells / kMaxAlong + 1);
 }
 
-// Half floats of 0 or more compare as their bits do.
+// Returns the half float of an extinction. Half floats of 0 or more compare like their bits.
 std::uint16_t TexelOf(double extinction_per_m, const ExtinctionVolume& volume) {
   return base::HalfFromFloat(static_cast<float>(extinction_per_m) / volume.extinction_per_m);
 }
 
-// Raises each cell's filling to that of the largest of its `channels` values.
+// Raises each cell's content to that of the largest of its `channels` values.
 template <int channels>
 void RaiseFillings(const std::vector<std::uint16_t>& texels, std::uint16_t empty,
                    std::uint16_t thin, std::vector<std::uint8_t>* fillings) {
@@ -55,7 +55,7 @@ void RaiseFillings(const std::vector<std::uint16_t>& texels, std::uint16_t empty
   }
 }
 
-// Fillings of all cells; up to `thin_per_m` a channel's extinction is thin.
+// Returns the content of all cells. A channel's extinction is thin up to `thin_per_m`.
 std::vector<std::uint8_t> FillingsOf(const ExtinctionVolume& volume, double thin_per_m) {
   const std::uint16_t empty = TexelOf(volume.negligible_per_m, volume);
   const std::uint16_t thin = std::max(TexelOf(thin_per_m, volume), empty);
@@ -73,8 +73,9 @@ struct BrickRange {
   int last;
 };
 
-// Maximum filter and resampling along one axis: output i of `count` is the maximum over the input
-// range reach(i). `fillings` is an array of layers of `length` rows of `stride` values.
+// Applies a maximum filter and resamples along one axis. Output i of `count` is the maximum over
+// the input range reach(i). `fillings` is an array of layers, each of `length` rows of `stride`
+// values.
 template <typename Reach>
 std::vector<std::uint8_t> MaxAlong(const std::vector<std::uint8_t>& fillings, int stride,
                                    int length, int count, const Reach& reach) {
@@ -96,7 +97,7 @@ std::vector<std::uint8_t> MaxAlong(const std::vector<std::uint8_t>& fillings, in
   return result;
 }
 
-// The same along all axes, from `size` to `count`; the range is reach(axis, i).
+// Does the same along all axes, from `size` to `count`. The range is reach(axis, i).
 template <typename Reach>
 std::vector<std::uint8_t> MaxOf(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
                                 const glm::ivec3& count, const Reach& reach) {
@@ -106,7 +107,7 @@ std::vector<std::uint8_t> MaxOf(const std::vector<std::uint8_t>& fillings, const
   return MaxAlong(by_y, 1, size.x, count.x, along(0));
 }
 
-// Fillings of all bricks.
+// Returns the content of all bricks.
 std::vector<std::uint8_t> FillingsOf(const BrickMap& map) {
   std::vector<std::uint8_t> fillings(map.content.size());
   std::transform(
@@ -116,8 +117,8 @@ std::vector<std::uint8_t> FillingsOf(const BrickMap& map) {
   return fillings;
 }
 
-// Encodes the places that are not empty as x + 1024 (y + 1024 z), with `thick_bits` set where it is
-// thick.
+// Encodes the places that are not empty as x + 1024 (y + 1024 z), with `thick_bits` set for thick
+// places.
 std::vector<std::uint32_t> Places(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
                                   std::uint32_t thick_bits) {
   std::vector<std::uint32_t> places;
@@ -136,7 +137,7 @@ std::vector<std::uint32_t> Places(const std::vector<std::uint8_t>& fillings, con
 }
 
 // Lowers each value of a row to at most one more than the minimum of its three neighbours in
-// another row. Both have `count` values and one more on both sides.
+// another row. Both rows have `count` values and a border value on both sides.
 void LowerToRow(const std::uint8_t* beside, std::size_t count, std::uint8_t* row) {
   for (std::size_t x = 0; x < count; ++x) {
     const std::uint8_t min = std::min(std::min(beside[x], beside[x + 1]), beside[x + 2]);
@@ -145,9 +146,9 @@ void LowerToRow(const std::uint8_t* beside, std::size_t count, std::uint8_t* row
   }
 }
 
-// Chebyshev distances to the nearest brick that is not empty, at most kFarthest, by two sweeps:
-// over the 13 neighbours before each brick, then the 13 after it. Exact (Rosenfeld and Pfaltz
-// 1966).
+// Chebyshev distances to the nearest brick that is not empty, at most kFarthest. Two sweeps compute
+// them: over the 13 neighbours before each brick, then over the 13 after it. The result is exact
+// (Rosenfeld and Pfaltz 1966).
 class Distances {
  public:
   Distances(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size)
@@ -170,19 +171,19 @@ class Distances {
     }
   }
 
-  // Distances of the bricks of a row.
+  // Returns the distances of the bricks in a row.
   const std::uint8_t* Of(int y, int z) { return Row(y, z) + 1; }
 
  private:
-  // A row with a border of one value of kFarthest on both sides.
+  // Returns a row with a border value of kFarthest on both sides.
   std::uint8_t* Row(int y, int z) {
     return values_.data() +
            row_ * (static_cast<std::size_t>(y) +
                    static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(z));
   }
 
-  // Updates a row from the neighbours on one side: `before` is 1 for those before it, -1 for those
-  // after.
+  // Updates a row from the neighbours on one side. `before` is 1 for the neighbours before it, -1
+  // for those after it.
   void Sweep(int y, int z, int before) {
     std::uint8_t* row = Row(y, z);
     const auto count = static_cast<std::size_t>(size_.x);
@@ -214,7 +215,7 @@ BrickMap BrickMapOf(const ExtinctionVolume& volume) {
   map.cells_per_brick = across;
   map.bricks = cells / across + 1;
   const double diagonal_m = glm::length(glm::dvec3(across) * volume.grid.spacing_m);
-  // Extinctions of all channels add up.
+  // The extinctions of all channels add up, so each channel gets a share of the threshold.
   const std::vector<std::uint8_t> fillings =
       MaxOf(FillingsOf(volume, BrickMap::kThinOpticalDepth / diagonal_m / volume.Channels()), cells,
             map.bricks, [&](int axis, int brick) {
@@ -260,7 +261,7 @@ CellBlocks CellBlocksOf(const BrickMap& map, const RegularGrid& grid) {
   if (map.content.empty()) return blocks;
   blocks.cells_per_block = CellsAcross(grid, kBlockInCoarsestCells);
   const glm::ivec3 size = (grid.cells - 1) / blocks.cells_per_block + 1;
-  // The brick that begins after a cell reads it too.
+  // The brick that begins after a cell also reads the cell.
   const std::vector<std::uint8_t> fillings =
       MaxOf(FillingsOf(map), map.bricks, size, [&](int axis, int block) {
         const int side = blocks.cells_per_block[axis];

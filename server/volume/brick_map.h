@@ -1,5 +1,6 @@
 // Marks the empty parts of an extinction volume, in bricks between its cells' centres, so that rays
-// can skip them; and lists the cells that a ray may then sample. Knows no GL.
+// can skip them. It also lists the cells that a ray may then sample. This code does not depend on
+// GL.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +12,19 @@
 
 namespace thunderhead::volume {
 
-// Brick i reaches, along each axis, from the centre of cell n i - 1 to that of cell n (i + 1) - 1,
-// n being cells_per_brick: linear interpolation in it reads these cells and those between them, and
-// no others. At the volume's ends some of them do not exist.
+// A map of bricks. Along each axis, brick i reaches from the centre of cell n i - 1 to the centre
+// of cell n (i + 1) - 1, where n is cells_per_brick. Linear interpolation inside the brick reads
+// only these cells and those between them. At the volume's ends some of these cells do not exist.
 struct BrickMap {
   glm::ivec3 cells_per_brick{1};
   glm::ivec3 bricks{0};
-  // The content of each brick (x fastest): kThick, kThin or, if it is empty, the Chebyshev distance
-  // in bricks to the nearest one that is not (1 for any of the 26 neighbours; at most 254).
+  // The content of each brick (x fastest): kThick, kThin or a distance. An empty brick has the
+  // Chebyshev distance in bricks to the nearest brick that is not empty. The distance is 1 for any
+  // of the 26 neighbours, and at most 254.
   std::vector<std::uint8_t> content;
 
   static constexpr std::uint8_t kThick = 0;
-  // Not empty, but the optical depth of the longest path through the brick is below
+  // A brick that is not empty, but along whose longest path the optical depth is below
   // kThinOpticalDepth.
   static constexpr std::uint8_t kThin = 255;
   static constexpr double kThinOpticalDepth = 0.05;
@@ -30,8 +32,8 @@ struct BrickMap {
   static bool IsEmpty(std::uint8_t content) { return content != kThick && content != kThin; }
 };
 
-// The bricks of `volume`, roughly cubic in metres, at most 1024 along an axis. Reads the planes'
-// texels, which must not have been freed.
+// Returns the bricks of `volume`, roughly cubic in metres, at most 1024 along an axis. It reads the
+// planes' texels, which must not have been freed.
 BrickMap BrickMapOf(const ExtinctionVolume& volume);
 
 // Cubes of bricks that are not empty, each encoded as x + 1024 (y + 1024 z).
@@ -40,7 +42,7 @@ struct BrickCubes {
   std::vector<std::uint32_t> occupied;
 };
 
-// The smallest cubes of which there are at most `max_cubes` (1 or more).
+// Returns the smallest cubes such that there are at most `max_cubes` of them (1 or more).
 BrickCubes OccupiedCubesOf(const BrickMap& map, std::size_t max_cubes);
 
 // Blocks of cells, roughly cubic in metres. Block i begins at cell i * cells_per_block.
@@ -48,8 +50,8 @@ struct CellBlocks {
   static constexpr std::uint32_t kThick = 1U << 31U;
 
   glm::ivec3 cells_per_block{1};
-  // Blocks with a cell that interpolation in an occupied brick reads, each encoded as x + 1024 (y +
-  // 1024 z), with kThick set if that brick is thick.
+  // The blocks with a cell that interpolation in an occupied brick reads. Each is encoded as x +
+  // 1024 (y + 1024 z), with kThick set if that brick is thick.
   std::vector<std::uint32_t> occupied;
 };
 

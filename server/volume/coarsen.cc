@@ -23,7 +23,7 @@ std::vector<float> BlockMeans(const RegularGrid& fine, const RegularGrid& coarse
 
 glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int max_cells) {
   if (fields.condensate.Empty()) return glm::ivec3(1);
-  // A border on either side, and blocks that the condensate fills in part.
+  // Reserves cells for a border on either side, and for blocks that the condensate fills in part.
   const glm::ivec3 extent = fields.condensate.high - fields.condensate.low;
   const glm::ivec3 room(max_cells - 4);
   const glm::ivec3 fits = glm::min(extent + 2, fields.grid.cells);

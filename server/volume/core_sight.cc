@@ -13,7 +13,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Shares of the tower's height.
+// These lengths are shares of the tower's height.
 constexpr double kBaseHeight = 0.25;
 constexpr double kBaseRadius = 1.0 / 3.0;
 constexpr double kClearDistance = 1.0 / 12.0;
@@ -21,10 +21,10 @@ constexpr double kSkyBehind = 4.0;
 
 constexpr double kHighestBase_m = 2000.0;
 
-// The optical depth that ground in the line of sight counts as.
+// The optical depth of ground in the line of sight.
 constexpr double kOpaqueDepth = 100.0;
 
-// Maximum optical depth near an eye, towards the core, that counts as clear of cloud and rain.
+// Maximum optical depth from the eye towards the core that counts as clear of cloud and rain.
 constexpr double kClearOpticalDepth = 0.05;
 
 bool Falls(physics::Hydrometeor hydrometeor) {
@@ -136,7 +136,7 @@ double CoreSight::Hidden(const std::vector<Term>& terms, const glm::dvec3& eye_m
                          const glm::dvec3& target_m) const {
   const glm::dvec3 low_m = fields_.grid.low_corner_m;
   const glm::dvec3 high_m = fields_.grid.HighCorner_m();
-  // Beyond a face of the domain there is nothing to see but where the storm was cut off.
+  // Beyond a face of the domain, only the cut through the storm is visible.
   if (target_m.x < low_m.x || target_m.y < low_m.y || target_m.x > high_m.x ||
       target_m.y > high_m.y) {
     return 1.0;

@@ -1,5 +1,6 @@
-// How much of the base and of the tower of a storm's core condensate or terrain hides from an eye.
-// Of the optics only the particles' sizes are a scene's; knows no scene.
+// Computes how much of the base and the tower of a storm's core is hidden from an eye by condensate
+// or terrain. A scene chooses only the source of the particles' sizes; the other optics are the
+// defaults. This code does not depend on scenes.
 #pragma once
 
 #include <vector>
@@ -10,26 +11,27 @@
 
 namespace thunderhead::volume {
 
-// Lengths in it are shares of the tower's height, so that shallow cumulus is seen as a thunderstorm
-// is.
+// The visibility of one core. Its lengths are shares of the tower's height, so that shallow cumulus
+// is treated like a thunderstorm.
 class CoreSight {
  public:
-  // `fields` must outlive it.
+  // `fields` must outlive this object.
   CoreSight(const HydrometeorFields& fields, const StormCore& core,
             physics::SizeSource sizes = physics::SizeSource::kModel);
 
-  // The share of the light from the lowest quarter of the tower, and at most 2 km, that rain, snow,
-  // graupel and hail keep from `eye_m`.
+  // Returns the share of the light from the tower's lowest quarter (at most 2 km) that
+  // precipitation hides from `eye_m`. Precipitation is rain, snow, graupel and hail.
   double HiddenBase(const glm::dvec3& eye_m) const;
 
-  // The share of the light from the tower's near side that any condensate keeps from `eye_m`.
+  // Returns the share of the light from the tower's near side that condensate blocks from `eye_m`.
   double HiddenTower(const glm::dvec3& eye_m) const;
 
-  // The share of the light from the sky at an elevation above the tower, in radians, that any
-  // condensate keeps from `eye_m`: 1 where the eye is too far under an anvil to see the top.
+  // Returns the share of light that condensate blocks from `eye_m`, of the light from the sky at an
+  // elevation above the tower, in radians. It is 1 if the eye is too far under an anvil to see the
+  // top.
   double HiddenSky(const glm::dvec3& eye_m, double elevation) const;
 
-  // True if neither cloud nor rain dims the beginning of the sight lines to base and top.
+  // Returns whether neither cloud nor rain dims the start of the sight lines to base and top.
   bool IsClear(const glm::dvec3& eye_m) const;
 
  private:
@@ -43,8 +45,8 @@ class CoreSight {
                       const glm::dvec3& to_m) const;
   double Hidden(const std::vector<Term>& terms, const glm::dvec3& eye_m,
                 const glm::dvec3& target_m) const;
-  // The point at a height above the core's ground, `towards_m` nearer to the eye than the core and
-  // `across_m` beside it.
+  // Returns the point at a height above the core's ground. It is `towards_m` nearer to the eye than
+  // the core, and `across_m` to its side.
   glm::dvec3 Target(const glm::dvec3& eye_m, double towards_m, double across_m,
                     double height_m) const;
 

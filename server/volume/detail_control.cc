@@ -12,18 +12,18 @@ namespace {
 
 using Values = std::vector<float>;
 
-constexpr float kHalfOpaqueDepth = 4.0F;  // optical depth of a cell, at which it is half opaque
-constexpr float kFullShare = 0.7F;        // of the neighbours' opacity, at which a cell is inside
+constexpr float kHalfOpaqueDepth = 4.0F;  // optical depth at which a cell is half opaque
+constexpr float kFullShare = 0.7F;        // least share of the neighbours' opacity inside
 constexpr float kGradientAmplitude = 0.8F;
 constexpr int kProfileSmoothings = 2;  // surfaces move by a cell either way
 // Vertical velocities (m/s) between which cloud water begins to condense, and between which ice
-// still looks like the liquid towers that it rises from.
+// still looks like the liquid towers from which it rises.
 constexpr std::array<float, 2> kCondensing_m_per_s = {0.0F, 1.0F};
 constexpr std::array<float, 2> kIceBillows_m_per_s = {1.0F, 5.0F};
-constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F,
-                                                        0.7F};  // or opacities, if it is not known
-constexpr int kTurbulenceReach = 2;                             // cells
-// Detail is attenuated where the opacity along the longer of a cell and this length is below this.
+constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F, 0.7F};  // opacities if it is unknown
+constexpr int kTurbulenceReach = 2;                                   // cells
+// Detail is attenuated where the opacity is below this, along a cell or the length below, whichever
+// is longer.
 constexpr float kThinOpacity = 0.3F;
 constexpr double kThinLength_m = 200.0;
 
@@ -31,8 +31,8 @@ float Between(const std::array<float, 2>& range, float value) {
   return std::clamp((value - range[0]) / (range[1] - range[0]), 0.0F, 1.0F);
 }
 
-// Replaces each value by of(before, here, after) along one axis; at the ends the outermost value
-// counts again.
+// Replaces each value by of(before, here, after) along one axis. At the ends the outermost value is
+// used again.
 template <typename Of>
 void Along(const glm::ivec3& cells, int axis, const Of& of, Values* values) {
   const std::array<std::size_t, 3> size = {static_cast<std::size_t>(cells.x),
@@ -79,7 +79,7 @@ double CellSize_m(const RegularGrid& grid) {
 
 float OpacityOf(float depth) { return depth / (kHalfOpaqueDepth + depth); }
 
-// The opacity along a path `times` as long.
+// Returns the opacity along a path `times` as long.
 float OnLongerPath(float opacity, float times) {
   const float opaque = times * opacity;
   return opaque / (1.0F - opacity + opaque);
@@ -88,7 +88,7 @@ float OnLongerPath(float opacity, float times) {
 struct Opacities {
   Values all;    // along a cell, tau / (kHalfOpaqueDepth + tau) for its optical depth tau
   Values cloud;  // optical depths of cloud water
-  Values ice;    // of ice, snow, graupel and hail
+  Values ice;    // optical depths of ice, snow, graupel and hail
 };
 
 Opacities OpacitiesOf(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
@@ -121,7 +121,7 @@ Opacities OpacitiesOf(const HydrometeorFields& fields, const std::vector<Extinct
   return opacities;
 }
 
-// The values of the volume's cells.
+// Returns the values of the volume's cells.
 Values Cut(const HydrometeorFields& fields, const std::vector<std::uint8_t>& values,
            const RegularGrid& grid) {
   const glm::ivec3 low(
@@ -136,7 +136,8 @@ Values Cut(const HydrometeorFields& fields, const std::vector<std::uint8_t>& val
   return cut;
 }
 
-// Where condensate differs from cell to cell, clear air is being mixed in.
+// Estimates turbulence from contrasts: clear air is mixed in where condensate differs between
+// cells.
 Values ContrastOf(const RegularGrid& grid, const Values& opacity, const Values& around) {
   Values contrast = opacity;
   AlongAll(
@@ -147,8 +148,8 @@ Values ContrastOf(const RegularGrid& grid, const Values& opacity, const Values& 
   return contrast;
 }
 
-// Amplitude of turbulence, 0 to 1, where the medium's opacity is `opacity`, the largest of its
-// neighbourhood `around`.
+// Returns the amplitude of turbulence, 0 to 1. `opacity` is the medium's opacity, and `around` is
+// the largest opacity of the neighbourhood.
 Values TurbulenceOf(const HydrometeorFields& fields, const RegularGrid& grid, const Values& opacity,
                     const Values& around) {
   Values turbulence;
@@ -192,7 +193,7 @@ DetailControl DetailControlOf(const HydrometeorFields& fields,
   }
   const auto lengthening = static_cast<float>(std::max(kThinLength_m / CellSize_m(grid), 1.0));
   const bool measured = fields.motion.source != TurbulenceSource::kGradient;
-  // Empty cells take the amplitude of those beside them: detail is drawn between the two.
+  // Empty cells take the amplitude of their neighbours, because detail is drawn between the two.
   Values weight(amplitude.size());
   for (std::size_t i = 0; i < amplitude.size(); ++i) {
     const float cloud = opacities.cloud[i];
@@ -201,11 +202,11 @@ DetailControl DetailControlOf(const HydrometeorFields& fields,
     const float condenses = rises ? Between(kCondensing_m_per_s, ascent_m_per_s[i]) : 1.0F;
     const float towers = rises ? Between(kIceBillows_m_per_s, ascent_m_per_s[i]) : 0.0F;
     const float shown = cloud + ice;
-    // Half of the extinction decides how it looks.
+    // The look depends on which substance causes at least half of the extinction.
     const float liquid = shown > 0.0F ? std::min(2.0F * cloud / shown, 1.0F) : 0.0F;
     const float stirred = Between(kIceBillowsTurbulence, measured ? amplitude[i] : around[i]);
     const float billows = std::max({liquid * condenses, towers, stirred});
-    // Neither in rain.
+    // Rain has neither billows nor fibres.
     const float kind = shown > 0.0F ? billows - (1.0F - liquid) * (1.0F - billows) : 0.0F;
     weight[i] = opacity[i];
     const float thick = std::min(OnLongerPath(around[i], lengthening) / kThinOpacity, 1.0F);

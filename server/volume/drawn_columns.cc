@@ -14,25 +14,25 @@
 namespace thunderhead::volume {
 namespace {
 
-// Of the sequence of points across a column: probes are others than those that are added up.
+// Starts of the point sequence in a column. Probes use other points than the sum.
 constexpr std::uint32_t kFirstPoint = 0;
 constexpr std::uint32_t kFirstProbe = 1U << 31U;
 
-// By the error. Where a single cell would need more, its column's error is a little larger; with
-// twice as many no more columns keep their water path.
+// Maximum number of points in a cell with an error target. If a cell needs more, its column's error
+// is a little larger. A larger maximum would not make more columns keep their water path.
 constexpr double kMostInCell = 1024.0;
 
-// A profile above which billows leave all that there is.
+// A profile above which billows remove nothing.
 constexpr std::uint8_t kInside = 250;
 
 using Lanes = std::array<float, base::kLanes>;
 
 float Total(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0F); }
 
-// Of a sequence that fills a square evenly: multiples of the powers of 1 / 1.3247, less whole
-// numbers. That number's third power is one more than itself.
+// Returns a point of a sequence that fills a square evenly: multiples of the powers of 1 / 1.3247,
+// modulo 1. That number's third power is one more than itself.
 glm::vec2 AcrossAt(std::uint32_t index) {
-  constexpr std::uint32_t kStepX = 3242174889U;  // of 2^32
+  constexpr std::uint32_t kStepX = 3242174889U;  // in units of 2^-32
   constexpr std::uint32_t kStepY = 2447445414U;
   const auto of_one = [](std::uint32_t value) {
     return static_cast<float>(static_cast<std::int32_t>(value >> 1U)) * 0x1p-31F;
@@ -43,13 +43,13 @@ glm::vec2 AcrossAt(std::uint32_t index) {
 // Adds up points of a column, eight at a time.
 class PointSum {
  public:
-  // Points of all cells together are spread evenly across the column, from `first` of their
-  // sequence on.
+  // Points of all cells together are spread evenly across the column. They start at index `first`
+  // of the sequence.
   PointSum(const DrawnMedium& medium, const glm::ivec2& column, std::size_t channels,
            std::uint32_t first)
       : medium_(medium), corner_(column), channels_(channels), next_(first) {}
 
-  // Adds points of the cell at a level, each with the weight.
+  // Adds `count` points of the cell at a level, each with the weight.
   void AddCell(int level, int count, float weight) {
     for (int i = 0; i < count; ++i) {
       const float up = (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
@@ -68,11 +68,12 @@ class PointSum {
     return column;
   }
 
-  // Of all channels together, each point with its weight, of the last eight; any after them wait.
+  // Returns the weighted values of the last eight points, all channels together. Later points wait
+  // until there are eight.
   const Lanes& Last() const { return last_; }
 
  private:
-  // `across` is from the column's corner, `z` from the volume's, in cells.
+  // `across` is counted from the column's corner, `z` from the volume's, in cells.
   void Add(const glm::vec2& across, float z, float weight) {
     const std::size_t lane = count_++;
     places_.x[lane] = corner_.x + across.x;
@@ -84,7 +85,8 @@ class PointSum {
     if (count_ == weights_.size()) AddLanes();
   }
 
-  // Weights of a linear interpolation between three columns, at places in the middle one.
+  // Returns the weights of a linear interpolation between three columns, at places in the middle
+  // column.
   static std::array<Lanes, 3> InterpolationAt(const Lanes& from_middle) {
     std::array<Lanes, 3> weights;
     for (std::size_t lane = 0; lane < from_middle.size(); ++lane) {
@@ -120,7 +122,7 @@ class PointSum {
   const glm::vec2 corner_;
   const std::size_t channels_;
   std::uint32_t next_;
-  std::size_t count_ = 0;  // in the lanes
+  std::size_t count_ = 0;  // points in the lanes
   DrawnMedium::Places places_{};
   Lanes weights_{};
   std::array<Lanes, 2> from_middle_{};
@@ -129,7 +131,7 @@ class PointSum {
   std::array<Lanes, 9> shares_{};
 };
 
-// The medium at a cell's first points, all channels added up.
+// The medium at a cell's first points, with all channels added up.
 struct Probe {
   double mean = 0.0;
   double spread = 0.0;  // standard deviation
@@ -142,7 +144,8 @@ Probe ProbeOf(const Lanes& points) {
   return {mean, std::sqrt(std::max(square / kCount - mean * mean, 0.0))};
 }
 
-// The next multiple of kLanes, so that other processors' rounding hardly ever changes it.
+// Returns the next multiple of kLanes. Different rounding on other processors therefore hardly ever
+// changes the result.
 int InLanes(double count) {
   constexpr auto kLanes = static_cast<double>(base::kLanes);
   return static_cast<int>(kLanes * std::ceil(count / kLanes));
@@ -183,9 +186,10 @@ DrawnColumn DrawnColumns::Sum(const glm::ivec2& column, const ColumnPoints& poin
   return sum.Sum();
 }
 
-// In proportion to the spread in each cell the fewest points have an error (Neyman's allocation).
-// Other points than those that are added up find the spread: where they happen to miss what there
-// is, both mean and spread are too small.
+// Returns the number of points in each cell. In proportion to the spread in each cell, the fewest
+// points reach an error (Neyman's allocation). The spread is measured with other points than those
+// of the sum. With the same points, both mean and spread would be too small where the points miss
+// the medium.
 std::vector<double> DrawnColumns::PointsByError(const glm::ivec2& column, const Levels& levels,
                                                 const ColumnPoints& points) const {
   std::vector<double> counts;
@@ -216,7 +220,7 @@ DrawnColumns::Levels DrawnColumns::LevelsOf(const glm::ivec2& column) const {
       around.end = std::max(around.end, levels.end);
     }
   }
-  // Interpolation reaches a level farther.
+  // Interpolation reaches one level further.
   return {std::max(around.begin - 1, 0), std::min(around.end + 1, size.z)};
 }
 

@@ -1,5 +1,5 @@
-// What the columns of a medium with detail hold, from the medium at many points in each of their
-// cells. Knows no scene and no GL.
+// Computes what the columns of a medium with detail hold, from the medium at many points in each of
+// their cells. This code does not depend on scenes or GL.
 #pragma once
 
 #include <array>
@@ -15,34 +15,35 @@ namespace thunderhead::volume {
 
 struct DrawnColumn {
   DrawnMedium::Channels sums{};  // over the column's levels
-  // Shares of the sum of all channels that interpolation takes from the 3 x 3 columns around, x
-  // fastest.
+  // The shares of the sum of all channels that interpolation takes from the 3 x 3 columns around
+  // this one, x fastest.
   std::array<float, 9> shares{};
 };
 
-// Points at which a column is evaluated.
+// The number of points at which a column is evaluated.
 struct ColumnPoints {
-  // In each cell; at least, where there is an error.
-  int at_surface = 1;  // where billows may end
+  // Points in each cell. With an error target these are minimums.
+  int at_surface = 1;  // in cells where billows may end
   int elsewhere = 1;
 
-  // Where it is not 0, cells in which the medium varies get more, until the column's sum has this
-  // relative standard error, or where its optical depth is less than 1, that depth has this error;
-  // but at most so many of them in a column.
+  // The error target, or 0 for none. With a target, cells in which the medium varies get more
+  // points until the column's sum has this relative standard error. For an optical depth below 1,
+  // the target is this absolute error of the depth. A column gets at most `most` points.
   double error = 0.0;
   int most = 0;
 };
 
 class DrawnColumns {
  public:
-  // All must outlive it. When the control of a column changes, so do the columns beside it.
+  // All arguments must outlive this object. When a column's control changes, the columns next to it
+  // change, too.
   DrawnColumns(const DetailControl& control, const PlacedDetail& detail,
                const ExtinctionVolume& volume);
 
   DrawnColumn Sum(const glm::ivec2& column, const ColumnPoints& points) const;
 
  private:
-  // The levels at which there may be anything, `end` not included.
+  // The range of levels that may hold anything, without `end`.
   struct Levels {
     int begin = 0;
     int end = 0;
@@ -58,7 +59,7 @@ class DrawnColumns {
   const RegularGrid& grid_;
   const std::size_t channels_;
   const double cell_depth_;       // optical depth of a cell's height where a texel is 1
-  std::vector<Levels> occupied_;  // by column
+  std::vector<Levels> occupied_;  // one for each column
 };
 
 }  // namespace thunderhead::volume

@@ -31,13 +31,13 @@ THUNDERHEAD_IN_LANES void RoundDown(const Floats& value, Integers<Floats>* down,
   *rest = value - (towards_zero - over);
 }
 
-// The byte of a word, from the lowest.
+// Extracts a byte of a word, counted from the lowest.
 template <int kByte, typename Floats>
 THUNDERHEAD_IN_LANES void ByteOf(const Integers<Floats>& word, Floats* value) {
   Convert((word >> (8 * kByte)) & 255, value);
 }
 
-// base::FloatFromHalf.
+// Does the same as base::FloatFromHalf.
 template <typename Floats>
 THUNDERHEAD_IN_LANES void FromHalf(const Integers<Floats>& half, Floats* value) {
   *value = __builtin_bit_cast(Floats, half << 13) * 0x1p112F;
@@ -51,7 +51,7 @@ THUNDERHEAD_IN_LANES void Limit(float low, float high, Floats* value) {
 
 }  // namespace
 
-// Evaluates the medium at places, one in each lane.
+// Evaluates the medium at several places, one in each lane.
 template <typename Floats>
 struct DrawnMedium::Lanes {
   using Whole = Integers<Floats>;
@@ -63,7 +63,7 @@ struct DrawnMedium::Lanes {
 
   // A linear interpolation between cells.
   struct Place {
-    Whole cell;  // the lowest
+    Whole cell;  // the cell with the lowest index
     Weights weights;
   };
 
@@ -71,7 +71,7 @@ struct DrawnMedium::Lanes {
     Floats billows, x, y, z;
   };
 
-  // Along x, then y, then z.
+  // Computes the corners' weights, in the order along x, then y, then z.
   THUNDERHEAD_IN_LANES static void FindWeights(const Point& share, Weights* weights) {
     for (std::size_t i = 0; i < kCorners; ++i) {
       (*weights)[i] = ((i & 1U) != 0 ? share.x : 1.0F - share.x) *
@@ -146,7 +146,7 @@ struct DrawnMedium::Lanes {
     noise->z += weight * bytes.z;
   }
 
-  // Multiplies `values` by the plane's.
+  // Multiplies `values` by the plane's values.
   template <int kPlaneChannels>
   THUNDERHEAD_IN_LANES static void Multiply(const DrawnMedium& medium, const ExtinctionPlane& plane,
                                             const Place& from, Floats* values) {
@@ -172,7 +172,7 @@ struct DrawnMedium::Lanes {
     }
   }
 
-  // `values` are all 1 when it begins.
+  // Evaluates the medium. All `values` must be 1 before the call.
   THUNDERHEAD_IN_LANES static void Evaluate(const DrawnMedium& medium, const Point& in_cells,
                                             std::array<Floats, kMaxChannels>* values) {
     Place here;
@@ -198,7 +198,7 @@ struct DrawnMedium::Lanes {
         ByteOf<3>(word, &byte);
         occupied += here.weights[i] * byte;
       }
-      // Where it is empty nothing is drawn, and nothing is displaced to there.
+      // Nothing is drawn at an empty place, and no medium is displaced into it.
       if (!AnyAbove(0.0F, occupied)) {
         for (Floats& value : *values) value = Floats{};
         return;
@@ -245,7 +245,7 @@ struct DrawnMedium::Lanes {
     for (; of_plane < values->data() + values->size(); ++of_plane) *of_plane = Floats{};
   }
 
-  // As lanes of arrays.
+  // Evaluates places in arrays, one in each lane.
   THUNDERHEAD_IN_LANES static void EvaluateAll(const DrawnMedium& medium, const Places& in_cells,
                                                ChannelsAt* values) {
     Point places;

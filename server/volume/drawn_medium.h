@@ -1,5 +1,6 @@
-// A medium with detail at any place, evaluated as shaders evaluate it (shaders/common/medium.glsl)
-// where nothing of the noise is left out for being finer than a pixel. Knows no scene and no GL.
+// A medium with detail, evaluated at any place like in the shaders (shaders/common/medium.glsl).
+// Unlike there, no noise is left out because it is finer than a pixel. This code does not depend on
+// scenes or GL.
 #pragma once
 
 #include <array>
@@ -16,34 +17,35 @@
 
 namespace thunderhead::volume {
 
-// Detail as it is drawn in a volume's place.
+// The detail of a volume at the volume's place in the world.
 struct PlacedDetail {
   struct Layer {
     const physics::DetailTile* tile = nullptr;
     double tile_m = 0.0;        // edge
-    std::vector<float> shares;  // of each channel that the layer's noise multiplies
-    glm::dvec2 drift_m{0.0};    // of the noise from its place in the world
+    std::vector<float> shares;  // for each channel, the share that the layer's noise multiplies
+    glm::dvec2 drift_m{0.0};    // displacement of the noise from its place in the world
   };
 
   std::vector<Layer> layers;  // the first displaces the medium, all multiply it
-  glm::dvec3 warp_m{0.0};     // the full displacement
+  glm::dvec3 warp_m{0.0};     // displacement at full amplitude
   glm::dmat3 fibres{1.0};     // physics::FibresAlong
 };
 
 class DrawnMedium {
  public:
-  // By channel: texel values of the volume, those that it does not have being 0.
+  // The volume's texel values by channel. Channels that it does not have are 0.
   using Channels = std::array<float, kMaxChannels>;
 
-  // `control` is DetailControlOf the volume. All but `detail` must outlive it.
+  // `control` is the result of DetailControlOf for the volume. All arguments except `detail` must
+  // outlive this object.
   DrawnMedium(const DetailControl& control, const PlacedDetail& detail,
               const ExtinctionVolume& volume);
 
-  // `in_cells` is a place in cells from the volume's low corner. Beyond the grid it is that of the
-  // outermost cells.
+  // Returns the medium at a place, in cells from the volume's low corner. Beyond the grid the
+  // outermost cells continue.
   Channels At(const glm::vec3& in_cells) const;
 
-  // At eight places, in less than half of the time.
+  // Evaluates eight places at once, in less than half of the time.
   struct Places {
     std::array<float, base::kLanes> x, y, z;
   };
@@ -55,8 +57,8 @@ class DrawnMedium {
 
   struct Layer {
     const std::uint8_t* texels;
-    glm::vec3 corner;  // of the volume, in tiles
-    glm::vec3 cell;    // in tiles
+    glm::vec3 corner;  // the volume's corner, in tiles
+    glm::vec3 cell;    // a cell's size, in tiles
     Channels shares;
   };
 
@@ -67,8 +69,8 @@ class DrawnMedium {
 
   const DetailControl& control_;
   const ExtinctionVolume& volume_;
-  std::array<std::size_t, kCorners> corners_;  // from the lowest
-  glm::vec3 warp_;                             // in cells
+  std::array<std::size_t, kCorners> corners_;  // offsets of a cell's corners from the lowest one
+  glm::vec3 warp_;                             // displacement in cells
   glm::mat3 fibres_;
   std::vector<Layer> layers_;
 };

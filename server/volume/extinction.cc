@@ -14,7 +14,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// The terms of fields that have any condensate.
+// Returns the terms of fields that have any condensate.
 std::vector<ExtinctionTerm> EffectiveTerms(const HydrometeorFields& fields,
                                            const std::vector<ExtinctionTerm>& terms) {
   std::vector<ExtinctionTerm> effective;
@@ -27,7 +27,7 @@ std::vector<ExtinctionTerm> EffectiveTerms(const HydrometeorFields& fields,
   return effective;
 }
 
-// Total extinction of the cells (low_x.., y, z) into `row`.
+// Writes the total extinction of the cells (low_x.., y, z) to `row`.
 void SumRow(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms, int low_x,
             int y, int z, std::vector<float>* row) {
   std::fill(row->begin(), row->end(), 0.0F);
@@ -49,7 +49,7 @@ void Include(int x, int y, int z, CellBox* box) {
   box->high = glm::max(box->high, glm::ivec3(x + 1, y + 1, z + 1));
 }
 
-// The box around the cells above `negligible_per_m`, and the largest of them.
+// Returns the box around the cells above `negligible_per_m`, and the largest extinction in it.
 Occupied FindAbove(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
                    float negligible_per_m) {
   const CellBox& search = fields.condensate;
@@ -72,7 +72,8 @@ Occupied FindAbove(const HydrometeorFields& fields, const std::vector<Extinction
 }
 
 Occupied FindOccupied(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms) {
-  // For a thick medium first: only one that is thin everywhere is looked through again.
+  // Tries the threshold of thick media first, so that only a medium that is thin everywhere is
+  // scanned again.
   Occupied found =
       FindAbove(fields, terms,
                 NegligibleExtinction_per_m(fields.grid, std::numeric_limits<float>::infinity()));
@@ -153,7 +154,7 @@ ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
   volume.negligible_per_m = occupied.negligible_per_m;
   PlaceBox(fields.grid, occupied.cells, &volume);
   volume.maximum_per_m = occupied.maximum_per_m;
-  // Scales the largest value to just below 2^15; the smallest normal half is then 3e-9 of it.
+  // Scales the largest value to just below 2^15. The smallest normal half is then 3e-9 of it.
   volume.extinction_per_m = std::ldexp(1.0F, std::ilogb(volume.maximum_per_m) - 14);
   const glm::ivec3 low = glm::max(occupied.cells.low - 1, glm::ivec3(0));
   for (int first = 0; first < channels; first += 4) {

@@ -1,23 +1,23 @@
-// A field's values as its file has them: in memory there are masses per volume, by which mixing
-// ratios were multiplied by the density of air. Knows no files.
+// Converts stored values of a field back to the values in its file. Memory holds masses per volume,
+// which are mixing ratios multiplied by the density of air. This code does not depend on files.
 #pragma once
 
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::volume {
 
-// The quantity that values of the field can be told in: its own, or mass concentration for a mixing
-// ratio of unknown air.
+// Returns the quantity in which values of the field can be reported. It is the file's quantity, or
+// mass concentration for a mixing ratio of unknown air.
 Quantity QuantityOf(const HydrometeorFields& fields, const HydrometeorField& field);
 
-// In the unit of QuantityOf, of one cell. A mixing ratio is exact but for the air's density, which
-// differs from its mean over the cells around (AirDensity) by 1 % in a storm, at worst by 9 % in an
-// overshooting top. `cell` is one of the grid's.
+// Returns the value of a cell in the unit of QuantityOf. `cell` must be in the grid. A mixing ratio
+// is exact except for the air's density, because that is a mean over the surrounding cells
+// (AirDensity). It differs by 1 % in a storm, and by 9 % at worst in an overshooting top.
 float ValueAt(const HydrometeorFields& fields, const HydrometeorField& field,
               const glm::ivec3& cell);
 
-// Mass of the field in a volume of air with this much in its concentrations, kg/m3: 0 for a field
-// in extinction.
+// Returns the mass of the field in a volume of air with this sum of concentrations, kg/m3. It is 0
+// for a field in extinction.
 inline double MassOf(const HydrometeorField& field, double concentration) {
   return field.quantity == Quantity::kExtinction ? 0.0 : concentration;
 }

@@ -33,7 +33,7 @@ void AddExtinction(const HydrometeorField& field, const MassExtinction& mass_ext
     for (std::size_t i = 0; i < count; ++i) sums[i * stride] += concentration[i] * weight;
     return;
   }
-  // Cells beyond those that have sizes are empty.
+  // Cells outside the range with sizes are empty.
   const std::size_t low = std::max(offset, field.sizes.first_cell);
   const std::size_t high = std::min(offset + count, field.sizes.EndCell());
   for (std::size_t cell = low; cell < high; ++cell) {

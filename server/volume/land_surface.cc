@@ -12,7 +12,7 @@ namespace thunderhead::volume {
 namespace {
 
 constexpr glm::vec3 kLuminance(0.2126F, 0.7152F, 0.0722F);  // ITU-R BT.709
-constexpr int kShoreCells = 2;  // how far land's colour goes on below water
+constexpr int kShoreCells = 2;  // how far land's colour continues below water
 
 float Decoded(std::uint8_t byte) { return static_cast<float>(base::LinearOfSrgbByte(byte)); }
 
@@ -25,7 +25,8 @@ float ValueOf(const std::vector<float>& values, std::size_t i) {
   return values.empty() ? std::nanf("") : values[i];
 }
 
-// Gives water beside land the mean colour of the land around it, a cell farther each time.
+// Gives water next to land the mean colour of the land around it. Each pass reaches one cell
+// further.
 void SpreadColors(const glm::ivec2& cells, std::vector<glm::vec3>& colors,
                   std::vector<bool>& known) {
   for (int pass = 0; pass < kShoreCells; ++pass) {
@@ -68,7 +69,7 @@ LandSurface MakeLandSurface(const LandColumns& columns, const glm::ivec2& cells)
     const float water = ValueOf(columns.water, i);
     is_land[i] = std::isfinite(water) ? water <= 0.5F : !use.water;
     if (is_land[i]) {
-      // Land of a class of water is a shore or sea ice that the class does not know.
+      // Land in a class of water is a shore or sea ice, which the class does not cover.
       const physics::LandUse dry = use.water ? physics::LandUseOf(columns.scheme, 0) : use;
       colors[i] = physics::LandReflectance(
           dry, {ValueOf(columns.albedo, i), ValueOf(columns.green_percent, i),

@@ -15,12 +15,12 @@ namespace thunderhead::volume {
 namespace {
 
 constexpr double kQuarter = glm::half_pi<double>() / 2.0;
-// Nearer to a pole a cone or a cylinder has no place for it.
+// The latitude beyond which a cone or a cylinder cannot show a place.
 constexpr double kPole = glm::half_pi<double>() - 1e-9;
 
 using Parameters = std::map<std::string, std::string, std::less<>>;
 
-// "+a=1 +b" as a = "1", b = "".
+// Returns "+a=1 +b" as a = "1", b = "".
 Parameters ParametersOf(std::string_view proj) {
   Parameters parameters;
   for (const absl::string_view word :
@@ -39,7 +39,7 @@ double NumberOf(const Parameters& parameters, std::string_view name) {
   return value;
 }
 
-// tan of half the distance to the south pole, whose logarithm is Mercator's y.
+// Returns the tangent of half the distance to the south pole. Its logarithm is Mercator's y.
 double Stretched(double latitude) { return std::tan(kQuarter + latitude / 2.0); }
 
 double Wrapped_deg(double degrees) { return std::remainder(degrees, 360.0); }
@@ -132,7 +132,7 @@ std::optional<EarthPlace> MapProjection::Unproject(const glm::dvec2& map_m) cons
   double turn = 0.0;
   switch (kind_) {
     case Kind::kConic: {
-      // A cone with its tip in the south has scale, origin and distance below zero.
+      // A cone with its tip in the south has negative scale, origin and distance.
       const double side = std::copysign(1.0, cone_);
       const glm::dvec2 from_tip_m = side * glm::dvec2(map_m.x, origin_m_ - map_m.y);
       const double distance_m = side * glm::length(from_tip_m);

@@ -1,6 +1,7 @@
-// Places on Earth of world coordinates: the map projections that StormInfo::projection names, on
-// the sphere. Formulas: Snyder 1987, Map Projections - A Working Manual (USGS Professional Paper
-// 1395), equations 7-1, 7-5, 15-1 to 15-11, 21-15 to 21-18 and 12-1. Knows no files.
+// Converts between world coordinates and places on Earth, with the map projections in
+// StormInfo::projection, on the sphere. Formulas: Snyder 1987, Map Projections - A Working Manual
+// (USGS Professional Paper 1395), equations 7-1, 7-5, 15-1 to 15-11, 21-15 to 21-18 and 12-1. This
+// code does not depend on files.
 #pragma once
 
 #include <optional>
@@ -17,13 +18,16 @@ struct EarthPlace {
 
 class MapProjection {
  public:
-  // The projection of a grid whose middle is at `middle`. Nothing for an empty text, and for one
-  // that is not as this room writes it: lcc, stere on a pole, merc or eqc on a sphere.
+  // Returns the projection of a grid whose middle is at `middle`. Returns nothing for an empty
+  // text, or for a text in a form that this project does not write. It writes lcc, stere on a pole,
+  // merc and eqc, on a sphere.
   static std::optional<MapProjection> Of(std::string_view proj, const EarthPlace& middle);
 
-  // The place of metres east and north of the middle of the domain; nothing beyond the map.
+  // Returns the place at these metres east and north of the domain's middle, or nothing beyond the
+  // map.
   std::optional<EarthPlace> PlaceOf(const glm::dvec2& world_m) const;
-  // The metres east and north of it of a place; nothing for one that is not on the map.
+  // Returns the metres east and north of the middle for a place, or nothing if it is not on the
+  // map.
   std::optional<glm::dvec2> WorldOf(const EarthPlace& place) const;
 
  private:
@@ -37,8 +41,8 @@ class MapProjection {
   double radius_m_ = 0.0;
   double longitude0_deg_ = 0.0;
   double latitude0_ = 0.0;  // radians
-  double cone_ = 1.0;       // n; 1 of the polar one
-  double scale_m_ = 0.0;    // R F, of the polar one 2 R k0, of the cylinders R cos(lat_ts)
+  double cone_ = 1.0;       // n; 1 for the polar projection
+  double scale_m_ = 0.0;    // R F; polar: 2 R k0; cylinders: R cos(lat_ts)
   double origin_m_ = 0.0;   // y of latitude0_ below the cone's tip
   double pole_ = 1.0;       // 1 north, -1 south
   glm::dvec2 middle_m_{0.0};

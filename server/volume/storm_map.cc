@@ -10,7 +10,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Adds the field's paths to `columns` and finds where it is strongest.
+// Adds the field's paths to `columns` and finds where the field is strongest.
 class ColumnScan {
  public:
   ColumnScan(const HydrometeorFields& fields, std::size_t index)
@@ -42,7 +42,7 @@ class ColumnScan {
     const CellBox& box = fields_.condensate;
     const float* const row = field_.concentration_kg_per_m3.data() + fields_.grid.Offset(0, y, z);
     double* const columns = columns_.data() + fields_.grid.Offset(0, y, 0);
-    // Looking up the air takes longer than all else, and nearly no cell needs it.
+    // Looking up the air is the slowest part, and almost no cell needs it.
     const float least = peak_.value * thinnest;
     for (int x = box.low.x; x < box.high.x; ++x) {
       columns[x] += row[x];
@@ -77,14 +77,14 @@ class ColumnScan {
   FieldPeak peak_;
 };
 
-// A pixel a column, or as many fewer as are allowed.
+// Returns one pixel for each column, or fewer if the limit is lower.
 glm::ivec2 SizeFor(const glm::ivec2& columns, int max_size_px) {
   const int longer = std::max(columns.x, columns.y);
   if (longer <= max_size_px) return columns;
   return glm::max(glm::ivec2(glm::round(glm::dvec2(columns) * (1.0 * max_size_px / longer))), 1);
 }
 
-// Means along one axis: `lines` lines of `from` values, `step` apart, become lines of `to` values.
+// Computes means along one axis. `lines` lines of `from` values become lines of `to` values.
 std::vector<double> ResampledLines(const std::vector<double>& values, int lines, int from, int to,
                                    bool along_x) {
   std::vector<double> result(static_cast<std::size_t>(lines) * static_cast<std::size_t>(to));

@@ -19,8 +19,8 @@ constexpr double kSmoothingPerHeight = 0.25;
 // Share of a column's optical depth that lies above its top.
 constexpr double kShareAboveTop = 1e-3;
 
-// Optical depth of every column of the domain, and extinction summed over every level; both of a
-// box alone.
+// Optical depth of every column of the domain, and extinction summed over every level. Only cells
+// in a box are counted.
 struct Sums {
   std::vector<double> columns;
   std::vector<double> levels;
@@ -53,7 +53,7 @@ Sums SumsOf(const HydrometeorFields& fields, const CellBox& box, physics::SizeSo
   return sums;
 }
 
-// The height above sea level that has kShareAboveTop of the levels' sum above it.
+// Returns the height above sea level that has kShareAboveTop of the levels' sum above it.
 double TopOf(const std::vector<double>& levels, const RegularGrid& grid) {
   const double max_above = kShareAboveTop * std::accumulate(levels.begin(), levels.end(), 0.0);
   std::size_t level = levels.size() - 1;
@@ -61,7 +61,7 @@ double TopOf(const std::vector<double>& levels, const RegularGrid& grid) {
   return grid.low_corner_m.z + static_cast<double>(level + 1) * grid.spacing_m.z;
 }
 
-// Replaces each of `count` values, `stride` apart, by the mean of those at most `radius` away.
+// Replaces each of `count` values, `stride` apart, by the mean of the values at most `radius` away.
 void SmoothLine(double* values, int count, std::ptrdiff_t stride, int radius) {
   std::vector<double> sum_before{0.0};
   for (int i = 0; i < count; ++i) sum_before.push_back(sum_before.back() + values[i * stride]);
@@ -75,7 +75,7 @@ void SmoothLine(double* values, int count, std::ptrdiff_t stride, int radius) {
 }
 
 void Smooth(std::vector<double>& columns, const glm::ivec3& cells, const glm::ivec2& radius) {
-  // Twice, since the mean over a box is the same beside a lone peak as on it.
+  // Smooths twice, because after one box mean the values next to a lone peak equal the peak.
   for (int pass = 0; pass < 2; ++pass) {
     for (int y = 0; y < cells.y; ++y) {
       SmoothLine(columns.data() + static_cast<std::ptrdiff_t>(y) * cells.x, cells.x, 1, radius.x);
@@ -84,7 +84,7 @@ void Smooth(std::vector<double>& columns, const glm::ivec3& cells, const glm::iv
   }
 }
 
-// The cells of `box` in columns at most `radius` from `column`.
+// Returns the cells of `box` in columns at most `radius` from `column`.
 CellBox Around(const glm::ivec2& column, const glm::ivec2& radius, CellBox box) {
   for (int axis = 0; axis < 2; ++axis) {
     box.low[axis] = std::max(box.low[axis], column[axis] - radius[axis]);
@@ -101,7 +101,7 @@ std::optional<StormCore> StrongestCore(const HydrometeorFields& fields, physics:
   if (*std::max_element(storm.columns.begin(), storm.columns.end()) <= 0.0) return std::nullopt;
   const double height_m = TopOf(storm.levels, grid) - LowestTerrain_m(fields);
   const double smoothing_m = std::min(kSmoothingPerHeight * height_m, kWidestSmoothing_m);
-  // Two means over boxes of half the width are one over a triangle of the whole.
+  // Two means over boxes of half the width make one over a triangle of the full width.
   const glm::ivec2 radius(glm::round(0.25 * smoothing_m / glm::dvec2(grid.spacing_m)));
   Smooth(storm.columns, grid.cells, radius);
   const auto strongest = static_cast<int>(
@@ -112,7 +112,7 @@ std::optional<StormCore> StrongestCore(const HydrometeorFields& fields, physics:
   core.place_m =
       glm::dvec2(grid.low_corner_m) + (glm::dvec2(column) + 0.5) * glm::dvec2(grid.spacing_m);
   core.ground_m = TerrainHeight_m(fields, core.place_m);
-  // A tower in shear leans.
+  // A tower in shear leans, so its top may be in another column.
   const glm::ivec2 reach(glm::round(0.5 * height_m / glm::dvec2(grid.spacing_m)));
   const double top_m =
       TopOf(SumsOf(fields, Around(column, reach, fields.condensate), sizes).levels, grid);

@@ -1,5 +1,5 @@
-// The height of the ground under a storm. Beyond the domain it is that of the nearest point of its
-// edge.
+// The height of the ground under a storm. Beyond the domain it is the height of the nearest point
+// of the domain's edge.
 #pragma once
 
 #include "glm/vec2.hpp"
@@ -7,10 +7,11 @@
 
 namespace thunderhead::volume {
 
-// Height above sea level at a place in world metres, linear between the middles of the columns.
+// Returns the height above sea level at a place in world metres, linear between the centres of
+// columns.
 double TerrainHeight_m(const HydrometeorFields& fields, const glm::dvec2& place_m);
 
-// The lowest ground of the domain.
+// Returns the lowest ground of the domain.
 double LowestTerrain_m(const HydrometeorFields& fields);
 
 }  // namespace thunderhead::volume

@@ -36,8 +36,8 @@ void AddField(const HydrometeorFields& fields, const HydrometeorField& field,
   }
 }
 
-// The first plane, and one past the last, of the part that leaves out kShareLeftOut of the profile
-// at either end.
+// Returns the first plane and the end of the range of planes that leaves out kShareLeftOut of the
+// profile at either end.
 std::pair<int, int> Keep(const std::vector<double>& profile) {
   const double max_left_out = kShareLeftOut * std::accumulate(profile.begin(), profile.end(), 0.0);
   int low = 0;

@@ -10,7 +10,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Of bytes, one after the other.
+// A hash of bytes that are added one after the other.
 class ContentHash {
  public:
   template <typename Value>

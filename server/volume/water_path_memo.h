@@ -1,5 +1,6 @@
-// Remembers by what the columns of volumes keep their water paths: sessions show times again, and
-// media are made again after memory was given to others. Knows no scene and no GL.
+// A cache of the factors with which columns of volumes keep their water paths. They are needed
+// again when a session returns to an earlier time, or when a medium is rebuilt after its memory was
+// given to others. This code does not depend on scenes or GL.
 #pragma once
 
 #include <cstddef>
@@ -12,30 +13,31 @@
 
 namespace thunderhead::volume {
 
-// For any thread.
+// The cache may be used by any thread.
 class WaterPathMemo {
  public:
-  // Forgets what has not been asked for longest when it holds more.
+  // Creates a cache that evicts the least recently used entries when it holds more than
+  // `most_bytes`.
   explicit WaterPathMemo(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  // As KeepWaterPaths, which it calls for a volume, control and detail that it does not remember.
-  // Only full effort is remembered. Returns the effort that they were found with: at least
-  // `effort`.
+  // Does the same as KeepWaterPaths, which it calls if the volume, control and detail are not in
+  // the cache. Only results of full effort are cached. Returns the effort with which the paths were
+  // found, which is at least `effort`.
   WaterPathEffort Keep(const PlacedDetail& detail, DetailControl* control, ExtinctionVolume* volume,
                        WaterPathEffort effort);
 
  private:
   struct Entry {
-    std::uint64_t key = 0;  // of the contents of volume, control and detail
+    std::uint64_t key = 0;  // hash of the contents of volume, control and detail
     std::shared_ptr<const WaterPaths> paths;
   };
 
-  std::shared_ptr<const WaterPaths> Find(std::uint64_t key);  // null if it is not remembered
+  std::shared_ptr<const WaterPaths> Find(std::uint64_t key);  // null if it is not cached
   void Add(Entry entry);
 
   const std::size_t most_bytes_;
   std::mutex mutex_;
-  std::list<Entry> entries_;  // the one asked for last comes first
+  std::list<Entry> entries_;  // the most recently used comes first
   std::size_t bytes_ = 0;
 };
 

@@ -17,11 +17,11 @@
 namespace thunderhead::volume {
 namespace {
 
-// Of DetailTexel::column, a byte.
+// Smallest and largest factor in DetailTexel::column, which is a byte.
 constexpr float kLeastRest = 8.0F / DetailTexel::kColumnOne;
 constexpr float kMostRest = 255.0F / DetailTexel::kColumnOne;
 
-// Of each step.
+// The numbers of points of both steps.
 struct Points {
   ColumnPoints first;
   ColumnPoints second;
@@ -32,22 +32,24 @@ constexpr ColumnPoints kMore = {.at_surface = 16, .elsewhere = 4};
 constexpr ColumnPoints kMany = {.at_surface = 16, .elsewhere = 4, .error = 0.01, .most = 12000};
 constexpr Points kQuickPoints = {kTwo, kFew};
 
-// From so many columns that hold anything on, each gets fewer points.
+// Above this number of columns that hold anything, each column gets fewer points.
 constexpr double kManyColumns = 2e4;
 
-// Of a channel in a column, in the first step, and of its total, in the second.
+// Largest factors: of a channel in one column (first step), and of a channel's total (second step).
 constexpr float kMostOfColumn = 4.0F;
 constexpr double kMostOfChannel = kMaxColumnFactor / kMostOfColumn;
 
-// Rounds in which the second step's factors are found at first, and after detail has been made
-// weaker, which is done this often: with more, columns keep no more.
+// Number of iterations in which the second step's factors are found, at first and each time after
+// detail was weakened. Detail is weakened kTimesWeaker times. More iterations do not help more
+// columns.
 constexpr int kTurns = 12;
 constexpr int kMoreTurns = 8;
 constexpr int kTimesWeaker = 5;
 
-// Detail of a column that lacks something in spite of the largest factor is made so weak that the
-// column would hold this many times what it should, as the detail of columns beside it thins it,
-// too; where even without detail it would hold less, there is none.
+// Weakening of detail in a column that lacks something in spite of the largest factor. Its detail
+// is made so weak that the column would hold kRoom times its target, because the detail of
+// neighbouring columns thins it, too. If it would hold less even without detail, its detail is
+// removed.
 constexpr float kRoom = 3.0F;
 constexpr float kNegligible = 0.005F;
 
@@ -57,8 +59,8 @@ float FactorOf(float without, float with) {
                      : kMostOfColumn;
 }
 
-// Calls visit(texel, channel of a column), those of a column being beside each other, for texels
-// that are not 0.
+// Calls visit(texel, channel of a column) for texels that are not 0. The channels of a column have
+// adjacent indices.
 template <typename Volume, typename Visit>
 void ForEachTexel(Volume& volume, const Visit& visit) {
   const auto all = static_cast<std::size_t>(volume.Channels());
@@ -78,8 +80,8 @@ void ForEachTexel(Volume& volume, const Visit& visit) {
   }
 }
 
-// Sums of columns over levels, x fastest, by channel: what linear interpolation has in the middle
-// of a quarter of a cell, on the mean.
+// Returns the sums of columns over levels, x fastest, by channel. They are the means that linear
+// interpolation gives at the centres of a cell's quarters.
 std::vector<float> SumsWithout(const ExtinctionVolume& volume) {
   const auto channels = static_cast<std::size_t>(volume.Channels());
   const glm::ivec3& size = volume.grid.cells;
@@ -124,7 +126,7 @@ std::vector<float> SumsWith(const DrawnColumns& columns, const ExtinctionVolume&
   return sums;
 }
 
-// Those that hold anything.
+// Returns the columns that hold anything.
 std::vector<std::size_t> FilledColumns(const std::vector<float>& without, std::size_t columns) {
   const std::size_t channels = without.size() / columns;
   std::vector<std::size_t> filled;
@@ -136,7 +138,7 @@ std::vector<std::size_t> FilledColumns(const std::vector<float>& without, std::s
   return filled;
 }
 
-// Of the first step and the second, for so many columns that hold anything.
+// Returns the numbers of points of both steps, for this number of columns that hold anything.
 Points PointsFor(WaterPathEffort effort, std::size_t columns) {
   if (effort == WaterPathEffort::kQuick) return kQuickPoints;
   const double share = kManyColumns / std::max(static_cast<double>(columns), kManyColumns);
@@ -150,13 +152,14 @@ Points PointsFor(WaterPathEffort effort, std::size_t columns) {
   return {with_fewer(kMore), with_fewer(kMany)};
 }
 
-// The second step: factors of columns, linear between their middles, and of channels, with which
-// both all channels of each column and all columns of each channel have what they had without
-// detail.
+// The second step. It finds factors of columns, linear between their centres, and factors of
+// channels. With both, each column keeps the sum of its channels without detail, and so does each
+// channel over all columns.
 class Rests {
  public:
-  // `without` are sums by channel and column, as SumsWithout has them; the columns' channels have
-  // been multiplied by `factors` since. All must outlive it but `filled`, FilledColumns.
+  // `without` holds sums by channel and column, like SumsWithout. The columns' channels have since
+  // been multiplied by `factors`. All arguments except `filled` (from FilledColumns) must outlive
+  // this object.
   Rests(const DrawnColumns& columns, const RegularGrid& grid, const std::vector<float>& without,
         const std::vector<float>& factors, std::vector<std::size_t> filled,
         const ColumnPoints& points)
@@ -173,8 +176,8 @@ class Rests {
     Fit(kTurns);
   }
 
-  // Columns in which no factor is large enough, or none small enough, with the share of detail's
-  // amplitude with which one is.
+  // Returns the columns in which no factor is large or small enough. Each has the share of detail's
+  // amplitude with which a factor suffices.
   std::vector<WaterPaths::Weaker> ThoseToWeaken() const {
     std::vector<WaterPaths::Weaker> weaker;
     for (const std::size_t column : filled_) {
@@ -183,7 +186,7 @@ class Rests {
       if (std::abs(missing) <= kNegligible * held.wanted) continue;
       float share = 1.0F;
       if (missing < 0.0F && of_columns_[column] <= kLeastRest) {
-        // The displacement, which is less with less amplitude, brings in too much.
+        // The displacement brings too much into the column. It shrinks with the amplitude.
         share = 0.5F;
       } else if (missing > 0.0F && of_columns_[column] >= kMostRest) {
         const float enough = kRoom * held.wanted;
@@ -194,7 +197,7 @@ class Rests {
     return weaker;
   }
 
-  // Call when the detail of these columns has been weakened.
+  // Fits again after the detail of these columns has been weakened.
   void FitAgain(const std::vector<WaterPaths::Weaker>& weaker) {
     std::vector<bool> changed(of_columns_.size(), false);
     for (const auto& [column, share] : weaker) {
@@ -210,14 +213,14 @@ class Rests {
   const std::vector<float>& OfChannels() const { return of_channels_; }
 
  private:
-  // By a column, of all channels together.
+  // What a column holds, with all channels together.
   struct Held {
     float wanted = 0.0F;
     float now = 0.0F;
-    float smooth = 0.0F;  // with the same factors, were there no detail
+    float smooth = 0.0F;  // with the same factors, but without detail
   };
 
-  // The index of the column `k` of 3 x 3 around another, x fastest.
+  // Returns the index of column `k` of the 3 x 3 columns around a column, x fastest.
   std::size_t Beside(std::size_t column, int k) const {
     const int x = static_cast<int>(column) % grid_.cells.x;
     const int y = static_cast<int>(column) / grid_.cells.x;
@@ -242,8 +245,8 @@ class Rests {
     return held;
   }
 
-  // The mean of the factors of a column and of those around it, weighted by what interpolation
-  // takes from each.
+  // Returns the mean factor of a column and its neighbours, weighted by the share that
+  // interpolation takes from each.
   float Between(std::size_t column) const {
     float with = 0.0F;
     float before = 0.0F;
@@ -315,7 +318,7 @@ void ScaleAmplitudes(const std::vector<WaterPaths::Weaker>& columns, std::size_t
   }
 }
 
-// The remainder of rounding to a byte goes to the next level.
+// Carries the remainder of rounding to a byte over to the next level.
 void StoreColumnFactors(const std::vector<float>& factors, DetailControl* control) {
   std::vector<float> left(factors.size(), 0.0F);
   for (std::size_t i = 0; i < control->size(); ++i) {
@@ -327,7 +330,7 @@ void StoreColumnFactors(const std::vector<float>& factors, DetailControl* contro
   }
 }
 
-// Multiplies channels by their factors and sets those of columns.
+// Multiplies channels by their factors and stores the columns' factors.
 void StoreSecondStep(const WaterPaths& paths, DetailControl* control, ExtinctionVolume* volume) {
   std::vector<float> by_column(paths.by_column.size());
   for (std::size_t i = 0; i < by_column.size(); ++i) {

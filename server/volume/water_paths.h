@@ -1,5 +1,5 @@
-// Water paths of a medium's columns, kept where detail finer than the grid is drawn. Knows no scene
-// and no GL.
+// Keeps the water paths of a medium's columns where detail finer than the grid is drawn. This code
+// does not depend on scenes or GL.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace thunderhead::volume {
 
-// At how many points the medium is evaluated.
+// The effort, which decides at how many points the medium is evaluated.
 enum class WaterPathEffort {
-  kQuick,  // while fields change
+  kQuick,  // used while fields change
   kFull,
 };
 
-// By what the columns of a volume keep their water paths. Columns are by x, then y.
+// The factors with which the columns of a volume keep their water paths. Columns are by x, then y.
 struct WaterPaths {
   // A column in which detail's amplitude is multiplied by a share.
   struct Weaker {
@@ -25,27 +25,34 @@ struct WaterPaths {
     float share = 1.0F;
   };
 
-  std::vector<float> by_column;  // factors of the volume's channels, which are beside each other
+  std::vector<float> by_column;  // factors of the volume's channels; those of a column are adjacent
   std::vector<float> by_channel;
   std::vector<float> drawn;                   // factors of DetailTexel::column
-  std::vector<std::vector<Weaker>> weakened;  // one time after the other
+  std::vector<std::vector<Weaker>> weakened;  // one list for each round of weakening
 
-  // Factors of the volume, as `by_column`: at most kMaxColumnFactor, and at least its inverse.
+  // Returns the volume's factors in the order of `by_column`, from 1 / kMaxColumnFactor to
+  // kMaxColumnFactor.
   std::vector<float> OfVolume() const;
 };
 
-// Keeps the water paths of columns, each of the area of a cell, in two steps. First each channel of
-// each column of `volume` is multiplied by what makes up for what detail takes from it on the mean.
-// Then DetailTexel::column is set to what that leaves of all channels together, by which shaders
-// multiply the medium at a place, wherever the displacement takes it from. That is linear between
-// columns, and found for all of them together; so that channels keep their totals, each is
-// multiplied by one more factor. Where no such factor is large enough, as billows leave next to
-// nothing of a column, DetailTexel::amplitude is made weaker. `control` is DetailControlOf the
-// volume.
+// Corrects the medium so that drawn detail does not change the water paths of columns, each of the
+// area of a cell. It works in two steps.
 //
-// So each channel's path of the whole storm is kept within 1 %, and that of all channels together
-// in 99 of 100 columns, on domains of more than 20 000 columns in fewer; with kQuick in 6 of 10, in
-// clouds of small puffs in fewer (docs/decisions/0020-detail-of-the-model.md).
+// First, it multiplies each channel of each column of `volume` by a factor. The factor makes up for
+// the mean loss caused by detail.
+//
+// Second, it sets DetailTexel::column to a factor that makes up for the loss that remains for all
+// channels together. Shaders multiply the medium at a place by it, wherever the displacement takes
+// the medium from. These factors are linear between columns, so they are found for all columns
+// together. One more factor for each channel keeps the channel's total.
+//
+// Billows can remove nearly everything from a column, so that no such factor is large enough.
+// DetailTexel::amplitude is then weakened. `control` must be DetailControlOf the volume.
+//
+// Each channel's path of the whole storm is thus kept within 1 %. The path of all channels together
+// is kept within 1 % in 99 of 100 columns. Domains of more than 20 000 columns keep it in fewer.
+// With kQuick it is kept in 6 of 10 columns, and in fewer in clouds of small puffs
+// (docs/decisions/0020-detail-of-the-model.md).
 WaterPaths KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
                           ExtinctionVolume* volume,
                           WaterPathEffort effort = WaterPathEffort::kFull);
@@ -53,7 +60,7 @@ WaterPaths KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
 // Does to the same volume and control what the call that returned `paths` did.
 void KeepWaterPathsAgain(const WaterPaths& paths, DetailControl* control, ExtinctionVolume* volume);
 
-// Multiplies columns by such factors, of the volume's own channels.
+// Multiplies columns by such factors, one for each of the volume's channels.
 void ScaleColumns(const std::vector<float>& factors, ExtinctionVolume* volume);
 
 inline constexpr float kMaxColumnFactor = 5.0F;

@@ -1,4 +1,4 @@
-// Air that a storm shades, against the reference, on rays that do not meet the storm.
+// Tests of air in a storm's shadow, compared with the reference on rays that do not meet the storm.
 #include "renderers/air_shade.h"
 
 #include <cmath>
@@ -21,7 +21,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// A layer of cloud 40 km wide between 4 and 8 km above the ground.
+// Returns a layer of cloud 40 km wide between 4 and 8 km above the ground.
 std::shared_ptr<const volume::HydrometeorFields> MakeRoof(double extinction_per_m) {
   const auto slab = support::MakeSlab(40e3, 16e3, extinction_per_m, {32, 32, 16});
   auto roof = std::make_shared<volume::HydrometeorFields>(*slab);
@@ -45,7 +45,8 @@ class AirShadeTest : public testing::Test {
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();
     scene_.output = {kWidth_px, kHeight_px, 90};
-    // From the south, against the sun: through the air in the roof's shadow, and below the roof.
+    // The camera looks from the south against the sun, through the air in the roof's shadow and
+    // below the roof.
     scene_.sun = {0.0, 40.0, 1.0};
     scene_.camera = scene::SpotterCamera{{0.0, -34e3}, 1.7, 0.0, 6.0, 40.0};
   }
@@ -62,7 +63,7 @@ class AirShadeTest : public testing::Test {
     return frame::PictureOf(*frame->radiance).radiance;
   }
 
-  // The mean over each row of the picture's middle third by the reference, for rows from the top.
+  // Returns the mean of the reference over the middle third of a row. Rows count from the top.
   glm::dvec3 TracedRow(int row, bool with_storm) const {
     const auto medium =
         reference::MediumOf(scene_, *fields_, reference::MediumOptions{.peak_cut_deg = 20.0});
@@ -97,7 +98,7 @@ class AirShadeTest : public testing::Test {
   scene::Scene scene_ = test_support::PlainScene();
 };
 
-// Above the horizon, where rays pass the whole shadow and miss the roof.
+// These rows look above the horizon, where rays cross the whole shadow and miss the roof.
 constexpr int kRowsBelowRoof[] = {80, 83, 86};
 
 TEST_F(AirShadeTest, AirBelowAStormIsAsDarkAsTheReferenceHasIt) {
@@ -109,15 +110,16 @@ TEST_F(AirShadeTest, AirBelowAStormIsAsDarkAsTheReferenceHasIt) {
     const glm::dvec3 drawn = DrawnRow(picture, row);
     for (int color = 0; color < 3; ++color) {
       EXPECT_LT(traced[color], 0.85 * lit[color]) << row;
-      // Samples 4 km apart, and the roof's light on the air from a two-stream layer.
+      // The tolerance is for air samples 4 km apart, and for the roof's light on the air, which
+      // comes from a two-stream layer.
       EXPECT_NEAR(drawn[color], traced[color], 0.04 * lit[color]) << row << ' ' << color;
     }
   }
 }
 
-// In front of a black roof only air shines. Next to the sun most of its light is that of haze near
-// the eye. When more was taken than airlight_before has up to a distance, bases were black with
-// violet rims, in the reference too.
+// In front of a black roof only the air shines. Next to the sun most of its light is scattered by
+// haze near the eye. An earlier version subtracted more shade than the air (airlight_before) sends
+// up to a distance. Cloud bases then were black with violet rims, in the reference too.
 TEST_F(AirShadeTest, OfAirInFrontOfAStormNoMoreIsTakenThanItHas) {
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
   scene_.fields[0].optics.albedo = 0.0F;
@@ -150,7 +152,7 @@ TEST_F(AirShadeTest, AirAboveAStormIsLit) {
   }
 }
 
-// Past the east side of a tower whose southern face the sun shines on.
+// Looks past the east side of a tower whose southern face is sunlit.
 TEST_F(AirShadeTest, AirBesideASunlitTowerHasItsLight) {
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
   fields_ = support::MakeSlab(20e3, 12e3, 0.02, {32, 32, 16});
@@ -164,8 +166,8 @@ TEST_F(AirShadeTest, AirBesideASunlitTowerHasItsLight) {
     for (int color = 0; color < 3; ++color) {
       EXPECT_GT(traced[color], 1.03 * lit[color]) << row << ' ' << color;
       EXPECT_GT(drawn[color], 1.01 * lit[color]) << row << ' ' << color;
-      // Faces turned as a sphere's stand for the tower's two, which the sun strikes more squarely:
-      // 0.06 to 0.075 of the lit air are missing.
+      // The model replaces the tower's two faces by faces oriented like a sphere's. The sun strikes
+      // the real faces more squarely: 0.06 to 0.075 of the lit air are missing.
       EXPECT_NEAR(drawn[color], traced[color], 0.08 * lit[color]) << row << ' ' << color;
     }
   }
@@ -183,7 +185,7 @@ TEST_F(AirShadeTest, WithoutAStormAirIsLit) {
   }
 }
 
-// A second cloud behind the first, which hides it, moves the middle of the box by 20 km.
+// A second cloud, hidden behind the first, moves the middle of the box by 20 km.
 TEST_F(AirShadeTest, AirStandsBeforeTheStormNotBeforeTheMiddleOfItsBox) {
   const auto near_cloud = [&](bool another_behind) {
     auto fields = std::make_shared<volume::HydrometeorFields>(*support::MakeSlab(40e3, 10e3, 0.02));

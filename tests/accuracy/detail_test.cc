@@ -1,4 +1,5 @@
-// Turbulent detail as every renderer draws it, against the noise evaluated on the CPU.
+// Tests of turbulent detail as every renderer draws it, compared with the noise evaluated on the
+// CPU.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -24,14 +25,15 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     scene::SetSlices(&scene_.rendering.technique, 512);
   }
 
-  // The medium as it is uploaded: extinction by cell, in units of the slab's, and factors of
-  // columns.
+  // The medium as it is uploaded: extinction by cell, in units of the slab's extinction, and column
+  // factors.
   struct Kept {
     volume::RegularGrid grid;
     std::vector<float> factors;
     std::vector<float> columns;
 
-    // Both are the same at all levels, but for the rounding of columns to bytes.
+    // Interpolates the values horizontally. They are the same at all levels, except that columns
+    // are rounded to bytes.
     double Of(const std::vector<float>& values, const glm::dvec3& world_m) const {
       const glm::dvec3 from_middle = (world_m - grid.low_corner_m) / grid.spacing_m - 0.5;
       const glm::dvec3 low = glm::floor(from_middle);
@@ -68,11 +70,11 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     return kept;
   }
 
-  static float FloatOf(std::uint16_t half) {  // a normal one
+  static float FloatOf(std::uint16_t half) {  // for normal numbers only
     return std::ldexp(static_cast<float>(1024 + (half & 1023)), (half >> 10) - 25);
   }
 
-  // The mean factor of the medium along the middle ray, by the midpoint rule.
+  // Returns the mean factor of the medium along the middle ray, by the midpoint rule.
   double MeanFactor(const scene::Detail& detail, double elevation_deg) const {
     const Kept kept = KeptBy(detail);
     const physics::DetailTile tile = physics::MakeDetailTile(detail.octaves, detail.seed);
@@ -100,13 +102,13 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
 
   static constexpr double kDepth = 3.0;
 
-  // As stored. On 200 m the slab's optical depth is 0.6, and detail 0.435 of its turbulence, 76 of
-  // 255.
+  // Returns the amplitude as it is stored. On 200 m the slab's optical depth is 0.6, and detail is
+  // 0.435 of its turbulence, 76 of 255.
   static float Amplitude() { return -16.0F / 127.0F; }
 };
 
 TEST_P(DetailInSlab, IsAtRestInTheWorld) {
-  // In every view the optical depth is that of the noise at the ray's points in world coordinates.
+  // In every view the optical depth must match the noise at the ray's points in world coordinates.
   stirred_ = true;
   scene::FieldParameters& ice = scene_.fields[physics::IndexOf(physics::Hydrometeor::kIce)];
   ice.optics = scene_.fields[0].optics;
@@ -121,11 +123,12 @@ TEST_P(DetailInSlab, IsAtRestInTheWorld) {
           -std::log(Look(kDepth, elevation_deg, 80.0).transmittance) / path / kDepth;
       least = std::min(least, seen);
       largest = std::max(largest, seen);
-      // The middle pixel is 0.2 degrees wide, 20 m of the wavelength's 700; half-angle slices count
-      // whole at the slab's faces; and llvmpipe interpolates 8-bit textures with 8 bits.
+      // The tolerance has three causes. The middle pixel is 0.2 degrees wide, or 20 m of the
+      // wavelength's 700 m. Half-angle slices count in full at the slab's faces. llvmpipe
+      // interpolates 8-bit textures with 8 bits.
       EXPECT_NEAR(seen, MeanFactor(ice.detail, elevation_deg), 0.006)
           << share << " " << elevation_deg;
-      // The column's water path is kept, but for what moves to those beside it.
+      // The column's water path is kept, except for what moves to neighbouring columns.
       if (elevation_deg > 89.0) {
         EXPECT_NEAR(seen, 1.0, 0.02) << share;
       }

@@ -1,4 +1,4 @@
-// The medium with detail as code without GL has it, against what is drawn.
+// Tests of the medium with detail as computed without GL, compared with what is drawn.
 #include "scene/detailed_medium.h"
 
 #include <cmath>
@@ -24,8 +24,8 @@ std::shared_ptr<const volume::HydrometeorFields> Sample() {
   return *store->Get(store->Storms().front()->id, 0, {});
 }
 
-// Seen straight down, in pixels so small that no detail fades: transmittances of the storm, thin
-// enough for light to pass.
+// The storm is seen straight down, in pixels so small that no detail fades. It is thin enough for
+// light to pass, so transmittances are compared.
 TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
   constexpr int kSide_px = 72;
   constexpr double kWidth_m = 6000.0;
@@ -35,7 +35,7 @@ TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
   const auto core = volume::StrongestCore(*fields);
   ASSERT_TRUE(core.has_value());
   scene::Scene scene = test_support::PlainScene();
-  // Without delta scaling, so that the eye sees the medium's own extinction.
+  // Delta scaling is off, so the eye sees the medium's own extinction.
   test_support::SetMode(&scene.rendering.technique, test_support::kLowAlbedo);
   auto& technique = std::get<scene::LightVolume>(scene.rendering.technique);
   technique.medium.look.detail = true;
@@ -56,7 +56,7 @@ TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
   const double step_m = grid.spacing_m.z / 8.0;
   const double pixel_m = kWidth_m / kSide_px;
   double off = 0.0;
-  double off_without = 0.0;  // of the medium without detail, for scale
+  double off_without = 0.0;  // difference from the medium without detail, for scale
   double covered = 0.0;
   scene::Scene plain = scene;
   for (scene::FieldParameters& field : plain.fields) field.detail.share = 0.0F;
@@ -81,13 +81,14 @@ TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
   constexpr double kPixels = kSide_px * kSide_px;
   EXPECT_GT(covered / kPixels, 0.1);
   EXPECT_LT(covered / kPixels, 0.95);
-  // Rays end at a transmittance of 0.005, and llvmpipe interpolates textures of bytes with 8 bits.
+  // The tolerance is because rays end at a transmittance of 0.005, and llvmpipe interpolates byte
+  // textures with 8 bits.
   EXPECT_LT(off / kPixels, 0.004);
-  // Straight down, columns of cells hold as much without detail.
+  // Seen straight down, columns of cells contain the same amount with and without detail.
   EXPECT_GT(off_without, 5.0 * off);
 }
 
-// Billows move through a storm that stays.
+// The billows move with the wind while the storm itself stays.
 TEST(DetailedMedium, DriftsWithTheWind) {
   volume::HydrometeorFields fields = *Sample();
   const auto core = volume::StrongestCore(fields);
@@ -123,7 +124,7 @@ TEST(DetailedMedium, DriftsWithTheWind) {
   const double soon = difference(first, cloud_at(5.0, wind));
   EXPECT_GT(soon, 0.0);
   EXPECT_LT(soon, 0.5 * difference(first, cloud_at(600.0, wind)));
-  // Where the noise has come round.
+  // At this time the noise has completed its period.
   EXPECT_LT(difference(first, cloud_at(10795.0, wind)), 2.0 * soon);
 }
 

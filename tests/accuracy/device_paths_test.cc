@@ -1,5 +1,5 @@
-// Paths on the device against the processors' of the same scene: two estimates of the same
-// radiance.
+// Tests of paths on the device, compared with the CPU's paths in the same scene: two estimates of
+// the same radiance.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -32,7 +32,7 @@ Fields SampleStorm() {
   return *std::move(fields);
 }
 
-// Mean and its standard error of several estimates.
+// The mean of several estimates and its standard error.
 struct Mean {
   double value = 0.0;
   double standard_error = 0.0;
@@ -47,7 +47,7 @@ Mean MeanOf(const std::vector<double>& values) {
   return {sum / count, std::sqrt(squares / count / (count - 1.0))};
 }
 
-// Ends pieces as soon as they may, and counts them.
+// A turn that ends each piece as soon as possible and counts the pieces.
 class CountedTurn final : public base::DeviceTurn {
  public:
   absl::Status Take() override {
@@ -92,8 +92,8 @@ class DevicePaths : public testing::Test {
     tracer_ = *std::move(tracer);
   }
 
-  // Of all colours of all rays, and of halves of the picture; each ray is traced `copies` times by
-  // `paths` paths.
+  // Compares all colours of all rays, and halves of the picture. Each ray is traced `copies` times
+  // with `paths` paths.
   void ExpectAgrees(int copies, int paths, int similar_after) {
     constexpr int kBatches = 24;
     Prepare();
@@ -150,7 +150,7 @@ TEST_F(DevicePaths, AgreeWithTheProcessors) { ExpectAgrees(10, 1, 0); }
 
 TEST_F(DevicePaths, AgreeInTheSimilarMedium) { ExpectAgrees(1, 10, 2); }
 
-// Ground, air, and light by Henyey and Greenstein's function.
+// The scene has ground, air, and scattering by Henyey and Greenstein's function.
 TEST_F(DevicePaths, AgreeFromTheGroundWithASecondLight) {
   scene_.camera = scene::SpotterCamera{.place_m = {box_.low_m.x - 2e4, box_.low_m.y - 2e4},
                                        .eye_height_m = 2.0,

@@ -1,4 +1,5 @@
-// Diffusion transport against published plane-parallel layers and limits (physics.md, section 4).
+// Tests of diffusion transport against published plane-parallel layers and limits (physics.md,
+// section 4).
 #include <cmath>
 #include <numbers>
 
@@ -17,18 +18,18 @@ class Diffusion : public SlabView {
     test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
     scene::SetSlices(&scene_.rendering.technique, 1024);  // steps shorter than the cells are high
     in_air_ = true;
-    width_m_ = 6e3;  // so wide that light lost through the sides is not seen
+    width_m_ = 6e3;  // wide enough that light lost through the sides is not seen
     SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.75F);
   }
 };
 
 TEST_F(Diffusion, UpwardRadianceOfDisortsThirdTest) {
-  // Henyey and Greenstein's g = 0.75, optical depth 8, sun overhead: 0.519598 and 0.493302 at
-  // mu = 0.5 and 1 for an irradiance of pi.
+  // Published values for Henyey and Greenstein's g = 0.75, optical depth 8, sun overhead: 0.519598
+  // and 0.493302 at mu = 0.5 and 1 for an irradiance of pi.
   const double at_half = Look(8.0, 30.0, 89.9).radiance * std::numbers::pi;
   const double at_one = Look(8.0, 89.9, 89.9).radiance * std::numbers::pi;
-  // Eddington's source is linear near the surface, where the true one bends down: a slanted ray is
-  // 12 % too bright.
+  // Eddington's source is linear near the surface, where the exact source bends down: a slanted ray
+  // is 12 % too bright.
   EXPECT_NEAR(at_half / 0.519598, 1.0, 0.15);
   EXPECT_NEAR(at_one / 0.493302, 1.0, 0.05);
 }
@@ -39,7 +40,7 @@ TEST_F(Diffusion, EvenLightShowsNothing) {
     for (const double elevation_deg : {-60.0, 20.0, 80.0}) {
       const Seen seen = Look(depth, elevation_deg, 40.0);
       EXPECT_NEAR(seen.radiance + seen.transmittance, 1.0, 0.005) << depth << " " << elevation_deg;
-      // The transmittance shows that there is a medium: similarity-scaled, by 1 - g.
+      // The transmittance shows that there is a medium, similarity-scaled by 1 - g.
       const double sine = std::sin(std::abs(elevation_deg) * std::numbers::pi / 180.0);
       const double passes = std::exp(-0.25 * depth / sine);
       EXPECT_NEAR(seen.transmittance, passes,
@@ -50,7 +51,7 @@ TEST_F(Diffusion, EvenLightShowsNothing) {
 }
 
 TEST_F(Diffusion, ThinLayersScatterOnce) {
-  // Diffuse light is of the second order in the optical depth.
+  // Diffuse light is of second order in the optical depth.
   for (const double elevation_deg : {30.0, 80.0}) {
     const double depth = 0.002;
     const double sine = std::sin(elevation_deg * std::numbers::pi / 180.0);
@@ -60,12 +61,13 @@ TEST_F(Diffusion, ThinLayersScatterOnce) {
 }
 
 TEST_F(Diffusion, WhatALayerReflectsIsWhatDoesNotGoThrough) {
-  // Radiance integrated over the hemisphere (Gauss-Legendre points in mu) against Eddington's net
-  // flux through a white layer.
+  // Compares radiance integrated over the hemisphere (Gauss-Legendre points in mu) with Eddington's
+  // net flux through a white layer.
   const double nodes[] = {0.1127, 0.5, 0.8873};
   const double weights[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   for (const double depth : {8.0, 40.0}) {
-    // A sun lower than this lights cells 62 m high by texels that are wider, and too dark.
+    // A sun below 35 degrees lights cells 62 m high through texels that are wider, which makes the
+    // picture too dark.
     for (const double sun_deg : {35.0, 60.0, 89.0}) {
       double reflected = 0.0;
       for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Every extreme of `thunderhead measure extremes` (server/measure/extremes*.cc) as a test.
+// Runs every extreme of `thunderhead measure extremes` (server/measure/extremes*.cc) as a test.
 #include "measure/extremes.h"
 
 #include <memory>

@@ -1,4 +1,5 @@
-// The base of a storm, lit from below by ground that the storm shades, against the reference.
+// Tests of a storm's base, lit from below by ground that the storm shades, compared with the
+// reference.
 #include <memory>
 #include <vector>
 
@@ -16,7 +17,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// A layer of cloud 30 km wide, 1 to 3 km above the ground, 40 optical depths thick.
+// Returns a layer of cloud 30 km wide, 1 to 3 km above the ground, 40 optical depths thick.
 std::shared_ptr<const volume::HydrometeorFields> MakeOvercast() {
   const auto slab = support::MakeSlab(30e3, 4e3, 0.02, {32, 32, 16});
   auto overcast = std::make_shared<volume::HydrometeorFields>(*slab);
@@ -40,7 +41,7 @@ class GroundLightTest : public testing::Test {
     renderer_ = std::make_unique<SceneRenderer>();
     scene_.output = {kSide_px, kSide_px, 90};
     scene_.sun = {0.0, 50.0, 1.0};
-    // Upwards from below the middle.
+    // The camera looks upwards from below the middle.
     scene_.camera = scene::SpotterCamera{{0.0, 0.0}, 1.7, 0.0, 70.0, 100.0};
     test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
   }
@@ -49,7 +50,7 @@ class GroundLightTest : public testing::Test {
     context_.reset();
   }
 
-  // The picture's mean.
+  // Returns the picture's mean.
   glm::dvec3 Drawn(double albedo) {
     scene_.sky.ground_albedo = albedo;
     const auto frame = renderer_->Draw(scene_, fields_, {});
@@ -86,18 +87,18 @@ class GroundLightTest : public testing::Test {
 TEST_F(GroundLightTest, AnOvercastGetsTheLightOfTheGroundInItsOwnShadow) {
   const glm::dvec3 over_black_ground = Drawn(0.0) / Traced(0.0);
   const glm::dvec3 over_snow = Drawn(0.9) / Traced(0.9);
-  // Red 0.77, green 0.85, blue 0.99: one share for all colours comes up (decision 48), but light
-  // that ground and a thick storm send to and fro becomes redder.
+  // The results are red 0.77, green 0.85, blue 0.99. One share for all colours comes up (decision
+  // 48), but light that bounces between ground and a thick storm becomes redder.
   const glm::dvec3 tolerance_over_snow(0.26, 0.18, 0.04);
   for (int color = 0; color < 3; ++color) {
-    // 0.90 to 0.93: diffusion, at a base 40 optical depths below the sunlit top.
+    // The results are 0.90 to 0.93: diffusion, at a base 40 optical depths below the sunlit top.
     EXPECT_NEAR(over_black_ground[color], 1.0, 0.12) << color;
     EXPECT_NEAR(over_snow[color], 1.0, tolerance_over_snow[color]) << color;
   }
 }
 
 TEST_F(GroundLightTest, MoreHazeLightsTheGroundAnew) {
-  // A change of the sky alone is drawn as it is drawn at first.
+  // After a change of the sky alone, the picture is the same as when drawn from scratch.
   Drawn(0.9);
   scene_.sky.turbidity = 8.0;
   const glm::dvec3 changed = Drawn(0.9);

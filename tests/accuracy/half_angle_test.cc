@@ -1,5 +1,5 @@
-// The slicing renderer against closed forms: single scattering in a homogeneous box, the paper's
-// printed transport, and limits that hold for every optical depth.
+// Tests of the slicing renderer against closed forms: single scattering in a homogeneous box, the
+// paper's printed transport, and limits that hold for every optical depth.
 #include <cmath>
 #include <numbers>
 
@@ -18,10 +18,10 @@ class HalfAngle : public SlabView {
   }
 };
 
-// The slab's hard faces cut tilted slices: a ray counts its path in whole slices, with an error of
-// up to half of one at each face, and so does the light. The slab is 1 / 2.5 of the sliced extent
-// at the steepest tilt tested. Storms have no hard faces: their extinction falls to zero linearly
-// over a cell.
+// Returns the error bound at the slab's hard faces, which cut tilted slices. A ray counts its path
+// in whole slices, with an error of up to half a slice at each face, and so does the light. The
+// slab is 1 / 2.5 of the sliced extent at the steepest tilt tested. Storms have no hard faces:
+// their extinction falls to zero linearly over a cell.
 double HardFaceError(int slices, double depth) { return 3.3 * (1.0 + depth / 2.0) / slices; }
 
 class SingleScattering : public HalfAngle {
@@ -35,7 +35,8 @@ class SingleScattering : public HalfAngle {
 };
 
 TEST_F(SingleScattering, ReflectedLightOfASlab) {
-  // Sun and eye above: the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin e.
+  // With sun and eye above, the result is the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin
+  // e.
   for (const int slices : {64, 256}) {
     scene::SetSlices(&scene_.rendering.technique, slices);
     for (const double depth : {0.01, 0.5, 3.0, 20.0}) {
@@ -46,7 +47,7 @@ TEST_F(SingleScattering, ReflectedLightOfASlab) {
         const double expected =
             PhaseTerm(view_deg, sun_deg) * view * -std::expm1(-depth * (view + sun)) / (view + sun);
         const Seen seen = Look(depth, view_deg, sun_deg);
-        // The first pair is sliced along the slab's faces, within 0.4 % of its extent.
+        // The first pair of angles is sliced along the slab's faces, within 0.4 % of its extent.
         const double error =
             view_deg == sun_deg ? 0.004 * (1.0 + depth / 4) : HardFaceError(slices, depth);
         EXPECT_NEAR(seen.radiance / expected, 1.0, kTextureError + error)
@@ -59,7 +60,7 @@ TEST_F(SingleScattering, ReflectedLightOfASlab) {
 }
 
 TEST_F(SingleScattering, SeenFromAboveWithoutPerspective) {
-  // Every pixel over the slab looks straight down: the same integral as above, in all of them.
+  // Every pixel over the slab looks straight down, so the integral above holds in all of them.
   scene::TopDownCamera camera;
   camera.width_m = 1000.0;
   const scene::View view = scene::ViewOf(camera, 1.0);
@@ -77,19 +78,20 @@ TEST_F(SingleScattering, SeenFromAboveWithoutPerspective) {
 }
 
 TEST_F(SingleScattering, TransmittedLightOfASlab) {
-  // Sun above, eye below, both vertical: d exp(-d).
+  // With the sun above and the eye below, both vertical, the result is d exp(-d).
   for (const double depth : {0.01, 0.5, 3.0}) {
     const Seen seen = Look(depth, -89.9, 89.9);
     const double expected = PhaseTerm(-89.9, 89.9) * depth * std::exp(-depth);
-    // The tilt of 0.1 degree makes the sliced extent 0.7 % larger than the slab; d exp(-d) goes
-    // with (1 - d) of that.
+    // The tilt of 0.1 degree makes the sliced extent 0.7 % larger than the slab. d exp(-d) changes
+    // by (1 - d) times that.
     const double error = 0.007 * std::fmax(1.0, std::abs(1.0 - depth));
     EXPECT_NEAR(seen.radiance / expected, 1.0, kTextureError + error) << depth;
   }
 }
 
 TEST_F(SingleScattering, ThinSlabsKeepTheirDigits) {
-  // With half-float buffers each of the 256 slices lost 1 - 1e-6, or took 5e-4 for it.
+  // With half-float buffers each of the 256 slices rounded 1 - 1e-6 to 1, or attenuated by 5e-4
+  // instead.
   scene::SetSlices(&scene_.rendering.technique, 256);
   for (const double depth : {3e-4, 1e-3}) {
     const double expected = PhaseTerm(89.9, 89.9) * depth;
@@ -115,7 +117,8 @@ TEST_F(HalfAngle, ThinSlabsKeepTheirDigitsInLightFromAllAround) {
 }
 
 TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
-  // From below the slab straight up, the sun on the horizon: slices face 45 degrees from the axis.
+  // The eye looks straight up from below the slab, and the sun is on the horizon: slices face 45
+  // degrees from the axis.
   test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
   scene::SetSlices(&scene_.rendering.technique, 200);
   width_m_ = 10'000.0;
@@ -141,7 +144,7 @@ TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
       const double climb = glm::dot(ray, slicing.normal);
       if (std::abs(climb) < 0.1) continue;
       ++(climb < 0.0 ? along : against);
-      // The number of slices is that of the planes on the path, or one less.
+      // The number of slices on a path is the number of planes it crosses, or one less.
       const double path = slicing.spacing_m / std::abs(climb) / kHeight_m * kDepth;
       const double depth = -std::log(seen.eye[4 * i + 3]);
       EXPECT_NEAR(depth, kDepth / ray.z, path + 0.005) << i << ", sun " << sun_elevation_deg;
@@ -151,15 +154,15 @@ TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
 }
 
 TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
-  // Two clouds with a gap between them. A texel within has the light of its own ray and, at the
-  // edge, a part of its neighbours'.
+  // There are two clouds with a gap between them. A texel within a cloud has the light of its ray
+  // alone. At the edge it also has a part of its neighbours' light.
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   scene::MediumSettingsOf(&scene_.rendering.technique)->theta_f_deg = 80.0;
   SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.6F);
   with_gap_ = true;
   struct Shares {
-    double within = 0.0;  // farthest from the gap
-    double edge = 0.0;    // the sum of the excess, in columns of texels with that light
+    double within = 0.0;  // share of light farthest from the gap
+    double edge = 0.0;    // sum of the excess, in columns of texels with that light
   };
   const auto shares = [&](double depth) {
     const Seen seen = Look(depth, 89.9, 89.9);
@@ -177,10 +180,11 @@ TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
     scene::SetSlices(&scene_.rendering.technique, slices);
     for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 1.0F;
     const Shares scattered = shares(4.0);
-    // The same without scattered light: the edge is the one cell over which extinction rises.
+    // Without scattered light, the edge is the one cell over which extinction rises.
     for (scene::FieldParameters& field : scene_.fields) field.optics.albedo = 0.0F;
     const Shares straight = shares(-std::log(scattered.within));
-    // The sun is a tenth of a degree off: its rays may meet a slice more or fewer.
+    // The sun is a tenth of a degree off the vertical, so its rays may meet one slice more or
+    // fewer.
     EXPECT_NEAR(std::log(straight.within / scattered.within), 0.0, 4.0 / slices);
     EXPECT_GT(scattered.edge / straight.edge, 1.25) << slices;
     EXPECT_LT(scattered.edge / straight.edge, 1.75) << slices;
@@ -188,9 +192,9 @@ TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
 }
 
 TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
-  // One slice multiplies by T + (1 - T) c, c = CP(theta_f / 2), where light is uniform across the
-  // slice: with optical depth 10 and c = 0.9, 16 slices leave 0.467 and 128 leave 0.381 (limit
-  // 0.368).
+  // If light is uniform across a slice, the slice multiplies it by T + (1 - T) c, with c =
+  // CP(theta_f / 2). With optical depth 10 and c = 0.9, 16 slices leave 0.467 and 128 leave 0.381
+  // (limit 0.368).
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   SetPhase(physics::PhaseKind::kCornetteShanks, 0.979F);
@@ -205,7 +209,7 @@ TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
   for (const auto& [slices, expected] : {std::pair(16, 0.467), std::pair(128, 0.381)}) {
     scene::SetSlices(&scene_.rendering.technique, slices);
     const Seen seen = Look(10.0, 89.9, 89.9);
-    // The middle of the light buffer, away from the slab's sides.
+    // Reads the middle of the light buffer, away from the slab's sides.
     const auto middle = [&] {
       const auto texels = static_cast<std::size_t>(std::lround(std::sqrt(seen.light.size() / 4)));
       return seen.light[4 * (texels / 2 * texels + texels / 2)];
@@ -220,14 +224,15 @@ TEST_F(HalfAngle, ConsistentTransportDoesNotDependOnTheNumberOfSlices) {
   const double coarse = Look(10.0, 60.0, 45.0).radiance;
   scene::SetSlices(&scene_.rendering.technique, 128);
   const double fine = Look(10.0, 60.0, 45.0).radiance;
-  // The diffusion term is evaluated once a slice: second order, 0.6 of a mean free path here.
+  // The diffusion term is evaluated once per slice, which makes a second-order error, at 0.6 of a
+  // mean free path here.
   EXPECT_NEAR(coarse / fine, 1.0, 0.02);
 }
 
 TEST_F(HalfAngle, ThickSlabIsWhite) {
   // Eddington's reflectance of a semi-infinite conservative layer is 1: under a high sun it must
   // come near a white Lambertian's 1 / pi. Milne's exact law is 10-20 % brighter at the zenith than
-  // its mean; the single-scattered share counted beside the diffusion term adds to that.
+  // its mean. The single-scattered share, counted in addition to the diffusion term, adds to that.
   test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   const double radiance = Look(5000.0, 89.0, 89.0).radiance;
   EXPECT_GT(radiance, 0.7 / std::numbers::pi);
@@ -237,7 +242,7 @@ TEST_F(HalfAngle, ThickSlabIsWhite) {
 class OpticalDepths : public HalfAngle, public testing::WithParamInterface<double> {};
 
 TEST_P(OpticalDepths, NothingBreaks) {
-  // 40 slices need more than one slab.
+  // 40 slices need several slabs.
   for (const int slices : {8, 40}) {
     for (const auto mode : {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
       for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {
@@ -246,7 +251,7 @@ TEST_P(OpticalDepths, NothingBreaks) {
           test_support::SetTransport(&scene_.rendering.technique, transport);
           scene::SetSlices(&scene_.rendering.technique, slices);
           const Seen seen = Look(GetParam() * slices, elevation_deg, 40.0);
-          // 1 minus a depth below 1e-7 rounds to 1 in single precision, but its light does not
+          // In single precision, 1 minus a depth below 1e-7 rounds to 1, but its light does not
           // round to 0.
           EXPECT_TRUE(seen.transmittance < 1.0 || GetParam() < 1e-7);
           // No light reaches the first of several thick slices on a ray.

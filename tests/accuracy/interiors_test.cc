@@ -1,5 +1,5 @@
-// Views from inside clouds: no popping as the camera moves, nothing clipped at the eye, no bands in
-// fog.
+// Tests of views from inside clouds: no popping as the camera moves, nothing clipped at the eye, no
+// bands in fog.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -28,7 +28,8 @@ struct Eye {
   double elevation_deg;
 };
 
-// On the updraught's western side, which the sun shines on: out of the cloud, into it.
+// The path lies on the updraught's western side, which is sunlit. It leads from outside into the
+// cloud.
 constexpr int kSteps = 24;
 constexpr double kStep_m = 50.0;
 Eye OnPath(double step) { return {{-14600.0 + step * kStep_m, -2750.0, 5000.0}, 80.0, 5.0}; }
@@ -53,7 +54,7 @@ class InteriorsTest : public testing::Test {
     context_.reset();
   }
 
-  // Luminances of the default look, in units of the cloud wall's.
+  // Returns luminances of the default look, in units of the cloud wall's luminance.
   static std::vector<double> Draw(const Eye& eye, int slices = 128) {
     scene::Scene scene;
     scene.output = {kWidth_px, kHeight_px, 90};
@@ -95,7 +96,7 @@ class InteriorsTest : public testing::Test {
   inline static std::unique_ptr<SceneRenderer> renderer_;
 };
 
-// The mean of each row.
+// Returns the mean of each row.
 std::vector<double> RowsOf(const std::vector<double>& values) {
   std::vector<double> rows(kHeight_px, 0.0);
   for (std::size_t i = 0; i < values.size(); ++i) rows[i / kWidth_px] += values[i] / kWidth_px;
@@ -117,7 +118,7 @@ TEST_F(InteriorsTest, NothingPopsAsTheCameraMoves) {
     squares += std::pow(RmsOf(frames[step], between), 2) / (kSteps - 2);
   }
   EXPECT_LT(worst_mean, 0.004);
-  // With samples as far apart beside the eye as elsewhere it is 0.041.
+  // If samples were as far apart near the eye as elsewhere, this would be 0.041.
   EXPECT_LT(std::sqrt(squares), 0.03);
 }
 
@@ -125,7 +126,8 @@ TEST_F(InteriorsTest, FewSamplesShowNoPlatesOrBands) {
   for (const int step : {0, 6, 12, 18, 23}) {
     const std::vector<double> usual = Draw(OnPath(step));
     const std::vector<double> many = Draw(OnPath(step), kManySlices);
-    // With samples as far apart beside the eye as elsewhere it is up to 0.13, and 0.05 by rows.
+    // If samples were as far apart near the eye as elsewhere, this would be up to 0.13, and 0.05 by
+    // rows.
     EXPECT_LT(RmsOf(usual, many), 0.04) << step;
     const std::vector<double> rows = RowsOf(usual);
     const std::vector<double> ideal = RowsOf(many);
@@ -140,7 +142,7 @@ TEST_F(InteriorsTest, AMetreChangesLittle) {
     const std::vector<double> here = Draw(OnPath(step));
     const std::vector<double> there = Draw(OnPath(step + 1.0 / kStep_m));
     for (std::size_t i = 0; i < here.size(); ++i) {
-      // The cloud's rim before the sky moves by a part of a pixel.
+      // The cloud's rim in front of the sky moves by a fraction of a pixel.
       EXPECT_NEAR(here[i], there[i], 0.1) << step;
     }
   }
@@ -151,7 +153,7 @@ class InSlab : public SlabView {};
 TEST_F(InSlab, NothingIsClippedBeforeTheEye) {
   scene_.rendering.technique = accuracy::Plain<scene::LightVolume>().settings();
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
-  constexpr double kDepth = 40.0;  // of the slab's 1000 m
+  constexpr double kDepth = 40.0;  // of the slab, which is 1000 m thick
   for (const double height_m : {1.0, 5.0, 30.0, 100.0}) {
     scene::OrbitCamera camera;  // looks down through the slab's lower face
     camera.target_m = {0.0, 0.0, 0.0};

@@ -1,4 +1,4 @@
-// Light volumes corrected by traced paths, against the reference.
+// Tests of light volumes corrected by traced paths, compared with the reference.
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -23,7 +23,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A tower, five times as high as wide, in a wider domain.
+// Returns a tower, five times as high as wide, in a wider domain.
 std::shared_ptr<const volume::HydrometeorFields> MakeTower() {
   auto fields = std::make_shared<volume::HydrometeorFields>(
       *support::MakeSlab(8000.0, 6000.0, 0.02, {20, 20, 15}));
@@ -108,7 +108,7 @@ TEST_F(LightCorrection, MultipliesTheStormsLightAlone) {
     const glm::vec3 of_storm = once[i] - black[i];
     storm += of_storm.x;
     for (int color = 0; color < 3; ++color) {
-      // A correction also replaces the storm's shade on the ground's skylight.
+      // A correction also replaces the storm's shade on the skylight that reaches the ground.
       const float background = 1.0F - picture.opacity[i];
       EXPECT_NEAR(once[i][color], drawn[i][color], 1e-6F + 0.1F * background);
       const float factor = color == 0 ? 2.0F : color == 1 ? 1.0F : 0.5F;
@@ -150,14 +150,14 @@ TEST_F(LightCorrection, AFrameSaysWhereItShowsTheStorm) {
   const reference::Ray ray = reference::CameraOf(scene_, *fields_).RayThrough(1.0 / 32, 1.0 / 24);
   const volume::WorldBox& box = frame->storm.box;
   const glm::dvec3 middle = (ray.At(distance_m) - box.low_m) / (box.high_m - box.low_m);
-  // The eye is above in the south-south-west and sees the face towards it.
+  // The eye is above in the south-south-west and sees the face on that side.
   EXPECT_NEAR(middle.x, 0.4, 0.15);
   EXPECT_LT(middle.y, 0.35);
   EXPECT_GT(middle.z, 0.2);
   EXPECT_LT(middle.z, 0.8);
 }
 
-// What is behind the storm is what a black correction leaves.
+// With a black correction only the light from behind the storm remains.
 TEST_F(LightCorrection, WhatIsBehindIsDrawnFromTheSameView) {
   auto black = std::make_shared<renderers::LightCorrection>();
   black->size = glm::ivec3(1);
@@ -194,7 +194,7 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   const auto error_of = [&](const picture::LinearPicture& drawn) {
     return measure::RelativeRmseWithout(noise, drawn, exact);
   };
-  // Means over 4 x 4 rays a pixel, because the truth's pixels are means too.
+  // Takes means over 4 x 4 rays for each pixel, because the reference's pixels are means too.
   const auto draw = [&](std::shared_ptr<const renderers::LightCorrection> correction) {
     return *measure::DrawPart(*renderer_, scene_, fields_, measure::LightPart::kAll, 4,
                               std::move(correction));
@@ -206,14 +206,14 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   ASSERT_GE(corrector->Progress().paths, 150'000);
   const picture::LinearPicture corrected = draw(corrector->Correction());
   EXPECT_LT(error_of(corrected), 0.3 * error_of(drawn));
-  // Most of the residual is the ground, 2 % too bright with and without a correction.
+  // Most of the residual is the ground, which is 2 % too bright with and without a correction.
   EXPECT_NEAR(measure::RelativeBias(corrected, exact), 0.0, 0.03);
 }
 
 TEST_F(LightCorrection, IsTheSameForAnyNumberOfThreads) {
   const auto one = MakeCorrector(1);
   const auto two = MakeCorrector(2);
-  // So many that some rays have two.
+  // There are so many paths that some rays have two.
   constexpr std::int64_t kPaths = 2 * kMinCorrectingPaths;
   ASSERT_TRUE(one->TraceUntil(kPaths, {}, nullptr).ok());
   ASSERT_TRUE(two->TraceUntil(kPaths, {}, nullptr).ok());
@@ -228,11 +228,11 @@ TEST_F(LightCorrection, FromTheNinthPictureOnARayHasTwoPaths) {
   for (int picture = 2; picture <= 8; ++picture) ASSERT_TRUE(corrector->Step().ok());
   const std::int64_t of_eight = corrector->Progress().paths;
   for (int picture = 9; picture <= 16; ++picture) ASSERT_TRUE(corrector->Step().ok());
-  // From other places, so not just twice as many.
+  // The later pictures are seen from other places, so the paths are not exactly twice as many.
   EXPECT_NEAR(static_cast<double>(corrector->Progress().paths - of_eight) / of_eight, 2.0, 0.3);
 }
 
-// Of an optical depth below what is drawn at all.
+// The optical depth is below the limit for drawing.
 TEST_F(LightCorrection, AStormTooFaintToBeDrawnEndsWithoutPaths) {
   auto faint = std::make_shared<volume::HydrometeorFields>(*fields_);
   for (float& value : faint->fields[0].concentration_kg_per_m3) value *= 1e-18F;
@@ -302,7 +302,7 @@ TEST_F(LightCorrection, APoolReservesItsCopiesOfTheStorm) {
   other.sun.elevation_deg = 70.0;
   EXPECT_TRUE(absl::IsResourceExhausted(pool.Trace(other, fields_).status()));
   EXPECT_NE(pool.Find(scene_, fields_), nullptr);
-  // One that nobody claims makes room for another.
+  // A corrector without a claim is evicted for another.
   claim.reset();
   EXPECT_TRUE(pool.Trace(other, fields_).ok());
   EXPECT_EQ(pool.Find(scene_, fields_), nullptr);
@@ -354,7 +354,7 @@ TEST_F(LightCorrection, NothingIsTracedWhereNothingCouldShowIt) {
 }
 
 TEST_F(LightCorrection, WhereHardlyAnyRayMeetsTheStormItEnds) {
-  // So thin that the background dominates everywhere.
+  // The storm is so thin that the background dominates everywhere.
   scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].scale = 1e-3F;
   const auto corrector = MakeCorrector(0);
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(corrector->Step().ok());

@@ -1,5 +1,5 @@
-// The light volume and its march against closed forms, and against half-angle slicing, whose light
-// model it shares.
+// Tests of the light volume and its ray march against closed forms, and against half-angle slicing,
+// which has the same light model.
 #include <cmath>
 #include <numbers>
 
@@ -24,9 +24,10 @@ class LightVolume : public SlabView {
 };
 
 TEST_F(LightVolume, ReflectedLightOfALayer) {
-  // Sun and eye above: the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin e, for any profile
-  // of extinction. The light volume's texels (94 m) are wider than the layer's cells are high
-  // (62 m): the residual is interpolation over a texel, in which a ray's optical depth is up to 20.
+  // With sun and eye above, the result is the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin
+  // e, for any profile of extinction. The light volume's texels (94 m) are wider than the layer's
+  // cells are high (62 m). The residual is interpolation over a texel, in which a ray's optical
+  // depth is up to 20.
   SingleScattering();
   in_air_ = true;
   for (const double depth : {0.01, 0.5, 3.0, 20.0, 100.0}) {
@@ -39,15 +40,15 @@ TEST_F(LightVolume, ReflectedLightOfALayer) {
       const Seen seen = Look(depth, view_deg, sun_deg);
       EXPECT_NEAR(seen.radiance / expected, 1.0, 0.05)
           << "depth " << depth << ", view " << view_deg << ", sun " << sun_deg;
-      // A ray ends when less than 0.005 of the background shows.
+      // A ray ends when its transmittance is below 0.005.
       EXPECT_NEAR(seen.transmittance, std::exp(-depth * view), 0.005);
     }
   }
 }
 
 TEST_F(LightVolume, HardFaces) {
-  // At a face of the domain extinction does not rise but jumps, which the light volume's texels
-  // cannot follow: the error grows with the optical depth of one of them (here 0.09 of the slab's).
+  // At a face of the domain extinction jumps instead of rising, which the light volume's texels
+  // cannot follow. The error grows with the optical depth of one texel (here 0.09 of the slab's).
   SingleScattering();
   for (const double depth : {0.01, 0.5, 3.0}) {
     const double sun = std::numbers::sqrt2;
@@ -67,7 +68,7 @@ TEST_F(LightVolume, TransmittanceDoesNotDependOnTheNumberOfSamples) {
 }
 
 TEST_F(LightVolume, AStepThroughHazeEndsWhereTheCloudBegins) {
-  // In thin bricks samples are a cell apart, but must not step over the beginning of a thick one.
+  // In thin bricks samples are a cell apart, but must not step over the beginning of a thick brick.
   // The haze is as high as the layer, half the domain.
   SingleScattering();
   in_air_ = true;
@@ -112,8 +113,8 @@ TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
         test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
         scene::SetSlices(&scene_.rendering.technique, 128);
         const double volume = Look(depth, elevation_deg, 50.0).radiance;
-        // Diffuse light is linear from cell to cell here; where a cell's optical depth is 12 that
-        // shows most on the dark side.
+        // Diffuse light is interpolated linearly from cell to cell here. Where a cell's optical
+        // depth is 12, the error shows most on the dark side.
         EXPECT_NEAR(volume / slices, 1.0, depth > 10.0 ? 0.25 : 0.05)
             << depth << ", from " << elevation_deg;
       }
@@ -122,7 +123,7 @@ TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
 }
 
 TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
-  // Seen from below, the light transmitted by the slab: more slices, less light (physics.md, 3).
+  // Seen from below, the slab transmits less light with more slices (physics.md, 3).
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   const auto seen = [&](int slices, const accuracy::PlainTechnique& renderer) {
@@ -134,12 +135,13 @@ TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
   const double fine = seen(128, test_support::kLightVolume);
   EXPECT_GT(coarse, 1.05 * fine);
   const double slicing = seen(16, test_support::kHalfAngle) / seen(128, test_support::kHalfAngle);
-  // A slice's own share of the light is counted at its middle here, before it there.
+  // Here a slice's own share of the light is counted at its middle; half-angle slicing counts it
+  // before the slice.
   EXPECT_NEAR(coarse / fine / slicing, 1.0, 0.05);
 }
 
 TEST_F(LightVolume, ThickSlabIsWhite) {
-  // The bounds of half-angle slicing's test, for the same reasons.
+  // The bounds are those of half-angle slicing's test, for the same reasons.
   test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   const double radiance = Look(5000.0, 89.0, 89.0).radiance;
   EXPECT_GT(radiance, 0.7 / std::numbers::pi);
@@ -157,7 +159,7 @@ TEST_P(MarchedDepths, NothingBreaks) {
         test_support::SetTransport(&scene_.rendering.technique, transport);
         scene::SetSlices(&scene_.rendering.technique, 8);
         const Seen seen = Look(GetParam() * 8, elevation_deg, 40.0);
-        // Half floats can represent neither 1 minus a depth below 5e-4 nor radiances below 6e-8.
+        // Half floats cannot represent 1 minus a depth below 5e-4, nor radiances below 6e-8.
         if (GetParam() * 8 > 5e-4) {
           EXPECT_LT(seen.transmittance, 1.0);
           // At a hard face no light reaches the middle of thick cells.

@@ -1,4 +1,4 @@
-// Pictures of things that move against one ray a pixel and light that is solved for in full.
+// Tests of moving pictures, compared with one ray per pixel and fully solved light.
 #include "accuracy/moving_picture.h"
 
 #include <algorithm>
@@ -98,8 +98,9 @@ class MovingPictureTest : public testing::Test {
     return {scene_.output.width_px, scene_.output.height_px, std::move(mapped->rgb)};
   }
 
-  // With few rays, even of clouds that are rough all over, and at the same exposure within 0.02 of
-  // FLIP; exposures of their own differ by less than 0.15 of a stop.
+  // Expects that moving pictures use few rays, even of clouds that are rough all over. At the same
+  // exposure they must be within 0.02 of FLIP. Separately metered exposures must differ by less
+  // than 0.15 of a stop.
   void ExpectAlike(const std::string& what) {
     scene_.display.exposure_ev.reset();
     const frame::RgbImage at_rest = AtRest();
@@ -113,7 +114,7 @@ class MovingPictureTest : public testing::Test {
     EXPECT_LT(rays, most_rays_ * pixels) << what;
   }
 
-  // From three sides, low and high.
+  // Checks three sides, low and high.
   void ExpectAlikeAllAround(const std::string& storm) {
     for (const double elevation_deg : {5.0, 45.0}) {
       Orbit().elevation_deg = elevation_deg;
@@ -131,7 +132,7 @@ class MovingPictureTest : public testing::Test {
   Fields fields_;
   scene::Scene scene_;
   double exposure_ev_ = 0.0;  // of the last picture
-  double most_rays_ = 0.3;    // share of the pixels
+  double most_rays_ = 0.3;    // largest allowed share of rays in pixels
 };
 
 TEST_F(MovingPictureTest, LooksLikeARayAPixelOnA500MetreGrid) {
@@ -157,7 +158,8 @@ TEST_F(MovingPictureTest, LooksLikeARayAPixelOfGeneratedClouds) {
   }
 }
 
-// Their pixels may differ by more. From above, where that is seen most.
+// Pixels of large pictures may differ by more. The view is from above, where differences are seen
+// most.
 TEST_F(MovingPictureTest, LargePicturesLookLikeARayAPixelWithEvenFewerRays) {
   Show(OfSample("supercell-500m.nc", 2), {1280, 720});
   EXPECT_NEAR(MovingContrast(scene_), 2.2 * kMovingContrast, 0.1 * kMovingContrast);
@@ -169,7 +171,7 @@ TEST_F(MovingPictureTest, LargePicturesLookLikeARayAPixelWithEvenFewerRays) {
 TEST_F(MovingPictureTest, LightOfADraggedSunIsAsGood) {
   for (const std::string file : {"supercell.nc", "supercell-500m.nc"}) {
     Show(OfSample(file, 2));
-    // Default, and from above.
+    // The view is the default, then from above.
     for (const double elevation_deg : {scene::OrbitCamera().elevation_deg, 45.0}) {
       SCOPED_TRACE(file + " from " + std::to_string(elevation_deg));
       Orbit().elevation_deg = elevation_deg;
@@ -191,7 +193,7 @@ TEST_F(MovingPictureTest, LightOfADraggedSunIsAsGood) {
   }
 }
 
-// Light that is found for a part of the cells, against the same found for all.
+// Compares light that is updated in a part of the cells with the same light updated in all.
 TEST_F(MovingPictureTest, LightOfASunThatMovesIsFoundInTurns) {
   Show(OfSample("supercell-500m.nc", 2), {240, 135});
   Orbit().elevation_deg = 45.0;
@@ -215,19 +217,19 @@ TEST_F(MovingPictureTest, LightOfASunThatMovesIsFoundInTurns) {
     return std::sqrt(squares / all_squares);
   };
   const auto move_sun = [&](double degrees) { scene_.sun.azimuth_deg += degrees; };
-  EXPECT_LT(off(), 1e-4);  // all of the first
+  EXPECT_LT(off(), 1e-4);  // the first picture updates all cells
   for (int i = 0; i < 6; ++i) {
     move_sun(1.5);
     EXPECT_LT(off(), 3e-3) << i;
   }
   move_sun(60.0);
   EXPECT_LT(off(), 1e-4);
-  // Other fields, too, have none of the light of those before.
+  // After a change of fields, no light of the previous fields remains.
   fields_ = OfSample("supercell-500m.nc", 0);
   EXPECT_LT(off(), 1e-4);
 }
 
-// Rays of chosen places are those of the picture's pixels, to a step of rounding.
+// The rays of chosen places must equal those of the picture's pixels, to a step of rounding.
 TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   Show(OfSample("supercell.nc", 1));
   const frame::RgbImage at_rest = AtRest();
@@ -235,7 +237,7 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   renderers::DrawQuality quality = MovingQuality(scene_, kMoving);
   const auto coarse = renderer_->Draw(scene_, fields_, quality);
   ASSERT_TRUE(coarse.ok()) << coarse.status();
-  // An image_scale so large that no contrast is small enough.
+  // The image_scale is so large that no contrast is small enough to skip a pixel.
   const FrameQuality all{.image_scale = 1e4, .sparse = true};
   renderers::StageTimes times;
   const auto whole = CompleteMoving(
@@ -246,15 +248,16 @@ TEST_F(MovingPictureTest, WithARayForEachPixelItIsThePictureAtRest) {
   for (std::size_t i = 0; i < at_rest.rgb.size(); ++i) {
     off += std::abs(whole->mapped.rgb[i] - at_rest.rgb[i]) > 2 ? 1 : 0;
   }
-  // The air is found on fewer rays, and pixels whose neighbours are level follow from these.
+  // The air is computed on fewer rays, and pixels whose neighbours hardly vary are interpolated
+  // from them.
   EXPECT_LE(off, static_cast<int>(at_rest.rgb.size() / 200));
 }
 
-// Small ones are drawn as chosen rays. Detail and the ground's pattern would suit pixels of another
-// size; the air is found on other rays.
+// Small moving pictures are drawn as chosen rays. Detail and the ground's pattern would match
+// pixels of another size, and the air is computed on other rays.
 TEST_F(MovingPictureTest, CoarsePicturesAreThePicturesOfTheirSize) {
   const Fields level = OfSample("supercell.nc", 1);
-  // High ground that slopes, and hides the lower half of the storm.
+  // The ground is high and slopes, and hides the lower half of the storm.
   auto hilly = std::make_shared<volume::HydrometeorFields>(*level);
   hilly->terrain_height_m.clear();
   const glm::ivec3& cells = hilly->grid.cells;
@@ -287,7 +290,7 @@ TEST_F(MovingPictureTest, CoarsePicturesAreThePicturesOfTheirSize) {
   }
 }
 
-// Counts the turns, each of which must be given back before the next.
+// A turn that counts its uses. Each must be given back before the next.
 class SingleTurns final : public base::DeviceTurn {
  public:
   absl::Status Take() override {
@@ -305,7 +308,7 @@ class SingleTurns final : public base::DeviceTurn {
   int taken_ = 0;
 };
 
-// The processors work on it before each drawing of places, and after the last.
+// The processors work on the picture before each drawing of places, and after the last.
 TEST_F(MovingPictureTest, OthersMayDrawWhileTheProcessorsCompleteIt) {
   Show(OfSample("supercell.nc", 1));
   scene_.output.width_px = 1600;

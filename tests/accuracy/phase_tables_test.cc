@@ -1,5 +1,6 @@
-// Tabulated phase functions in both renderers of a medium: single scattering in a slab follows each
-// kind's curve in every colour, and a thin cloud of ice crystals shows its halos.
+// Tests of tabulated phase functions in both renderers of a medium. Single scattering in a slab
+// must follow each kind's curve in every colour, and a thin cloud of ice crystals must show its
+// halos.
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -25,17 +26,17 @@ constexpr double kOpticalDepth = 0.02;
 constexpr int kTablePixels = 801;
 constexpr double kHalfWidth_deg = 60.0;
 
-// Extinction is stored in half floats, with an error of at most 2^-12. So are the light volume's
-// light and picture: each adds as much, and the share of its optical depth that rounds down at the
-// slab's face.
+// Extinction is stored in half floats, with an error of at most 2^-12. The light volume's light and
+// picture are half floats too. Each adds as much error, in addition to the part of its optical
+// depth that rounds down at the slab's face.
 constexpr double kSlicingError = 1e-3;
 constexpr double kMarchingError = 4e-3;
 
-// So bright that no half float of a picture is subnormal.
+// The irradiance is so large that no half float of a picture is subnormal.
 constexpr float kIrradiance = 100.0F;
 
-// The lookup takes a value from within a texel of the right angle, at most 0.09 degrees: it cuts
-// the corners off the tables' halos and bows.
+// The lookup takes a value from within a texel of the right angle, at most 0.09 degrees. This cuts
+// the corners off the halos and bows of the tables.
 constexpr double kTexel_rad = 0.09 * std::numbers::pi / 180.0;
 
 class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
@@ -47,14 +48,14 @@ class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
     test_support::SetMode(&scene_.rendering.technique, test_support::kLowAlbedo);
   }
 
-  // The angle between the middle of the picture and pixel `i`.
+  // Returns the angle between the middle of the picture and pixel `i`.
   static double Angle_rad(int i) {
     const double across = (i + 0.5) / kTablePixels * 2.0 - 1.0;
     return std::atan(std::abs(across) * std::tan(glm::radians(kHalfWidth_deg)));
   }
 
-  // A row of pixels from below a slab of cloud: straight up in its middle, where the sun is, or
-  // where it would be if it shone straight from below (which needs no ground).
+  // Returns a row of pixels seen from below a slab of cloud. The middle looks straight up to the
+  // sun, or to the antisolar point if the sun shines straight from below (which needs no ground).
   std::vector<float> LookUp(double sun_elevation_deg, const accuracy::PlainTechnique& renderer) {
     const auto fields = support::MakeSlab(kTableWidth_m, kTableEye_m, kOpticalDepth / kTableEye_m);
     ResidentMedium::Cost cost;
@@ -93,7 +94,7 @@ TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
   scene_.fields[0].sizes = physics::SizeSource::kGiven;
   physics::ParticleOptics& cloud = scene_.fields[0].optics;
   cloud.phase = GetParam();
-  // The slab's water content is for the default radius; its optical depth is inversely proportional
+  // The slab's water content is for the default radius. Its optical depth is inversely proportional
   // to the radius.
   const double radius_ratio =
       cloud.phase.droplet_radius_m > 0.0F ? cloud.phase.droplet_radius_m / cloud.radius_m : 1.0;
@@ -110,8 +111,8 @@ TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
     for (int i = 0; i < kTablePixels; ++i) {
       const double up = std::cos(Angle_rad(i));
       const double mu = sun_elevation_deg > 0.0 ? up : -up;
-      // Light comes from above, or from below: the integral of exp(-t / up) exp(-depth towards the
-      // sun).
+      // Light comes from above or from below. The result is the integral of exp(-t / up) exp(-depth
+      // towards the sun).
       const double longer = std::fmax(1.0 / up - 1.0, 1e-9);
       const double seen = sun_elevation_deg > 0.0
                               ? std::exp(-depth) * -std::expm1(-depth * longer) / longer / up
@@ -147,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
                     physics::PhaseFunction{physics::PhaseKind::kIceRough}));
 
 // The brightest angle between `low_deg` and `high_deg` in green light seen through equal depths of
-// cloud, and how much brighter it is than where the halo begins.
+// cloud, and how much brighter it is than the beginning of the halo.
 struct Halo {
   double angle_deg = 0.0;
   double contrast = 0.0;
@@ -173,7 +174,7 @@ class Halos : public PhaseTables {
 };
 
 TEST_F(Halos, OfAThinIceCloudBeforeTheSun) {
-  // Translucent light with its forward peak cut, as the default scene draws it.
+  // Light is translucent with its forward peak cut, as in the default scene.
   test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   for (const auto& [kind, renderer] :
        {std::pair(physics::PhaseKind::kIceColumns, test_support::kHalfAngle),
@@ -189,7 +190,7 @@ TEST_F(Halos, OfAThinIceCloudBeforeTheSun) {
     EXPECT_GT(outer.contrast, 1.2);
   }
   scene_.fields[0].optics.phase = {physics::PhaseKind::kIceRough};
-  // Rough crystals have none: the brightest is next to the sun.
+  // Rough crystals have no halo: the brightest angle is next to the sun.
   EXPECT_NEAR(Brightest(LookUp(90.0, test_support::kHalfAngle), 20.0, 30.0).angle_deg, 20.0, 0.3);
 }
 

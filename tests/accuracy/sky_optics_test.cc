@@ -1,5 +1,5 @@
-// The sky around the sun and opposite to it, in drawn pictures of thin slabs: the angles
-// and the order of the colours of bows, glory, corona and aureole against published ones.
+// Tests of the sky around and opposite to the sun, in drawn pictures of thin slabs. They compare
+// the angles and colour orders of bows, glory, corona and aureole with published ones.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,14 +47,15 @@ class SkyOptics : public testing::Test {
   }
   static void TearDownTestSuite() { context_.reset(); }
 
-  // Away from the sun or the point opposite to it, which is in the picture's middle.
+  // Returns the angle from the sun or from the antisolar point, whichever is in the picture's
+  // middle.
   double Angle_deg(int i) const {
     const double across = (i + 0.5) / kPixels * 2.0 - 1.0;
     return glm::degrees(std::atan(std::abs(across) * std::tan(glm::radians(half_width_deg_))));
   }
 
-  // A row of pixels from below a slab, straight up in its middle, as the default scene's modes draw
-  // it: with the forward peak cut, and the sun's glow added.
+  // Draws a row of pixels looking straight up from below a slab. The default scene's modes apply:
+  // the forward peak is cut, and the sun's glow is added.
   void Draw(const Look& look) {
     half_width_deg_ = look.half_width_deg;
     scene::Scene scene = test_support::PlainScene();
@@ -100,7 +101,7 @@ class SkyOptics : public testing::Test {
     for (std::size_t i = 0; i < row_.size(); ++i) row_[i] += of_glow[i];
   }
 
-  // Radiance over the slab's depth along the ray.
+  // Returns the radiance divided by the slab's depth along the ray.
   double At(int i, int color) const {
     return row_[static_cast<std::size_t>(4 * i + color)] * std::cos(glm::radians(Angle_deg(i)));
   }
@@ -126,7 +127,7 @@ class SkyOptics : public testing::Test {
     return Brightest(color, from_deg, to_deg, -1.0);
   }
 
-  // The bright ring that is nearest to the middle, over a few pixels at either side.
+  // Returns the bright ring nearest to the middle, smoothed over a few pixels on either side.
   Extreme FirstRing(int color) const {
     constexpr int kAside = 8;
     for (int i = kPixels / 2 + kAside; i + kAside < kPixels; ++i) {
@@ -144,8 +145,9 @@ class SkyOptics : public testing::Test {
   inline static std::unique_ptr<gl::Context> context_;
 };
 
-// Descartes' angle from the antisolar point after `reflections` in a drop: Bohren and Huffman 1983,
-// section 7.2; 42.4 degrees for red and 40.6 for violet, and 50.4 and 53.6 of the secondary.
+// Returns Descartes' angle from the antisolar point after `reflections` in a drop: Bohren and
+// Huffman 1983, section 7.2. The primary bow is at 42.4 degrees for red and 40.6 for violet; the
+// secondary is at 50.4 and 53.6.
 double BowAngle_deg(double index, int reflections) {
   const double p = reflections + 1.0;
   const double incidence = std::acos(std::sqrt((index * index - 1.0) / (p * p - 1.0)));
@@ -164,11 +166,11 @@ TEST_F(SkyOptics, RainHasTwoBowsAndADarkBandBetween) {
         physics::WaterRefractiveIndex(physics::kWavelengthsUm[static_cast<std::size_t>(color)]);
     const Extreme primary = Brightest(color, 38.0, 46.0);
     const Extreme secondary = Brightest(color, 47.0, 57.0);
-    // Airy's theory moves the maximum to the bright side, by 1.019 (lambda / (2 r))^(2/3) times a
-    // factor of order 1; 0.4 degrees for such drops.
+    // Airy's theory moves the maximum to the bright side by 1.019 (lambda / (2 r))^(2/3) times a
+    // factor of order 1. That is 0.4 degrees for such drops.
     EXPECT_NEAR(primary.angle_deg, BowAngle_deg(index, 1) - 0.4, 0.35) << color;
     EXPECT_NEAR(secondary.angle_deg, BowAngle_deg(index, 2) + 0.7, 0.6) << color;
-    // Red outside in the primary, inside in the secondary.
+    // Red is outside in the primary bow and inside in the secondary.
     EXPECT_LT(primary.angle_deg, before_deg - 0.2);
     EXPECT_GT(secondary.angle_deg, secondary_before_deg + 0.3);
     before_deg = primary.angle_deg;
@@ -183,7 +185,7 @@ TEST_F(SkyOptics, RainHasTwoBowsAndADarkBandBetween) {
   EXPECT_NEAR(Brightest(kRed, 47.0, 57.0).angle_deg, 51.0, 0.6);
 }
 
-// The first ring's radius is inversely proportional to the drops' and proportional to the
+// The first ring's radius is inversely proportional to the drop radius and proportional to the
 // wavelength, so red is outside: van de Hulst 1957, section 17.3; Laven 2005 (Applied Optics 44,
 // 5667).
 TEST_F(SkyOptics, TheGloryIsWiderOfSmallerDropsAndRedOutside) {
@@ -199,9 +201,9 @@ TEST_F(SkyOptics, TheGloryIsWiderOfSmallerDropsAndRedOutside) {
   EXPECT_NEAR(red_deg[0] / red_deg[1], 2.0, 0.2);
 }
 
-// Fraunhofer's rings of discs: maxima at sin t = 1.635 and 2.679 lambda / (2 r), dark at 1.220
-// (Airy). Drops of a few wavelengths have them up to a tenth nearer to the sun (Cowley, Laven and
-// Vollmer 2005, Physics Education 40, 51).
+// Fraunhofer's rings of discs have maxima at sin t = 1.635 and 2.679 lambda / (2 r), and are dark
+// at 1.220 (Airy). For drops of a few wavelengths they are up to a tenth nearer to the sun (Cowley,
+// Laven and Vollmer 2005, Physics Education 40, 51).
 TEST_F(SkyOptics, DropsOfOneSizeHaveACoronaAndOthersAnAureole) {
   Draw({.kind = physics::PhaseKind::kWaterNarrow,
         .radius_m = 5e-6,
@@ -221,14 +223,15 @@ TEST_F(SkyOptics, DropsOfOneSizeHaveACoronaAndOthersAnAureole) {
   }
   EXPECT_GT(Brightest(kRed, 7.5, 10.5).value, 1.05 * Darkest(kRed, 6.5, 9.0).value)
       << "the second ring";
-  // Of many sizes there is no ring: it grows darker all the way.
+  // Drops of many sizes make no ring: the radiance falls steadily with the angle.
   Draw({.radius_m = 5e-6, .optical_depth = 0.1, .half_width_deg = 15.0});
   EXPECT_GT(AtAngle(1.0, kRed), 20.0 * AtAngle(6.0, kRed));
   const Extreme dark = Darkest(kRed, 3.0, 6.0);
   EXPECT_GT(dark.angle_deg, 5.8);
 }
 
-// Where the peak is cut nothing shows: the picture within is that of the whole phase function.
+// Cutting the peak leaves no visible edge: the picture within the cut angle is that of the whole
+// phase function.
 TEST_F(SkyOptics, TheAureoleOfAThinSlabIsItsPhaseFunction) {
   for (const physics::PhaseKind kind :
        {physics::PhaseKind::kWaterDroplets, physics::PhaseKind::kIceColumns}) {
@@ -251,7 +254,7 @@ TEST_F(SkyOptics, TheAureoleOfAThinSlabIsItsPhaseFunction) {
   }
 }
 
-// All light that the peak scatters more than once is in the table: 1 - exp(-d) (1 + d).
+// The table contains all light that the peak scatters more than once: 1 - exp(-d) (1 + d).
 TEST(Aureole, HoldsAllThatIsScatteredWithinThePeak) {
   for (const physics::PhaseFunction& phase :
        {physics::PhaseFunction{physics::PhaseKind::kWaterDroplets, 0.0F, 1e-5F},
@@ -275,15 +278,16 @@ TEST(Aureole, HoldsAllThatIsScatteredWithinThePeak) {
                (std::cos(angle(a - 1)) - std::cos(angle(a)));
       }
       const double expected = -std::expm1(-depth) - depth * std::exp(-depth);
-      // Part of it is beyond the largest angle, the more the oftener it is scattered.
+      // A part of the light is beyond the largest angle, and it grows with the number of
+      // scatterings.
       EXPECT_NEAR(sum / expected, 1.0, 0.05) << depth;
     }
   }
 }
 
 // The Earth's shadow reaches up to R (1 / cos d - 1) when the sun is d below the horizon: Minnaert
-// 1954, The Nature of Light and Colour in the Open Air, section 192. So at 2 degrees an anvil is
-// lit and the cloud's base is not.
+// 1954, The Nature of Light and Colour in the Open Air, section 192. At 2 degrees an anvil is
+// therefore lit while the cloud's base is not.
 TEST(Twilight, TheEarthsShadowRisesAsTheSunSinks) {
   const physics::Atmosphere atmosphere(1.5F, 0.15F);
   for (const double depression_deg : {1.0, 2.0, 3.0, 4.0}) {
@@ -298,8 +302,8 @@ TEST(Twilight, TheEarthsShadowRisesAsTheSunSinks) {
   }
 }
 
-// Opposite to the sun the shadow stands blue below a belt of reddened light, both the higher the
-// lower the sun is, until they fade at 3 to 4 degrees: Lee 2015 (Applied Optics 54, B194).
+// Opposite to the sun a blue shadow lies below a belt of reddened light. Both rise as the sun
+// sinks, until they fade at 3 to 4 degrees: Lee 2015 (Applied Optics 54, B194).
 TEST(Twilight, TheBeltOfVenusStandsAboveTheShadow) {
   const physics::Atmosphere atmosphere(1.5F, 0.15F);
   double before_deg = 0.0;

@@ -40,10 +40,10 @@ class SlabView : public testing::Test {
     double radiance;       // of the middle pixel's red
     double transmittance;  // along the middle pixel's ray
     std::vector<float> eye;
-    std::vector<float> light;  // of half-angle slicing
+    std::vector<float> light;  // from half-angle slicing
   };
 
-  // Looks straight at the middle of the slab along `elevation_deg` with scene_.rendering.
+  // Draws scene_.rendering, looking straight at the middle of the slab from `elevation_deg`.
   Seen Look(double optical_depth, double elevation_deg, double sun_elevation_deg) {
     scene::OrbitCamera camera;
     camera.target_m = {0.0, 0.0, kHeight_m / 2};
@@ -98,7 +98,7 @@ class SlabView : public testing::Test {
     return fields;
   }
 
-  // Ice in weak turbulence, which has fibres.
+  // The turbulence of ice in weak turbulence, which has fibres.
   static constexpr std::uint8_t kTurbulence = 76;
   static void Stir(volume::HydrometeorFields* fields) {
     fields->fields[0].hydrometeor = physics::Hydrometeor::kIce;
@@ -129,7 +129,7 @@ class SlabView : public testing::Test {
     for (scene::FieldParameters& field : scene_.fields) field.optics.phase = {kind, asymmetry};
   }
 
-  // The phase function over 4 pi for the angle between the view and the sun.
+  // Returns the phase function over 4 pi for the angle between the view and the sun.
   double PhaseTerm(double elevation_deg, double sun_elevation_deg) {
     const double mu = -glm::dot(scene::Direction(kViewAzimuth_deg, elevation_deg),
                                 scene::Direction(kSunAzimuth_deg, sun_elevation_deg));

@@ -1,4 +1,4 @@
-// The orders of convergence of both transports with the number of slices.
+// Tests of the orders of convergence of both transports with the number of slices.
 #include "measure/slice_convergence.h"
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace {
 TEST(SliceConvergence, OrderOfAPowerLaw) {
   EXPECT_NEAR(OrderOf({{10, 0.9}, {20, 0.45}, {40, 0.225}}), 1.0, 1e-12);
   EXPECT_NEAR(OrderOf({{8, 0.64}, {16, 0.16}, {64, 0.01}}), 2.0, 1e-12);
-  // The last is at the rounding of the frame's half floats.
+  // The last value is at the rounding error of the frame's half floats.
   EXPECT_NEAR(OrderOf({{8, 0.64}, {16, 0.16}, {1024, 3e-4}}), 2.0, 1e-12);
 }
 
@@ -33,7 +33,8 @@ TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
   const auto curves = MeasureSliceConvergence(scene, fields, [](double) {});
   ASSERT_TRUE(curves.ok()) << curves.status();
   ASSERT_EQ(curves->size(), 2U);
-  // Each slice of the printed form adds (1 - T)^2 too much: half as much twice as often.
+  // Each slice of the printed form adds (1 - T)^2 too much. Twice as many slices add half as much
+  // in all.
   EXPECT_EQ(curves->front().transport.name, "paper");
   EXPECT_NEAR(curves->front().order, 1.0, 0.15);
   EXPECT_EQ(curves->back().transport.name, "consistent");

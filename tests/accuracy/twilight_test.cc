@@ -1,5 +1,5 @@
-// Sunlight by height: a tall thin cloud after sunset, against the height of the Earth's shadow in
-// closed form and against the reference. The sky is black, so that all light is the sun's.
+// Tests of sunlight by height: a tall thin cloud after sunset, compared with the closed form of the
+// Earth's shadow height and with the reference. The sky is black, so all light is the sun's.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -25,8 +25,9 @@ namespace {
 constexpr double kTwilightEye_m = 20e3;
 constexpr double kDepression_deg = 2.0;
 
-// Below it no part of the sun's disc is above the horizon: a ray that grazes a sphere of radius R
-// at a depression d passes R (1 / cos d - 1) above the ground where it has that elevation.
+// Returns the height below which no part of the sun's disc is above the horizon. A ray that grazes
+// a sphere of radius R at a depression d passes R (1 / cos d - 1) above the ground where it has
+// that elevation.
 double ShadowHeight_m(double depression_deg) {
   return physics::kEffectiveEarthRadius_m * (1.0 / std::cos(glm::radians(depression_deg)) - 1.0);
 }
@@ -58,7 +59,7 @@ class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
     return view.eye_m.z + 100e3 * (view.forward.z + y * view.tan_half_height);
   }
 
-  // Of the middle column, rows from the top.
+  // Returns the middle column, with rows from the top.
   std::vector<glm::vec3> Drawn() {
     DrawQuality quality;
     quality.single_precision = true;
@@ -89,7 +90,7 @@ class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
 
   std::unique_ptr<gl::Context> context_;
   std::unique_ptr<SceneRenderer> renderer_;
-  // So thin, 0.02 from side to side, that light is scattered once.
+  // The cloud is so thin, 0.02 from side to side, that light is scattered at most once.
   std::shared_ptr<const volume::HydrometeorFields> fields_ =
       support::MakeSlab(10e3, kTwilightEye_m, 0.02 / 10e3);
   scene::Scene scene_ = test_support::PlainScene();
@@ -97,7 +98,7 @@ class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
 
 TEST_P(TwilightTest, TheEarthsShadowEndsWhereTheSunRises) {
   const std::vector<glm::vec3> column = Drawn();
-  // The upper edge of the disc; the table of sunlight is linear over a step.
+  // The upper edge of the disc decides. The sunlight table is linear over a step.
   const double dark_m = ShadowHeight_m(kDepression_deg - glm::degrees(physics::kSunRadius_rad)) -
                         static_cast<double>(shaders::kSunlightStep_m);
   const double brightest =
@@ -110,7 +111,7 @@ TEST_P(TwilightTest, TheEarthsShadowEndsWhereTheSunRises) {
       EXPECT_EQ(column[static_cast<std::size_t>(row)].r, 0.0F) << height_m;
       ++dark;
     }
-    // Where the whole disc has risen, red light has come through the air.
+    // If the whole disc has risen at that height, red light has come through the air.
     if (height_m > 2.0 * ShadowHeight_m(kDepression_deg) && height_m < kTwilightEye_m - 2e3) {
       EXPECT_GT(column[static_cast<std::size_t>(row)].r, 0.1 * brightest) << height_m;
     }
@@ -124,7 +125,8 @@ TEST_P(TwilightTest, LightIsThatOfTheReference) {
   const std::vector<glm::dvec3> traced = Traced(rows);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const glm::vec3 drawn = column[static_cast<std::size_t>(rows[i])];
-    // The truth's noise, and a table linear over steps of height.
+    // The tolerance is for the reference's noise, and for a table that is linear over steps of
+    // height.
     for (int color = 0; color < 3; ++color) {
       EXPECT_NEAR(static_cast<double>(drawn[color]), traced[i][color], 0.05 * traced[i][color])
           << RowHeight_m(rows[i]) << ' ' << color;

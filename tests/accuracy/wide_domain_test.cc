@@ -1,4 +1,4 @@
-// A domain of 1000 km by 960 km with 30 storms: as a regional model has it.
+// Tests of a domain of 1000 km by 960 km with 30 storms, as in a regional model.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -38,7 +38,7 @@ class WideDomainTest : public testing::Test {
     context_.reset();
   }
 
-  // Looks from `elevation_deg`, or from that of the default.
+  // Returns a scene that looks from `elevation_deg`, or from the default elevation.
   scene::Scene SceneFrom(std::optional<double> elevation_deg, glm::ivec2 size_px) const {
     scene::Scene scene;
     scene.sun = {255.0, 35.0};
@@ -63,7 +63,7 @@ class WideDomainTest : public testing::Test {
   std::unique_ptr<renderers::SceneRenderer> renderer_;
 };
 
-// Storms far away stand in the light of a thousand kilometres of air.
+// Far storms are lit through up to a thousand kilometres of air.
 TEST_F(WideDomainTest, StormsAreBrightAsFarAsTheHorizon) {
   for (const double elevation_deg : {4.0, 35.0}) {
     const picture::LinearPicture picture = Draw(SceneFrom(elevation_deg, {640, 360}));
@@ -72,7 +72,7 @@ TEST_F(WideDomainTest, StormsAreBrightAsFarAsTheHorizon) {
     for (std::size_t i = 0; i < picture.radiance.size(); ++i) {
       if (picture.opacity[i] < 0.9F) continue;
       ++storm;
-      // Nor not a number.
+      // The negated comparison also counts values that are not a number.
       if (!(frame::LuminanceOf(picture.radiance[i]) >= 0.02F)) ++dark;
     }
     EXPECT_GT(storm, 500);
@@ -106,7 +106,7 @@ TEST_F(WideDomainTest, OneRayAPixelIsNearlyAsGoodAs64) {
   const auto displayed = [&](const picture::LinearPicture& picture) {
     const auto mapped = tone_mapper.Map(frame::TextureOf(picture), shown);
     EXPECT_TRUE(mapped.ok()) << mapped.status();
-    shown.display.exposure_ev = mapped->exposure_ev;  // the first's counts for both
+    shown.display.exposure_ev = mapped->exposure_ev;  // the same for both pictures
     return mapped->rgb;
   };
   const std::vector<std::uint8_t> expected = displayed(mean);
@@ -121,7 +121,7 @@ TEST_F(WideDomainTest, OneRayAPixelIsNearlyAsGoodAs64) {
     storm_values += mean.opacity[i / 3];
   }
   EXPECT_LE(std::sqrt(squares / static_cast<double>(drawn.size())), 0.02);
-  // Storms cover little of the picture.
+  // Storms cover a small part of the picture.
   EXPECT_LE(std::sqrt(storm_squares / storm_values), 0.1);
 }
 

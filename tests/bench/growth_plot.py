@@ -20,7 +20,7 @@ matplotlib.rcParams["svg.hashsalt"] = "thunderhead"  # the same figures give the
 from matplotlib import pyplot, ticker  # noqa: E402
 
 ROW = re.compile(r"growth/(?P<technique>\w+)/(?P<axis>[a-z]+)_(?P<value>\d+)(?P<light>/light)?(/|_median|$)")
-# Each technique's name on the plot and its colour; colour-blind people can tell them apart.
+# Each technique's name on the plot and its colour. Colour-blind people can tell the colours apart.
 SERIES = {
     "default": ("default look", "#0072b2"),
     "light_volume": ("light volume, as the papers", "#e69f00"),

@@ -1,4 +1,4 @@
-// The benchmarks' program. Prints a table of medians: `./dev bench [--benchmark_filter=saving]`.
+// The benchmark program. It prints a table of medians: `./dev bench [--benchmark_filter=saving]`.
 #include <string>
 #include <vector>
 
@@ -27,7 +27,7 @@ void EncodeJpeg(benchmark::State& state) {
   state.counters["bytes"] = static_cast<double>(bytes);
 }
 
-// Prints only the medians.
+// A reporter that prints only the medians.
 class MedianReporter : public benchmark::ConsoleReporter {
  public:
   MedianReporter() : ConsoleReporter(OO_Tabular) {}
@@ -42,7 +42,7 @@ class MedianReporter : public benchmark::ConsoleReporter {
 };
 
 int Run(int argc, char** argv) {
-  // Defaults that the command line may override.
+  // These defaults may be overridden on the command line.
   std::vector<std::string> arguments = {argv[0], "--benchmark_counters_tabular=true",
                                         "--benchmark_repetitions=5", "--benchmark_min_time=0.3",
                                         "--benchmark_report_aggregates_only=true"};

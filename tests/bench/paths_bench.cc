@@ -1,4 +1,4 @@
-// Paths of traced light, by the processors and by the device.
+// Benchmarks of the paths of the path-traced correction, on the processors and on the device.
 #include <memory>
 #include <utility>
 #include <vector>
@@ -15,7 +15,7 @@ namespace {
 constexpr int kWidth_px = 128;
 constexpr int kHeight_px = 96;
 
-// The storm as one step of traced light traces it; rays that miss it are left out.
+// Traces the paths of one correction step through the storm. Rays that miss the storm are left out.
 void TracePaths(benchmark::State& state, bool on_device) {
   const volume::HydrometeorFields& fields = *Sample::Get().fields;
   scene::Scene scene = PaperScene();

@@ -1,6 +1,6 @@
-// Savings by drawing only what a scene requires, each row with and without; and the growth of time
-// with slices, pixels, fields and cells. The camera moves every frame, or the sun if the row says
-// "light".
+// Benchmarks of the savings from drawing only what a scene requires, each row with and without, and
+// of the growth of time with slices, pixels, fields and cells. The camera moves every frame, or the
+// sun if the row says "light".
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -19,7 +19,7 @@
 namespace thunderhead::bench {
 namespace {
 
-// Each field with an albedo of its own, so that none shares a group with another.
+// Gives each field a different albedo, so that no two fields share a group.
 void PartFields(scene::Scene* scene) {
   float albedo = 1.0F;
   for (scene::FieldParameters& field : scene->fields) {
@@ -32,7 +32,8 @@ void ShowOnly(std::size_t count, scene::Scene* scene) {
   for (std::size_t i = 0; i < scene->fields.size(); ++i) scene->fields[i].visible = i < count;
 }
 
-// The same storm in thin haze that fills the domain: nothing is empty, and nothing else differs.
+// Returns the same storm in thin haze that fills the domain: no cell is empty, and nothing else
+// differs.
 Fields InHaze(const Fields& fields) {
   auto hazy = std::make_shared<volume::HydrometeorFields>(*fields);
   const glm::dvec3 size_m = hazy->grid.HighCorner_m() - hazy->grid.low_corner_m;
@@ -41,7 +42,7 @@ Fields InHaze(const Fields& fields) {
       volume::MassExtinctionOf(cloud, physics::DefaultOptics(cloud.hydrometeor),
                                physics::SizeSource::kGiven)
           .m2_per_kg;
-  // Twice the limit below which extinction is skipped as negligible.
+  // The haze has twice the extinction below which cells are skipped as negligible.
   const auto least = static_cast<float>(2.0 * volume::kNegligibleOpticalDepth /
                                         (glm::length(size_m) * mass_extinction));
   cloud.concentration_kg_per_m3.resize(hazy->grid.CellCount());
@@ -50,8 +51,8 @@ Fields InHaze(const Fields& fields) {
   return hazy;
 }
 
-// Values of the cells of `coarse` for those of `fine`, which has `factor` times as many along each
-// axis.
+// Repeats the values of the cells of `coarse` for those of `fine`, which has `factor` times as many
+// along each axis.
 template <typename Value>
 std::vector<Value> Repeated(const volume::RegularGrid& coarse, const volume::RegularGrid& fine,
                             int factor, const std::vector<Value>& values) {
@@ -98,7 +99,8 @@ std::string Name(const std::string& part, std::string_view technique, const std:
   return part + "/" + std::string(technique) + "/" + what;
 }
 
-// The camera moves; and, where light is kept apart from the view, the sun.
+// Registers a row with a moving camera. If light is computed separately from the view, also
+// registers a row with a moving sun.
 void RegisterBoth(const std::string& name, const scene::Scene& scene, const MakeFields& make) {
   Register(name, scene, make, Moving::kCamera);
   if (test_support::PlainTechniqueOf(scene.rendering.technique) != test_support::kHalfAngle) {

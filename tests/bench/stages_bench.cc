@@ -1,5 +1,5 @@
-// The cost of each stage of a frame by each path in each mode of the papers' table, and the stages
-// that a change reruns.
+// Benchmarks of the cost of each stage of a frame, by each technique in each mode of the papers'
+// table, and of the stages that a change reruns.
 #include <array>
 #include <string>
 
@@ -11,7 +11,7 @@
 namespace thunderhead::bench {
 
 void RegisterModes() {
-  // Riley et al. 2003 (AMS), Table IV, in the order of accuracy::kModes.
+  // The rates are from Riley et al. 2003 (AMS), Table IV, in the order of accuracy::kModes.
   constexpr std::array kPaperFps = {5.1, 4.3, 1.7, 1.2};
   const Fields& fields = Sample::Get().fields;
   for (const auto& plain : accuracy::kCellTechniques) {

@@ -15,7 +15,8 @@ namespace thunderhead::bench {
 using Fields = std::shared_ptr<const volume::HydrometeorFields>;
 using MakeFields = std::function<Fields()>;
 
-// Opened on first use; ends the program with a message if that fails.
+// The sample storm and a context to draw it with. It is opened on first use; a failure ends the
+// program with a message.
 struct Sample {
   std::unique_ptr<gl::Context> context;
   Fields fields;  // at 40 minutes
@@ -29,44 +30,47 @@ enum class Moving { kCamera, kSun, kSunClimbs, kField, kExposure };
 // Adds columns of the memory of fields and textures.
 void TellMemory(benchmark::State& state, const Fields& fields, std::size_t device_bytes);
 
-// The storm as a whole at the papers' size, 300 x 300 pixels, 128 slices.
+// Returns a scene of the whole storm at the papers' size, 300 x 300 pixels, 128 slices.
 scene::Scene PaperScene();
 
-// Draws whole frames, JPEG included, after two that are not counted; with the memory of fields and
-// textures.
+// Draws whole frames, including JPEG, after two frames that are not counted. Reports the memory of
+// fields and textures.
 void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& fields, Moving moving);
 
-// Registers whole frames, JPEG included; the columns `*_ms` split them by stage. `paper_fps` is the
-// papers' own on a GeForce FX 5800 (Riley et al. 2003, AMS, Table IV), 0 for none.
+// Registers whole frames, including JPEG. The columns `*_ms` split the time by stage. `paper_fps`
+// is the papers' rate on a GeForce FX 5800 (Riley et al. 2003, AMS, Table IV), or 0 for none.
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
               Moving moving, double paper_fps = 0.0);
-// The same of fields that are made when the row is measured.
+// Does the same for fields that are made only when the row is measured.
 void Register(const std::string& name, const scene::Scene& scene, const MakeFields& make,
               Moving moving, double paper_fps = 0.0);
 
-// The modes of the papers' table by both paths, and the stages that a change reruns.
+// Registers the modes of the papers' table with both techniques, and the stages that a change
+// reruns.
 void RegisterModes();
 
-// The presets that sessions draw with while something moves.
+// Registers the presets that sessions draw with while something moves.
 void RegisterPresets();
 
-// The scenes and the picture of P. Man, Generating and Real-Time Rendering of Clouds, section 5;
-// his figures are from a GeForce 4. A fit drops balls without weight, so more are
-// requested.
+// Registers the scenes and the picture of P. Man, Generating and Real-Time Rendering of Clouds,
+// section 5. Man's figures are from a GeForce 4. A fit drops balls without weight, so more balls
+// are requested.
 void RegisterMetaballs();
 
-// Neyret's shader against Lambert's law on the same ellipsoids, at his 600 x 600 pixels; "paper"
-// has twice his 87.
+// Registers Neyret's shader and Lambert's law on the same ellipsoids, at Neyret's 600 x 600 pixels.
+// The paper has 87 ellipsoids; "paper" has twice as many.
 void RegisterCumulus();
 
-// A domain of 1000 x 960 x 60 cells, the sample storm 30 times, at 1280 x 720: the first frame, and
-// frames while the camera or the sun moves; with the memory of fields and textures.
+// Registers a domain of 1000 x 960 x 60 cells, with the sample storm 30 times, at 1280 x 720. It
+// measures the first frame and frames while the camera or the sun moves, with the memory of fields
+// and textures.
 void RegisterWideDomain();
 
-// A step's paths of traced light (docs/decisions/0057), on the processors and on the device.
+// Registers the paths of one step of the path-traced correction (docs/decisions/0057), on the
+// processors and on the device.
 void RegisterPaths();
 
-// Savings by drawing only what a scene requires, and the growth of time.
+// Registers the savings from drawing only what a scene requires, and the growth of time.
 void RegisterSavings();
 void RegisterGrowth();
 

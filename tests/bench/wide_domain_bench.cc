@@ -1,4 +1,4 @@
-// The time and memory of drawing a domain of 58 million cells.
+// Benchmarks of the time and memory of drawing a domain of 58 million cells.
 #include <memory>
 
 #include "frame/tone_map.h"
@@ -11,7 +11,7 @@
 namespace thunderhead::bench {
 namespace {
 
-// Made when the first row needs it, and dropped after the last.
+// Returns the domain. It is made when the first row needs it, and dropped after the last.
 const Fields& Wide() {
   static const Fields fields = support::WideDomain(*Sample::Get().fields, 5, 6, 1);
   return fields;

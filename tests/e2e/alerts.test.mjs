@@ -1,5 +1,5 @@
-// Prometheus' alarms (deploy/prometheus/alerts.yaml) on series of figures, by promtool: `node --test alerts.test.mjs`. Needs no
-// browser and no server.
+// Tests of the Prometheus alerts (deploy/prometheus/alerts.yaml) on made-up time series, with promtool: `node --test
+// alerts.test.mjs`. They need no browser and no server.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-// End-to-end test of a folder that a model still writes to: new times appear on the time bar by themselves.
+// End-to-end test of a folder that a model still writes to: new times appear on the time bar automatically.
 import assert from "node:assert/strict";
 import { appendFileSync, mkdtempSync, renameSync, rmSync, unlinkSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -52,7 +52,7 @@ test("a session that shows the newest time goes on to a newer one when its file 
   await awaitValidTime(/02:00.*2 of 2/s);
   const whole = cloudFile(3);
   writeFileSync(fileOf(3), whole.subarray(0, whole.length / 2));
-  // Half a file is no time when one that was written later is.
+  // A truncated file does not become a time, while a file that is written later does.
   writeFileSync(fileOf(0), cloudFile(0));
   await awaitValidTime(/02:00.*3 of 3/s);
   appendFileSync(fileOf(3), whole.subarray(whole.length / 2));
@@ -75,7 +75,7 @@ test("a file that is replaced keeps its time, and its picture comes by itself", 
   const fresh = `${folder}.nc`;
   writeFileSync(fresh, cloudFile(2, 1200));
   renameSync(fresh, fileOf(2));
-  // The picture before may be drawn again meanwhile, as the time that came before it changes the scene.
+  // The previous picture may be drawn again meanwhile, because the new earlier time changes the scene.
   await until("a smaller cloud", async () => {
     assert.match(await validTime(), /02:00.*4 of 6/s, "at any time");
     await rested(page);

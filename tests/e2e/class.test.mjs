@@ -1,4 +1,4 @@
-// End-to-end test of a shared session: a teacher and students with pages of their own before the real server.
+// End-to-end test of a shared session: a teacher and students, each with a page, and the real server.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import {
@@ -24,7 +24,7 @@ import { difference, grabCanvas } from "./pictures.mjs";
 import { textOfCode } from "./qr.mjs";
 import { countSceneUpdates } from "./socket_messages.mjs";
 
-// Tolerance: half a pixel on either side, and the rounding of the overlay's numbers.
+// The tolerance is half a pixel on either side, plus the rounding of the overlay's numbers.
 const SAME_PLACE_PX = 2;
 
 const room = new ClassRoom();
@@ -45,7 +45,7 @@ function middleOf(points) {
   return [xs, ys].map((values) => (Math.min(...values) + Math.max(...values)) / 2);
 }
 
-// Keeps the revisions that the page shows from then on, and the clock's time at which it first showed each.
+// Records the revisions that the page shows from now on, and the time at which it first showed each.
 const noteWhenShown = (page) =>
   page.getByTestId("storm-canvas").evaluate((canvas) => {
     window.shownAt = {};
@@ -57,7 +57,7 @@ const noteWhenShown = (page) =>
 test("a presenter leaves: a request that nobody answers ends, and control is free later", async () => {
   const presenter = await room.visit(room.server.url);
   await until("a session", async () => presenter.url().includes("?session="));
-  // Otherwise the light of its picture, which nobody looks at, would be traced all the time.
+  // Otherwise the light of its picture, which no viewer looks at, would be traced all the time.
   await chooseQuality(presenter, "Fast");
   await setRule(presenter, "freeWhenAway", true);
   const viewer = await room.visit(presenter.url().replace(/#.*/, ""));
@@ -133,7 +133,7 @@ test("a student joins by the link and sees the same picture, but cannot change i
   await openTool(student, "light");
   await student.getByTestId("sun-dome").press("ArrowDown");
   await openTool(student, "look");
-  // What the page sent before its name has come to the teacher by then.
+  // Everything that the page sent before its name has now reached the teacher.
   await nameThemselves(student, "Ann");
   await room.teacherSees("Ann");
   assert.equal(scenesOfStudent(), sent, "the page sends a scene");
@@ -154,7 +154,7 @@ test("a student looks around alone, and comes back", async () => {
   assert.equal(await azimuthOf(teacher), before);
   const apart = difference(await grabCanvas(teacher), await grabCanvas(student));
   assert.ok(apart > 1, `the own view differs by ${apart} alone`);
-  // The same storm, time and light: what the teacher changes is seen in the own view.
+  // The own view has the same storm, time and light: the teacher's changes appear in it.
   await rested(student);
   const own = await grabCanvas(student);
   await changing(() => setNumber(teacher, "exposure", -1.5), teacher);
@@ -216,7 +216,7 @@ test("the teacher says not now, and locks control", async () => {
   await until("a locked button", () => student.getByTestId("ask-control").isDisabled());
   await setRule(teacher, "controlLocked", false);
   await until("an unlocked button", () => student.getByTestId("ask-control").isEnabled());
-  // The teacher has been told who is there since the request.
+  // The teacher has received a presence since the request.
   assert.equal(await teacher.getByTestId("asks").count(), 0);
 });
 
@@ -312,7 +312,7 @@ test("the teacher's pointer is seen where it points, and goes with the tool", as
   await screenshot("26-pointer", student);
   await teacher.keyboard.press("Escape");
   await until("no pointer", async () => (await student.getByTestId("pointer").count()) === 0);
-  // By keys alone.
+  // Uses only the keyboard.
   await teacher.getByTestId("tool-pointer").focus();
   await teacher.keyboard.press("Enter");
   await teacher.getByTestId("mark-middle").focus();
@@ -338,7 +338,7 @@ test("a student points and draws while the teacher allows it", async () => {
   assert.equal(await last(teacher), await last(student));
   const [, y] = middleOf((await last(teacher)).split(" ").map((corner) => corner.split(",").map(Number)));
   assert.ok(Math.abs(y - 255) < 10, `the line is at ${y}`);
-  // Marks that come while the first is being placed are refused, and sent again.
+  // Marks added while the first is being placed are refused, and sent again.
   await student.getByTestId("mark-middle").evaluate((button) => {
     for (let i = 0; i < 3; i += 1) button.click();
   });
@@ -355,7 +355,8 @@ test("a student points and draws while the teacher allows it", async () => {
   for (const page of [teacher, classmate]) await page.getByTestId("pointer").waitFor({ state: "detached" });
   await student.getByText("has not allowed viewers to point and draw").waitFor();
   await student.mouse.move(MIDDLE.x + 5, MIDDLE.y);
-  // What the page sent before its name has come to the server by then, and a pointer of its own would be told with the teacher's.
+  // Everything that the page sent before its name has now reached the server. A pointer of the student's would be sent
+  // together with the teacher's.
   await nameThemselves(student, "Bea");
   await room.teacherSees("Bea");
   await openTool(teacher, "marks");
@@ -368,7 +369,7 @@ test("a student points and draws while the teacher allows it", async () => {
   await classmate.getByTestId("pointer").waitFor({ state: "detached" });
   await openTool(teacher, "look");
 
-  // Whoever steers may draw, whatever the rule; a viewer erases only their own marks.
+  // The viewer who has control may draw, whatever the rule says. A viewer can erase only their own marks.
   await teacher.getByTestId("people").click();
   await teacher.getByTestId("give-unasked").first().click();
   await teacher.keyboard.press("Escape");
@@ -386,7 +387,7 @@ test("following locked, a student's drag does nothing but hint", async () => {
   const before = await azimuthOf(student);
   await turn(student, 120);
   await student.getByText("has locked the view").waitFor();
-  // A later picture is of the same view, too.
+  // A later picture also shows the same view.
   await changing(() => setNumber(teacher, "exposure", -1.2), teacher);
   await room.inStep(student);
   assert.equal(await azimuthOf(student), before);
@@ -451,7 +452,7 @@ test("the teacher reloads by accident and loses nothing", async () => {
   await openTool(teacher, "look");
   const { data: after } = await grabStill(teacher);
   assert.equal(after.azimuth, before.azimuth);
-  // The page sends its size again, and gets a frame more.
+  // The page sends its size again, and receives one more frame.
   await until("the picture as before", async () => difference(picture, await grabCanvas(teacher)) < 0.5);
   assert.equal(await exposure(teacher).inputValue(), "-0.5");
   assert.equal(await marksOn(teacher), 1);
@@ -500,7 +501,7 @@ test("a colleague presents by the presenter's link; of two who steer at once nob
 
   await changing(() => setNumber(colleague, "exposure", 0.3), colleague);
   await until("the colleague's change", async () => (await exposure(teacher).inputValue()) === "0.3");
-  // Both at once: one of them steers, and all pages agree on who.
+  // Both act at once: one of them gets control, and all pages agree on who.
   await colleague.getByTestId("let-go").click();
   await teacher.getByTestId("take-control").waitFor();
   await Promise.all([teacher, colleague].map((page) => page.getByTestId("take-control").click()));
@@ -509,7 +510,7 @@ test("a colleague presents by the presenter's link; of two who steer at once nob
     return both[0] + both[1] === 1;
   });
   await colleague.context().close();
-  // Its control goes back to the presenter who is there.
+  // Control returns to the presenter who is still there.
   await room.whileWaiting({ come_back: 0 }, () => teacher.getByTestId("let-go").waitFor());
 });
 

@@ -1,4 +1,4 @@
-// End-to-end test of a class whose network or server fails, and comes back.
+// End-to-end test of a class whose network or server fails and recovers.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import {
@@ -21,13 +21,13 @@ import { canvasData, changing, grabStill, openTool, rested, setNumber, until } f
 import { difference, grabCanvas } from "./pictures.mjs";
 import { throttledLink } from "./throttled_link.mjs";
 
-// The page checks a connection on which it hears nothing for 15 s by two calls of 4 s, and gives it up then.
+// When a connection is silent for 15 s, the page checks it with two calls of 4 s each and then gives it up.
 const CLOCK_STEP_MS = 5000;
 
-// The pages wait no longer for their next attempt.
+// The longest time before the pages' next attempt to connect.
 const LONGEST_WAIT_MS = 8000;
 
-// A page whose clock can be put forward.
+// Installs a clock in a page that the test can advance.
 const withClock = (page) => page.clock.install();
 
 const room = new ClassRoom();
@@ -42,7 +42,8 @@ before(async () => {
 
 after(() => room.close());
 
-// A student called Ada joins over a link of her own, which `goes` may make fail; she leaves the class as she found it.
+// Lets a student called Ada join over a separate link, which `goes` may break. Ada leaves the class in its original
+// state.
 async function withFarStudent(goes) {
   const link = await throttledLink({ port: new URL(room.server.url).port, kbitPerS: 100_000, roundTripMs: 4 });
   const far = await room.visit((await room.viewersLink()).replace(/:\d+\//, `:${link.port}/`), withClock);
@@ -61,7 +62,8 @@ async function withFarStudent(goes) {
   }
 }
 
-// A student whose Wi-Fi fails sees what happened meanwhile once it is back, and what the student did meanwhile counts.
+// When a student's failed Wi-Fi is back, the student sees what happened meanwhile, and what the student did meanwhile
+// counts.
 for (const [how, fail] of Object.entries({
   "breaks": (link) => link.cut(),
   "falls silent": (link) => link.silence(),
@@ -88,8 +90,8 @@ for (const [how, fail] of Object.entries({
 
 const people = async () => Number((await teacher.getByTestId("people").innerText()).match(/\d+/)[0]);
 
-// The student steers, has drawn a line and set the exposure, and sets it again when the connection has just been lost without a
-// word, which neither the server nor the page can know for a while.
+// The student has control, has drawn a line and set the exposure. The student sets it again just after the connection
+// has been lost silently. Neither the server nor the page can detect the loss for a while.
 async function loseWhileSteering(far, link) {
   await teacher.getByTestId("people").click();
   await teacher.getByRole("button", { name: "Give control to Ada" }).click();
@@ -108,7 +110,7 @@ async function loseWhileSteering(far, link) {
   assert.equal(await said(teacher), "Ada steers");
 }
 
-// The page finds out that its connection is lost, as soon as its clock says so.
+// Waits until the page detects that its connection is lost, while its clock advances.
 const findsOut = (far) =>
   until("the page finds out", async () => {
     if (await far.getByTestId("connection-lost").isVisible()) return true;
@@ -140,11 +142,11 @@ test("a student who steers is lost without a word, comes back before control is 
 test("a student who steers is lost for longer: the teacher is told and has control, and the student learns what became of the change", () =>
   withFarStudent(async (far, link) => {
     await loseWhileSteering(far, link);
-    // The server finds out by its pings of 15 s, on the real clock.
+    // The server detects the loss by its pings of 15 s, on the real clock.
     for (const page of [teacher, student])
       await until("a steerer who is gone", async () => (await said(page)) === "Waiting for Ada to come back");
     assert.equal(await people(), 2);
-    // Control is not to be had by asking meanwhile.
+    // Asking does not give control meanwhile.
     assert.equal(await controlLabel(student), "Ask to steer");
     assert.match(await student.getByTestId("edit-block").innerText(), /Control waits for Ada to come back/);
     await room.whileWaiting({ come_back: 0 }, () => teacher.getByTestId("let-go").waitFor());
@@ -163,7 +165,7 @@ test("a student who steers is lost for longer: the teacher is told and has contr
     await openTool(teacher, "marks");
   }));
 
-// The server starts again, and the pages find it.
+// Restarts the server, and waits until the pages find it.
 async function comeBack() {
   await room.start();
   for (const page of [teacher, student]) await page.clock.fastForward(LONGEST_WAIT_MS);
@@ -195,13 +197,14 @@ test("the server is killed and comes back: teacher and student have their sessio
   assert.equal(student.url(), address);
   await until("a picture since then", async () => Number((await canvasData(student)).revision) > Number(revision));
   await room.inStep(student);
-  // Light is solved to a tolerance, from another start.
+  // The light is solved to a tolerance from another start, so pictures may differ slightly.
   await until("the picture as before", async () => difference(drawn, await grabCanvas(student)) < 0.5);
   for (const page of [teacher, student]) {
     await until("the mark", async () => (await marksOn(page)) === 1);
     assert.deepEqual(await markOn(page), mark);
   }
-  // The keys have their rights: the teacher's to steer, the student's to follow, and to draw by the rule that was kept.
+  // The keys keep their rights: the teacher may take control, the student may follow, and may draw by the restored
+  // rule.
   assert.equal(await exposure(student).isDisabled(), true);
   await openTool(student, "marks");
   await student.getByTestId("tool-pen").waitFor();

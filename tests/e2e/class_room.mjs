@@ -1,4 +1,4 @@
-// A class: a server, a browser, a teacher and students with pages of their own, and what they do.
+// A class: a server, a browser, a teacher and students, each with a page, and their actions.
 import { mkdtempSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -8,15 +8,16 @@ import { freePort, startServer } from "./server_process.mjs";
 export const VIEWPORT = { width: 900, height: 560 };
 export const MIDDLE = { x: 620, y: 300 };
 
-// In seconds: no wait of people for one another ends by itself, however slow the machine is, and they may ask again at once.
+// In seconds. No wait of viewers for one another expires, however slow the machine is, and viewers may ask again at
+// once.
 export const NEVER = 1e6;
 const WAITS = { answer: NEVER, ask_again: 0, away: NEVER, come_back: NEVER, come_back_to_new_server: NEVER };
 
-// Notes stay for so many times as long.
+// The factor by which notes stay longer.
 const NOTES_STAY = 20;
 
 export class ClassRoom {
-  // Of the pages' consoles.
+  // Errors from the pages' consoles.
   complaints = [];
 
   // Opens the teacher's session; `prepare` as for `visit`.
@@ -32,7 +33,7 @@ export class ClassRoom {
     await this.start();
     this.browser = await launchBrowser();
     this.teacher = await this.visit(this.server.url, prepare);
-    // Without detail and traced light, so that pictures rest and are drawn soon.
+    // Detail and the path-traced correction are off, so that pictures are drawn and rest quickly.
     await changing(() => chooseQuality(this.teacher, "Fast"), this.teacher);
     return this.teacher;
   }
@@ -48,7 +49,7 @@ export class ClassRoom {
     rmSync(this.folder, { recursive: true, force: true });
   }
 
-  // Runs `meanwhile` while people wait for one another for other times, in seconds: RosterTimeouts of the server.
+  // Runs `meanwhile` with other timeouts between viewers, in seconds: RosterTimeouts of the server.
   async whileWaiting(seconds, meanwhile) {
     await this.#setTimeouts({ ...WAITS, ...seconds });
     await meanwhile();
@@ -61,7 +62,7 @@ export class ClassRoom {
     await this.#untilTimeoutsTaken(times + 1);
   }
 
-  // Moved into place, so that the server never reads half a file.
+  // The file is moved into place, so that the server never reads half a file.
   #writeTimeouts(seconds) {
     const file = join(this.folder, "timeouts");
     const lines = Object.entries(seconds).map(([name, value]) => `${name} ${value}\n`);
@@ -78,7 +79,8 @@ export class ClassRoom {
     return until("the server has taken the timeouts", () => this.#timesTaken() >= times);
   }
 
-  // Waits until the server has stored the sessions as they are now: it answers who opens or closes one only after that.
+  // Waits until the server has stored the sessions as they are now. It answers calls that open or close a session only
+  // after that.
   async stored() {
     const call = (method, body) =>
       fetch(`${this.server.url}thunderhead.v1.ThunderheadService/${method}`, {
@@ -93,7 +95,8 @@ export class ClassRoom {
     await (await call("CloseSession", Buffer.concat([Buffer.from([10, key.length]), key]))).arrayBuffer();
   }
 
-  // Each person has a browser profile, and so keys, of their own. `prepare` is called with the page before it is opened.
+  // Opens a page with its own browser profile, and therefore its own keys. `prepare` is called with the page before it
+  // is opened.
   async visit(address, prepare = () => undefined) {
     const context = await this.browser.newContext({
       viewport: VIEWPORT,
@@ -115,10 +118,10 @@ export class ClassRoom {
     return link;
   }
 
-  // The teacher sets a rule, and the student's page knows it.
+  // Lets the teacher set a rule, and waits until the student's page knows it.
   async setRuleFor(student, name, on) {
     await setRule(this.teacher, name, on);
-    // Rules come together: its page has this one when it has the next.
+    // Rules are sent together, so the student's page has this rule once it has the next.
     const asks = student.getByTestId("ask-control");
     await setRule(this.teacher, "controlLocked", true);
     await until("a locked button", () => asks.isDisabled());
@@ -126,7 +129,7 @@ export class ClassRoom {
     await until("an unlocked button", () => asks.isEnabled());
   }
 
-  // Waits until the teacher sees someone of that name; `shot` is a picture of the list.
+  // Waits until the teacher sees a viewer of that name; `shot` names a screenshot of the list.
   async teacherSees(name, shot) {
     await this.teacher.getByTestId("people").click();
     await this.teacher.getByTestId("people-list").getByText(name).waitFor();
@@ -134,7 +137,7 @@ export class ClassRoom {
     await this.teacher.keyboard.press("Escape");
   }
 
-  // The teacher's and another's page show the same revision, refined.
+  // Waits until the teacher's and the student's page show the same revision, refined.
   async inStep(student) {
     await until("the same picture on both pages", async () => {
       const [host, guest] = await Promise.all([canvasData(this.teacher), canvasData(student)]);
@@ -143,8 +146,8 @@ export class ClassRoom {
   }
 }
 
-// In the page: notes stay longer, so that a test that is slow to look sees them, and let the pointer through to the picture, which
-// they cover.
+// Runs in the page. Makes notes stay longer, so that a slow test sees them, and lets the pointer through to the picture
+// that they cover.
 function letNotesStay(times) {
   const sheet = new CSSStyleSheet();
   sheet.replaceSync("[data-testid=notices] * { pointer-events: none !important }");
@@ -157,7 +160,7 @@ function letNotesStay(times) {
 
 export async function setRule(presenter, name, on) {
   await presenter.getByTestId("share").click();
-  // It shows the session's rule: a presence that was on its way may set it back for a moment.
+  // The checkbox shows the session's rule; a presence in flight may set it back for a moment.
   const rule = presenter.getByTestId(`rule-${name}`);
   if ((await rule.isChecked()) !== on) await rule.click();
   await until(`the rule ${name}`, async () => (await rule.isChecked()) === on);
@@ -177,10 +180,10 @@ export const steers = async (page) => (await page.getByTestId("give-back").count
 
 export const noticesOf = (page) => page.getByTestId("notices").innerText();
 
-// Whose turn to steer it is, in the words of each page's button.
+// Returns the label of the page's control button, which tells who has control.
 export const controlLabel = (page) => page.getByTestId("ask-control").innerText();
 
-// A line of three corners, with the pen in the hand.
+// Draws a line of three corners with the pen.
 export async function drawLine(page, { x, y }) {
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -195,7 +198,7 @@ export const exposure = (page) => page.getByTestId("exposure-number");
 
 export const azimuthOf = async (page) => Number((await canvasData(page)).azimuth);
 
-// The corners of the only mark on a page's overlay.
+// Returns the corners of the only mark on a page's overlay.
 export function markOn(page) {
   return page
     .getByTestId("mark")

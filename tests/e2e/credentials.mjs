@@ -1,8 +1,8 @@
-// Certificates and tokens for a server that asks for them.
+// Creates certificates and tokens for a server that requires them.
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 
-// A certificate for this machine that vouches for itself, for two days, and its key, into those files.
+// Writes a self-signed certificate for this machine, valid for two days, and its key into those files.
 export function writeCertificate(certificate, key) {
   execFileSync("openssl", [
     ..."req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 -subj /CN=localhost".split(" "),

@@ -1,5 +1,5 @@
-// The files of deploy/, tested with the programs that they are for: HAProxy before the real server, the systemd unit,
-// Prometheus's rules, the Compose file's flags. Each needs its Debian package.
+// Tests of the files of deploy/ with the programs that they are for: HAProxy in front of the real server, the systemd
+// unit, Prometheus's rules, the Compose file's flags. Each needs its Debian package.
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -86,7 +86,7 @@ describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haprox
     await context.close();
   });
 
-  // The headers of as many answers to requests that are sent at once by one connection.
+  // Returns the headers of `count` responses to requests that are sent at once on one connection.
   const ask = (client, count) => {
     const one = () =>
       new Promise((resolve, reject) => {
@@ -106,7 +106,7 @@ describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haprox
   test("gRPC streams: a presenter who steers and two viewers", () => {
     const flags = ["--tls-roots", file("cert.pem"), "--viewers", "2", "--size", "320x180", "--json"];
     let least = 0;
-    // A machine that is slow draws nothing for everybody within the shortest time.
+    // A slow machine may draw no frame for some viewer within the shortest time.
     for (let seconds = 1; least === 0 && seconds <= 1000; seconds *= 10) {
       const load = spawnSync(BINARY, ["load", `localhost:${port}`, ...flags, "--seconds", String(seconds)], { encoding: "utf8" });
       assert.equal(load.status, 0, load.stderr);
@@ -156,12 +156,12 @@ describe("systemd", { skip: existsSync("/usr/bin/systemd-analyze") ? false : "ne
   test("the unit is sound and exposes little", () => {
     const unit = file("thunderhead.service");
     cpSync(`${ROOT}deploy/systemd/thunderhead.service`, unit);
-    // The program is not installed here.
+    // The program is not installed on this machine, so the unit gets the built program's path.
     writeFileSync(unit, readFileSync(unit, "utf8").replace("/opt/thunderhead/bin/thunderhead", BINARY));
     const verify = spawnSync("systemd-analyze", ["verify", unit], { encoding: "utf8" });
     assert.equal(verify.status, 0, verify.stderr);
     assert.equal(verify.stderr.trim(), "");
-    // 1.7 of 10; "OK" ends at 3.
+    // The result is 1.7 of 10; the rating "OK" ends at 3.
     const security = spawnSync("systemd-analyze", ["security", "--offline=true", "--threshold=20", unit], {
       encoding: "utf8",
     });

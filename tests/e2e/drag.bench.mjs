@@ -1,8 +1,10 @@
-// Measures a drag with server and browser on this machine: frames painted a second, and milliseconds from each movement of the
-// pointer, as the browser dates it, to the end of the page's frame that paints a picture which follows it.
+// Measures a drag with server and browser on this machine. It reports frames painted per second and the latency in
+// milliseconds. The latency begins with a movement of the pointer, as the browser dates it. It ends with the page's
+// frame that paints a picture which follows the movement.
 //   node drag.bench.mjs [seconds] [width] [height] [trace]
-// The aims, at 960 x 540, are 20 frames/s and a median of 120 ms. With `trace` it also prints what a picture costs the browser, by a
-// trace of one more drag.
+//
+// The aims, at 960 x 540, are 20 frames/s and a median of 120 ms. With `trace` it also prints what a picture costs the
+// browser, from a trace of one more drag.
 import { loadavg } from "node:os";
 import { setTimeout } from "node:timers/promises";
 import { launchBrowser, rested, until } from "./driver.mjs";
@@ -11,19 +13,19 @@ import { freePort, startServer } from "./server_process.mjs";
 const [seconds, width, height] = [20, 960, 540].map((usual, i) => Number(process.argv[2 + i] ?? usual));
 const STEP_MS = 16;
 const STEP_PX = 4;
-// A drag over the whole window's height turns the camera so far.
+// The angle by which a drag over the whole window's height turns the camera.
 const TURN_DEG = 180;
-// Of the azimuth that the page tells.
+// The rounding of the azimuth that the page reports.
 const ROUNDING_DEG = 0.02;
 
-// In the page: the pointer's movements, and the azimuth of each picture once it is painted.
+// Runs in the page. Records the pointer's movements, and the azimuth of each picture once it is painted.
 const record = () => {
   const canvas = document.querySelector("[data-testid=storm-canvas]");
   window.drag = { moved: [], painted: [] };
   canvas.addEventListener("pointermove", (event) => {
     for (const { clientX, timeStamp } of event.getCoalescedEvents()) window.drag.moved.push({ x: clientX, atMs: timeStamp });
   });
-  // The observer is called before the frame is painted, a message after that.
+  // The observer is called before the frame is painted, and a message arrives after that.
   const channel = new MessageChannel();
   channel.port1.onmessage = ({ data }) => window.drag.painted.push({ azimuthDeg: data, atMs: performance.now() });
   new MutationObserver(() => channel.port2.postMessage(Number(canvas.dataset.azimuth))).observe(canvas, {
@@ -33,7 +35,7 @@ const record = () => {
 
 const azimuthOf = (page) => page.getByTestId("storm-canvas").evaluate(({ dataset }) => Number(dataset.azimuth));
 
-// Drags once from left to right, so that each azimuth is of one place of the pointer.
+// Drags once from left to right, so that each azimuth belongs to one position of the pointer.
 async function stroke(page) {
   const [left, right, middle] = [0.1 * width, 0.9 * width, height / 2];
   const firstDeg = await azimuthOf(page);
@@ -48,7 +50,7 @@ async function stroke(page) {
   }
   const { moved, painted } = await page.evaluate(async () => {
     const { dataset } = document.querySelector("[data-testid=storm-canvas]");
-    // The picture of the last movement; it is noted a frame later.
+    // Waits for the picture of the last movement, which is recorded a frame later.
     while (!dataset.agreed || Number(dataset.revision) < Number(dataset.agreed)) await new Promise(requestAnimationFrame);
     for (let i = 0; i < 2; i += 1) await new Promise(requestAnimationFrame);
     return window.drag;
@@ -66,8 +68,9 @@ async function stroke(page) {
   return { latenciesMs, frames, ms: end - begin };
 }
 
-// CPU time, which other processes do not change: in all on the page's main thread, there in callbacks before a frame, which draw
-// the picture, and in updating layers, which copies the canvas for the compositor; and of decoding, on other threads.
+// CPU time, which other processes do not affect. The first part is the page's main thread in all. The next two are
+// parts of it: callbacks before a frame, which draw the picture, and layer updates, which copy the canvas for the
+// compositor. The last part is decoding, on other threads.
 const PARTS = {
   "the main thread": { thread: "CrRendererMain", event: "RunTask" },
   "its callbacks before frames": { thread: "CrRendererMain", event: "FireAnimationFrame" },
@@ -96,7 +99,7 @@ try {
   await page.goto(server.url);
   await rested(page);
   await page.evaluate(record);
-  // Warm-up: the first pictures that move are not representative.
+  // The first stroke is a warm-up, because the first moving pictures are not representative.
   await stroke(page);
   const strokes = [];
   const total = (what) => strokes.reduce((sum, each) => sum + each[what], 0);

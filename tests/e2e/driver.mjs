@@ -16,12 +16,12 @@ const CHROMIUM_ARGS = [
   "--disable-component-update",
   "--disable-sync",
 ];
-// A wait that takes longer hangs. No test depends on how fast the machine is.
+// A wait that takes longer counts as hung. No test depends on how fast the machine is.
 export const HANG_MS = 600_000;
 export const PICTURE_TIMEOUT_MS = HANG_MS;
 const POLL_MS = 50;
 
-// Every wait of the browser's pages ends after HANG_MS.
+// Starts a browser. Every wait of its pages ends after HANG_MS.
 export async function launchBrowser(more = []) {
   mkdirSync(OUTPUT, { recursive: true });
   const options = { executablePath: CHROMIUM, args: [...CHROMIUM_ARGS, ...more], timeout: HANG_MS };
@@ -35,7 +35,7 @@ export async function launchBrowser(more = []) {
   return browser;
 }
 
-// Errors of a page's scripts and console go into the list.
+// Adds errors of a page's scripts and console to the list.
 export function listenForErrors(page, complaints) {
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("console", (message) => {
@@ -45,7 +45,8 @@ export function listenForErrors(page, complaints) {
 
 export const screenshot = (name, page) => page.screenshot({ path: `${OUTPUT}${name}.png` });
 
-// What the page tells of a picture on a canvas, and the canvas's size: `boxSize` is the one that the page's layout gives it.
+// Returns the data that the page reports about a picture on a canvas, and the canvas's size. `boxSize` is the size that
+// the page's layout gives it.
 const dataOf = (canvas) => {
   const box = [canvas.clientWidth, canvas.clientHeight].map((length) => Math.max(1, Math.round(length * devicePixelRatio)));
   return { ...canvas.dataset, canvasSize: `${canvas.width}x${canvas.height}`, boxSize: box.join("x") };
@@ -55,7 +56,7 @@ export function canvasData(page, testId = "storm-canvas") {
   return page.getByTestId(testId).evaluate(dataOf);
 }
 
-// Waits until `holds` gives true.
+// Waits until `holds` returns true.
 export async function until(what, holds, timeoutMs = HANG_MS) {
   const deadline = Date.now() + timeoutMs;
   while (!(await holds())) {
@@ -66,14 +67,14 @@ export async function until(what, holds, timeoutMs = HANG_MS) {
 
 const fits = ({ size, canvasSize, boxSize }) => size === canvasSize && canvasSize === boxSize;
 
-// Of a scene that rests. The page tells the revision that it and the server agree on, with every change that was made on this page;
-// an own view's revisions are counted apart.
+// Returns whether the picture is the refined one of a scene at rest. The page reports the revision that it and the
+// server agree on, including every change made on this page. An own view's revisions are counted separately.
 const isRefined = ({ refined, ownView, agreed, revision }) =>
   refined === "true" && (ownView === "true" || (Boolean(agreed) && Number(revision) >= Number(agreed)));
 
 const isWhole = (data) => isRefined(data) && fits(data);
 
-// A machine that is busy draws pictures of a lower scale first.
+// A busy machine first draws pictures of a lower scale.
 const isStill = (data) => isWhole(data) && data.encoding === "avif" && Number(data.scale) === 1;
 
 async function reached(what, page, holds, testId) {
@@ -88,14 +89,15 @@ async function reached(what, page, holds, testId) {
 // Waits for a refined picture of the newest scene, with every change that was made on this page.
 export const rested = (page, testId) => reached("a refined picture", page, isRefined, testId);
 
-// Like `rested`, of a picture that has the canvas's size: while panels open and close the picture still has the size before.
+// Waits like `rested`, for a picture that has the canvas's size. While panels open and close, the picture still has its
+// previous size.
 export const restedAndFits = (page, testId) => reached("a refined picture of the canvas's size", page, isWhole, testId);
 
-// Like `restedAndFits`, once the still has come that replaces the frame's JPEG, from which it differs by about a level,
-// and of a picture at full quality.
+// Waits like `restedAndFits`, until a picture at full quality is shown as the still that replaces the frame's JPEG. The
+// two differ by about a level.
 export const restedStill = (page) => reached("a still of the canvas's size and of full quality", page, isStill);
 
-// The still's pixels and what the page tells of it: no later frame comes between.
+// Returns the still's pixels and the data that the page reports about it. No later frame comes between.
 export async function grabStill(page) {
   let data;
   let picture;
@@ -110,14 +112,14 @@ export async function grabStill(page) {
 
 // Runs an action that changes the scene, and waits for the refined picture of the new scene.
 export async function changing(action, page) {
-  // Without a picture any is newer.
+  // If there is no picture yet, any picture is newer.
   const revisionBefore = Number((await canvasData(page)).revision ?? -1);
   await action();
   await reached("a newer revision", page, ({ revision }) => Number(revision) > revisionBefore);
   return rested(page);
 }
 
-// With the left button, from one place to another.
+// Drags with the left button from one position to another.
 export async function dragBetween(page, from, to, steps = 12) {
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
@@ -125,7 +127,7 @@ export async function dragBetween(page, from, to, steps = 12) {
   await page.mouse.up();
 }
 
-// Runs an action as if it took the page no time: timers that are set meanwhile start when it has ended.
+// Runs an action as if it took the page no time: timers set meanwhile start when it has ended.
 export async function atOneMoment(page, action) {
   await page.evaluate(() => {
     const [start, clear] = [window.setTimeout, window.clearTimeout];
@@ -175,7 +177,7 @@ export async function holdingMovie(page, action) {
   }
 }
 
-// Puts the page's clock forward, as far as the page reads it.
+// Advances the clock that the page's scripts read.
 export async function passTime(page, ms) {
   await page.evaluate((passed) => {
     const now = performance.now.bind(performance);
@@ -183,7 +185,7 @@ export async function passTime(page, ms) {
   }, ms);
 }
 
-// Sets the number field of a slider, which may be folded away.
+// Sets the number field of a slider, which may be in a folded section.
 export async function setNumber(page, name, value) {
   await page.getByTestId(`${name}-number`).evaluate((input, text) => {
     input.value = text;
@@ -191,7 +193,8 @@ export async function setNumber(page, name, value) {
   }, String(value));
 }
 
-// Moves the focus with the tabulator key until it is on an element of that name, or on the summary of a section of that name.
+// Moves the focus with the tabulator key until it is on an element of that name, or on the summary of a section of that
+// name.
 export async function tabTo(page, testId, most = 80) {
   for (let presses = 0; presses <= most; presses += 1) {
     const focused = await page.evaluate(() => {
@@ -204,8 +207,8 @@ export async function tabTo(page, testId, most = 80) {
   throw new Error(`the tabulator key does not reach ${testId}`);
 }
 
-// Answers a forecaster's question, and prints how long that takes: only what a person does and waits for is within it, not a movie
-// that the server goes on drawing.
+// Answers a forecaster's question, and prints how long that takes. The time includes only what a person does and waits
+// for, without a movie that the server continues to draw.
 export async function timed(question, answer) {
   const began = Date.now();
   const given = await answer();
@@ -213,7 +216,7 @@ export async function timed(question, answer) {
   return given;
 }
 
-// Opens a tool of the rail; undefined closes the one that is open.
+// Opens a tool of the rail; undefined closes the open tool.
 export async function openTool(page, name) {
   const open = page.locator("[data-testid=rail] button[aria-controls=tool][aria-expanded=true]");
   const now = (await open.count()) > 0 ? (await open.getAttribute("data-testid")).slice(5) : undefined;
@@ -221,7 +224,7 @@ export async function openTool(page, name) {
   await page.getByTestId(`rail-${name ?? now}`).click();
 }
 
-// In the tool of looks, which is open, once the page has learned the settings it has: those of a quality, or of none.
+// Chooses a quality in the open tool Look, once the page knows whether its settings match a quality.
 export async function chooseQuality(page, word) {
   const about = page.getByTestId("quality-choice-about");
   await until("settings from the server", async () => !(await about.innerText()).startsWith("Waiting"));
@@ -229,7 +232,7 @@ export async function chooseQuality(page, word) {
 }
 
 const PANEL_BUTTONS = { help: "rail-help", drawer: "rail-settings" };
-// In a narrow window they are under others: the panel, and the button in it.
+// In a narrow window these controls are in a panel: the panel, and the button in it.
 const UNDER_OTHERS = {
   compare: ["storms", "storms-compare"],
   help: ["storms", "storms-help"],

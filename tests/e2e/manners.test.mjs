@@ -1,5 +1,5 @@
-// Requirements of the page as a whole: no violations that axe-core finds, targets large enough for fingers, a small first load
-// from one origin, no motion for people who prefer none.
+// Tests of the page as a whole. axe-core must find no violations, and targets must be large enough for fingers. The
+// first load must be small and from one origin. Nothing may move for people who prefer no motion.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { readFileSync } from "node:fs";
@@ -15,7 +15,7 @@ const TOUCH_PX = 44;
 
 let server;
 let browser;
-// Of the server's page, with a scene of the quality "Fast": these tests look at the page, and pictures are to rest soon.
+// The address of the page with a scene of the quality "Fast". These tests check the page, so pictures should rest soon.
 let fast;
 
 before(async () => {
@@ -50,7 +50,7 @@ async function addressOfFast() {
 }
 
 async function visit(options, address = fast) {
-  // The page lets no scripts in but its own; axe-core is one of the test.
+  // The page allows only its own scripts, so the test bypasses its policy to run axe-core.
   const context = await browser.newContext({ bypassCSP: true, ...options });
   const page = await context.newPage();
   await page.goto(address);
@@ -58,9 +58,10 @@ async function visit(options, address = fast) {
   return page;
 }
 
-// Letters lie over the picture on panels that let some of it through. With the picture gone and the page white behind them, as the brightest
-// cloud is, axe-core finds their contrast (the small pictures of kept views go, too); what it still cannot find is a finding too, but for letters in a drawing,
-// whose ground it does not know, and for what a panel covers.
+// Letters lie over the picture on translucent panels. axe-core can measure their contrast if the picture is removed and
+// the page behind them is white, like the brightest cloud. (The thumbnails of saved views are removed too.) What
+// axe-core still cannot measure is a finding. The exceptions are letters in a drawing, whose background it does not
+// know, and elements that a panel covers.
 const isRead = ({ html, any }) => !html.startsWith("<text") && any[0]?.data?.messageKey !== "bgOverlap";
 
 async function findings(page) {
@@ -77,7 +78,7 @@ async function findings(page) {
   );
 }
 
-// The page lays out what a tool leaves of the window in the frame that is painted next.
+// After a tool opens or closes, the page's layout is done in the next painted frame.
 const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 const placeOf = (page, panel) => page.locator(panel === "drawer" ? ".drawer" : ".popover");
@@ -88,13 +89,14 @@ async function showPanel(page, panel) {
   await painted(page);
 }
 
-// Every details element, so that what is folded is looked at too.
+// Opens every details element, so that folded sections are checked too.
 const unfold = (page) =>
   page.evaluate(() => {
     for (const each of document.querySelectorAll("aside details, .popover details")) each.open = true;
   });
 
-// Controls that are there only once somebody has used others: a named view, a lamp, colours of fields, what a probe has found.
+// Fills in controls that appear only after others were used: a named view, a lamp, colours of fields, the results of a
+// probe.
 async function fill(page) {
   await openTool(page, "map");
   await page.getByTestId("keep-view").click();
@@ -143,7 +145,7 @@ for (const [name, options] of [
     await page.context().close();
   });
 
-// A checkbox's or radio button's target is its label.
+// The target of a checkbox or radio button is its label.
 const TARGETS = "button, select, summary, label:has(> input:is([type=checkbox], [type=radio])), input:not([type=checkbox], [type=radio], [type=file])";
 
 test("fingers find every button, slider and switch", async () => {
@@ -179,7 +181,7 @@ test("fingers find every button, slider and switch", async () => {
   await page.context().close();
 });
 
-// Words of the renderers, which stand in Look's last section and the list of settings alone.
+// Words of the renderers, which may appear only in Look's last section and the list of settings.
 const JARGON = /\b(spp|slices?|diffusion|light (model|volume)|half-angle|octaves)\b/i;
 
 test("the tools use no words of the renderers but in Look's last section", async () => {
@@ -203,12 +205,13 @@ test("the tools use no words of the renderers but in Look's last section", async
 
 const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
-// Waits for so many texts over the picture: while it gets another size, it may have no room for some.
+// Waits for so many texts over the picture. While the picture changes size, it may have no space for some of them.
 const written = (page, least) =>
   page.waitForFunction((count) => document.querySelectorAll("[data-testid=annotations] text").length >= count, least);
 
-// Texts over the picture that leave the window; bars, names of compared pictures among them, that touch the window's edge; and
-// any two of these that lie on one another. Only the list of every setting may cover a bar: it takes a narrow window for itself.
+// Returns texts over the picture that leave the window, bars (including names of compared pictures) that touch the
+// window's edge, and any two of these that overlap. Only the list of all settings may cover a bar, because it fills a
+// narrow window.
 async function unreadable(page) {
   await painted(page);
   return page.evaluate(() => {
@@ -217,7 +220,7 @@ async function unreadable(page) {
         .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect(), covers: element.matches(".drawer") }))
         .filter(({ box }) => box.width > 0);
     const texts = boxes("[data-testid=annotations] text");
-    // The pill of a movie at work has a place of its own on phones; else it is in the bar.
+    // The pill of a movie being made has a separate place on phones; elsewhere it is in the bar.
     const [pill] = document.querySelectorAll(".at-work");
     const pillIsABar = pill !== undefined && getComputedStyle(pill).position === "fixed";
     const bars = boxes(`.top-bar, .time-line, .session-bar, .rail, .truth, aside, .compared-name${pillIsABar ? ", .at-work" : ""}`);
@@ -278,10 +281,10 @@ for (const [name, options] of [
     await page.getByTestId("camera-kind").getByText("From the ground", { exact: true }).click();
     await page.waitForFunction(() => document.querySelector("[data-testid=storm-canvas]").dataset.camera === "spotter");
     await openTool(page, undefined);
-    // The time and degrees.
+    // The texts are the time and degrees.
     await written(page, 4);
     assert.deepEqual(await unreadable(page), [], "from the ground");
-    // With the most that there may be in the corners.
+    // Fills the corners with the largest contents.
     await openTool(page, "look");
     await page.getByTestId("colours").getByText("False colours").click();
     await openTool(page, undefined);
@@ -297,7 +300,7 @@ for (const [name, options] of [
     await page.context().close();
   });
 
-// Who steers is in a bar of its own there.
+// On a phone a separate bar shows who has control.
 test("all that is written over the picture is read on a student's phone", async () => {
   const teacher = await visit({ viewport: { width: 900, height: 700 } });
   await openTool(teacher, "look");
@@ -352,7 +355,7 @@ test("fields and cores are a line each on a desktop, and all five fields are see
   await page.context().close();
 });
 
-// Of what is between the bars and an open tool.
+// Returns the element at the middle of the probe's cross, which lies between the bars and an open tool.
 const probeCross = (page) =>
   page.evaluate(() => {
     const cross = document.querySelector("[data-testid=probe-marks] .aim").getBoundingClientRect();
@@ -381,7 +384,7 @@ for (const [name, options, most] of [
       return (width * height) / (canvas.width * canvas.height);
     });
     assert.ok(covered < most, `${covered} of the picture is covered`);
-    // The line about the error, where there is room for it, is beside the tool.
+    // The line about the error, where it fits, is next to the tool.
     const truth = page.getByTestId("truth");
     if (await truth.isVisible()) {
       const [line, panel] = await Promise.all([truth.boundingBox(), page.getByTestId("tool-panel").boundingBox()]);
@@ -423,7 +426,7 @@ test("the focus goes back to the rail when a tool or the list of settings is clo
   await page.context().close();
 });
 
-// Controls whose words do not fit, once every word is 1.4 times as long as in English, as German ones are.
+// Returns controls whose words do not fit once every word is 1.4 times as long as in English, as German words are.
 const cutWords = (page) =>
   page.evaluate(() => {
     const LONGER = 0.4;
@@ -433,7 +436,7 @@ const cutWords = (page) =>
     while (words.nextNode()) {
       const { currentNode: node } = words;
       const text = node.data.trim();
-      // Numbers, units and names of storms are as long in any language; so is what is no longer put there by the page.
+      // Numbers, units and names of storms have the same length in any language, so they are skipped.
       if (!node.parentElement?.closest(inControl) || node.parentElement.closest(".storm-name, .visually-hidden, svg") || !/[a-z]{3}/.test(text)) continue;
       before.push([node, node.data]);
       node.data = node.data.replace(/[A-Za-z]{3,}/g, (word) => word + "n".repeat(Math.round(LONGER * word.length)));
@@ -449,7 +452,7 @@ const cutWords = (page) =>
         pen.font = style.font;
         const chosen = control.selectedOptions[0]?.label ?? "";
         const room = box.width - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) - 20;
-        // A title of a storm may be of any length.
+        // A title of a storm may have any length.
         if (!control.matches("[data-testid=storm], [data-testid=compare-storm]") && pen.measureText(chosen).width > room)
           found.push(`${control.dataset.testid} shows ${room.toFixed(0)} of ${pen.measureText(chosen).width.toFixed(0)} pixels of ${chosen}`);
         continue;
@@ -508,7 +511,7 @@ test("the first load is small, and everything comes from the server itself", asy
   await rested(page);
   let bytes = 0;
   for (const [url, response] of files) {
-    // The page's icon is loaded beside the page, and its encoding is not told.
+    // The page's icon is loaded outside the page, and its encoding is not reported.
     if (!url.endsWith(".svg")) assert.equal(await response.headerValue("content-encoding"), "gzip", url);
     bytes += (await response.request().sizes()).responseBodySize;
   }
@@ -519,7 +522,8 @@ test("the first load is small, and everything comes from the server itself", asy
   await page.context().close();
 });
 
-// While the server does not answer, the page says that it opens the storm: all that ever moves by itself.
+// Returns the number of animations while the page waits for the server and says that it opens the storm. No other
+// animation runs without user action.
 async function movingWhileOpening(reducedMotion) {
   const page = await (await browser.newContext({ reducedMotion })).newPage();
   await page.route(/thunderhead\.v1/, () => undefined);

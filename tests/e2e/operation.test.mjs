@@ -1,4 +1,4 @@
-// The real program as its operator sees it: metrics, health, JSON logs, draining. Needs no browser.
+// Tests of the real program as its operator sees it: metrics, health, JSON logs, draining. They need no browser.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { linkSync, mkdtempSync, readdirSync, readlinkSync, rmSync, statSync } from "node:fs";
@@ -8,7 +8,7 @@ import { test } from "node:test";
 import { until } from "./driver.mjs";
 import { BINARY, ROOT, freePort, startServer } from "./server_process.mjs";
 
-// Of complaints of libraries (server/app/library_log).
+// The limit for log lines of libraries (server/app/library_log).
 const LINES_A_SECOND = 10;
 // Longer than any picture takes.
 const DRAIN = ["--drain-seconds", "3600"];
@@ -23,9 +23,9 @@ async function start(...more) {
     return { status: answer.status, text: await answer.text() };
   };
   const metric = async (name) => Number(new RegExp(`^thunderhead_${name} (\\d+)`, "m").exec((await get("metrics")).text)?.[1]);
-  // The server shows itself two pictures at its start, each in a session.
+  // The server draws two pictures for itself at its start, each in a session.
   await until("the server's own pictures", async () => (await metric("sessions_opened_total")) === 2 && (await metric("sessions")) === 0);
-  // Begins a picture that takes some seconds; resolves when the server has it.
+  // Begins a picture that takes some seconds; resolves when the server has the request.
   const beginPicture = async (file) => {
     const child = spawn(BINARY, [
       ...["render", "supercell", "-o", file, "--renderer", "light_volume", "--slices", "512"],
@@ -44,14 +44,14 @@ async function start(...more) {
   return { ...server, get, beginPicture };
 }
 
-// Files of the folder that the process has open.
+// Returns the files of the folder that the process has open.
 function openFiles({ pid }, folder) {
   const open = `/proc/${pid}/fd`;
   return readdirSync(open).filter((descriptor) => {
     try {
       return readlinkSync(`${open}/${descriptor}`).startsWith(folder);
     } catch {
-      // It has been closed meanwhile.
+      // The file has been closed meanwhile.
       return false;
     }
   }).length;
@@ -68,7 +68,7 @@ test("metrics, health and logs of a server that serves and then stops", async ()
     assert.match(text, line);
   }
   assert.match(text, /^thunderhead_memory_bytes [1-9]/m);
-  // A field of text that is not UTF-8 makes protobuf complain, as often as somebody sends it.
+  // A text field that is not UTF-8 makes protobuf log a complaint for each such request.
   const wrong = Buffer.from([0, 0, 0, 0, 4, 0x0a, 2, 0xff, 0xfe]);
   for (let i = 0; i < 200; i += 1) {
     const headers = { "content-type": "application/grpc-web+proto" };
@@ -91,7 +91,7 @@ test("metrics, health and logs of a server that serves and then stops", async ()
   const seconds = complaints.map(({ time }) => time.slice(0, 19));
   for (const second of new Set(seconds)) {
     const lines = seconds.filter((each) => each === second).length;
-    // The last line of the second before may be written late.
+    // The last line of the previous second may be written late.
     assert.ok(lines <= LINES_A_SECOND + 1, `${lines} lines in the second ${second}`);
   }
 });
@@ -99,7 +99,7 @@ test("metrics, health and logs of a server that serves and then stops", async ()
 test("SIGTERM ends a server that still reads its storms", async () => {
   const folder = mkdtempSync(join(ROOT, "build", "starting-"));
   try {
-    // Some 20 ms of reading each.
+    // Each file takes some 20 ms to read.
     for (let i = 0; i < 1500; i += 1) linkSync(join(ROOT, "samples", "supercell.nc"), join(folder, `storm${i}.nc`));
     const ports = ["--http", `127.0.0.1:${await freePort()}`, "--grpc", `127.0.0.1:${await freePort()}`];
     const child = spawn(BINARY, ["serve", "--data", folder, "--state", "none", ...ports]);
@@ -148,7 +148,7 @@ test("SIGTERM waits for the picture that was begun, a second one ends at once", 
     const killed = ended(other.child);
     other.child.kill("SIGTERM");
     await until("the server to drain", async () => (await other.get("readyz")).status === 503);
-    // Signals that follow the first one closely count as the same request.
+    // Signals that closely follow the first one count as the same request.
     await until("the end", () => {
       other.child.kill("SIGTERM");
       return other.child.exitCode !== null || other.child.signalCode !== null;

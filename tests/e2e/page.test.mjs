@@ -61,7 +61,7 @@ const rested = (of = page) => restedOn(of);
 const changing = (action, of = page) => changingOn(action, of);
 const screenshot = (name, of = page) => screenshotOf(name, of);
 
-// The still of the scene that an action makes.
+// Returns the still of the scene that an action makes.
 async function stillAfter(action) {
   await changing(action);
   return still();
@@ -72,7 +72,7 @@ function drag(rightPx, downPx) {
   return dragBetween(page, start, { x: start.x + rightPx, y: start.y + downPx });
 }
 
-// A touch gesture: fingers move from the first points to the second.
+// Makes a touch gesture: fingers move from the first points to the second.
 async function slide(fingers, from, to) {
   const steps = 8;
   const at = (share) =>
@@ -87,14 +87,14 @@ async function slide(fingers, from, to) {
   await send("touchEnd", []);
 }
 
-// Exposes by itself again, after a value was set.
+// Switches back to automatic exposure after a value was set.
 async function exposeAutomatically(of) {
   await of.getByTestId("automatic-exposure").evaluate((box) => box.click());
 }
 
 const tool = (name) => openTool(page, name);
 
-// The chosen quality: a list of one or none. It is in the tool Look.
+// Returns the chosen quality in the tool Look: a list of one or none.
 function chosenQuality(of = page) {
   return of
     .locator("[data-testid=quality-choice] input:checked")
@@ -113,7 +113,7 @@ async function unfoldSettings(open = true) {
 
 const foldSettings = () => unfoldSettings(false);
 
-// Waits for a refined picture with more traced paths, and gives their number.
+// Waits for a refined picture with more traced paths than `least`, and returns their number.
 async function pathsBeyond(least) {
   let paths = 0;
   await until(`more than ${least} traced paths`, async () => {
@@ -124,8 +124,8 @@ async function pathsBeyond(least) {
   return paths;
 }
 
-// Pictures are told apart by the light that they were compared in first: a higher sun behind the left shoulder. Twenty degrees
-// to the south and 17 up.
+// Pictures are compared under the light that these tests were written for: a higher sun behind the left shoulder. It is
+// 20 degrees to the south and 17 up.
 test("the arrow keys turn the sun on its dome", async () => {
   await rested();
   await tool("light");
@@ -226,7 +226,7 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   assert.equal(await page.getByTestId("per-field-phase").isChecked(), false);
   assert.equal(await page.getByTestId("traced-light").count(), 0);
   assert.ok(difference(fast, darker) > 1, "single scattering looks like diffusion");
-  // The following tests compare pictures at rest; Fast has no traced light to change them.
+  // The following tests compare pictures at rest. Fast has no path-traced correction that would change them.
   await changing(() => chooseQuality("Fast"));
   await foldSettings();
 });
@@ -264,7 +264,7 @@ test("a drag turns the storm, and the way back brings the first picture again", 
   const { data: turned, picture: turnedPicture } = await grabStillOf(page);
   await screenshot("3-turned");
   const turnDeg = (Number(turned.azimuth) - Number(first.azimuth) + 360) % 360;
-  // 180 degrees across the picture's height.
+  // The drag turns 180 degrees across the picture's height.
   assert.ok(Math.abs(turnDeg - (220 / VIEWPORT.height) * 180) < 1, `it turned by ${turnDeg} degrees`);
   const change = difference(firstPicture, turnedPicture);
   assert.ok(change > 1, `the picture hardly changed: ${change}`);
@@ -290,7 +290,8 @@ test("pictures do not pile up while the storm is turned for a while", async () =
   });
   const pictures = Number((await canvasData()).sequence) - Number(moving.sequence);
   console.log(`pictures between the last movement and its picture: ${pictures}`);
-  // Frames in flight to a viewer, those that wait in the server and in the page, and scenes in flight to the server.
+  // The limit adds frames in flight to a viewer, those waiting in the server and in the page, and scenes in flight to
+  // the server.
   assert.ok(pictures <= 8 + 2 + 3 + 4, `${pictures} pictures were on their way`);
   await changing(() => page.keyboard.press("Home"));
 });
@@ -313,7 +314,7 @@ test("a field switched off goes, and with the last one the storm", async () => {
     await tool("map");
     await page.getByTestId("home").click();
     await tool("look");
-    // An automatic one would follow what is left of the storm.
+    // Automatic exposure would follow the remaining part of the storm.
     await setNumber(page, "exposure", 0);
   });
   await tool("fields");
@@ -370,7 +371,7 @@ test("the reference refines the picture while it rests, and begins again when it
   await unfoldSettings();
   await page.getByTestId("technique-choice").selectOption({ label: "Monte Carlo reference" });
   const refinement = () => page.getByTestId("refinement").evaluate((text) => ({ ...text.dataset }));
-  // The first, smallest pictures gather samples quickly; larger ones start over.
+  // The first, smallest pictures gather samples quickly. Larger pictures start again.
   const reached = (samples) =>
     page.waitForFunction((least) => {
       const text = document.querySelector("[data-testid=refinement]");
@@ -418,14 +419,14 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   assert.ok(difference(balls, isotropic) > 0.01);
   await changing(() => page.getByTestId("metaball-isotropic").click());
 
-  // A slider that makes the server fit balls again reports its value on release only.
+  // A slider that makes the server fit balls again reports its value only on release.
   const slider = page.getByTestId("metaball-count");
   await slider.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await slider.boundingBox();
   const updatesBefore = sceneUpdates();
   const ballsBefore = await page.getByTestId("metaball-count-number").inputValue();
   await page.mouse.move(x + 0.7 * width, y + height / 2);
-  // Resting on the way reports the value, too.
+  // Pausing during the drag also reports the value.
   const dragSlider = async () => {
     await page.mouse.down();
     await page.mouse.move(x + 0.5 * width, y + height / 2, { steps: 15 });
@@ -461,7 +462,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
     /Not shown by the technique under Look, but by: .*Metaballs.*Monte Carlo/,
   );
   await unfoldSettings();
-  // The server filled in the settings that metaballs do not have.
+  // The server has filled in the settings that metaballs do not have.
   await until("the light volume has its own defaults", async () =>
     (await chosenQuality()).includes("Balanced"),
   );
@@ -523,7 +524,7 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
       await page.getByTestId("max-error-number").fill(String(error));
       await page.getByTestId("max-error-number").press("Enter");
     });
-    // The slices' part of the error is measured at rest, for techniques with slices.
+    // For techniques with slices, the slices' part of the error is measured at rest.
     await page.waitForFunction(() => {
       const report = document.querySelector("[data-testid=accuracy-report]")?.dataset;
       return report?.discretisationError !== undefined || report?.hasSlices === "false";
@@ -616,7 +617,7 @@ test("a cloud is made to order and shown, and a bad one is named", async () => {
   await page.keyboard.press("Escape");
 });
 
-// Pixels of the marks' own colour in the middle of the window.
+// Returns the number of pixels of the marks' own colour in the middle of the window.
 async function inkInTheMiddle() {
   const color = await page.getByTestId("mark").evaluate((mark) => getComputedStyle(mark).color);
   const [red, green, blue] = color.match(/\d+/g).map(Number);
@@ -629,7 +630,7 @@ async function inkInTheMiddle() {
   return count;
 }
 
-// The storm of the marks lies left of the edge, one of another domain right of it; the mark is in the middle.
+// Left of the edge is the storm with the marks; right of it is a storm of another domain. The mark is in the middle.
 async function comparesMarks() {
   assert.ok((await inkInTheMiddle()) > 20, "the mark is not in the middle of the window");
   await openPanel(page, "compare");

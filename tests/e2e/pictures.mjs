@@ -1,7 +1,7 @@
 // Measures of a picture: spread, brightness, difference from another picture.
 import { PNG } from "pngjs";
 
-// The canvas's pixels as PNG, without the panels over it.
+// Returns the canvas's pixels as PNG, without the panels over it.
 export async function grabCanvas(page) {
   const dataUrl = await page.getByTestId("storm-canvas").evaluate((canvas) => canvas.toDataURL("image/png"));
   return PNG.sync.read(Buffer.from(dataUrl.split(",")[1], "base64"));
@@ -15,7 +15,7 @@ function luminances({ data, width, height }) {
   return values;
 }
 
-// Mean and standard deviation of the luminance, 0 to 255.
+// Returns the mean and standard deviation of the luminance, 0 to 255.
 export function spread(picture) {
   const values = luminances(picture);
   const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
@@ -23,7 +23,7 @@ export function spread(picture) {
   return { mean, deviation: Math.sqrt(variance) };
 }
 
-// Share of pixels that are cloud rather than sky: nearly grey, and brighter than `least`. The sky is blue.
+// Returns the share of pixels that are cloud instead of sky: nearly grey, and brighter than `least`. The sky is blue.
 export function greyShare({ data, width, height }, least = 0) {
   let grey = 0;
   for (let i = 0; i < width * height; i += 1) {
@@ -34,7 +34,7 @@ export function greyShare({ data, width, height }, least = 0) {
   return grey / (width * height);
 }
 
-// Mean of the luminance within a box given in shares of the picture.
+// Returns the mean luminance within a box given in shares of the picture.
 export function boxMean(picture, [left, top, right, bottom]) {
   const values = luminances(picture);
   let sum = 0;
@@ -48,7 +48,7 @@ export function boxMean(picture, [left, top, right, bottom]) {
   return sum / count;
 }
 
-// Mean absolute difference of all channels, 0 to 255.
+// Returns the mean absolute difference of all channels, 0 to 255.
 export function difference(a, b) {
   if (a.width !== b.width || a.height !== b.height) throw new Error("the pictures differ in size");
   let sum = 0;
@@ -56,7 +56,7 @@ export function difference(a, b) {
   return sum / (a.width * a.height * 3);
 }
 
-// Differences of the means of blocks, channel by channel.
+// Returns the differences of the means of blocks, channel by channel.
 function blockDifferences(a, b, side) {
   if (a.width !== b.width || a.height !== b.height) throw new Error("the pictures differ in size");
   const [columns, rows] = [Math.floor(a.width / side), Math.floor(a.height / side)];
@@ -71,14 +71,15 @@ function blockDifferences(a, b, side) {
   return means;
 }
 
-// Their mean size, 0 to 255: of colours, whatever the pictures' sharpness.
+// Returns their mean size, 0 to 255. It compares colours, whatever the pictures' sharpness.
 export function blockDifference(a, b, side = 16) {
   const means = blockDifferences(a, b, side);
   return means.reduce((sum, value) => sum + Math.abs(value), 0) / means.length;
 }
 
-// How much of the change from one picture to another is in a third, by least squares over blocks: 0 if that is as the first, 1 if
-// it is as the other. The noise of encodings, which does not go with the change, counts for little.
+// Returns how much of the change from one picture to another a third picture shows, by least squares over blocks. It is
+// 0 if the third is like the first, and 1 if it is like the other. Encoding noise is independent of the change, so it
+// counts for little.
 export function shareOfChange(picture, from, to, side = 16) {
   const [is, would] = [blockDifferences(picture, from, side), blockDifferences(to, from, side)];
   const along = (values) => values.reduce((sum, value, i) => sum + value * would[i], 0);
@@ -91,7 +92,7 @@ function withPixels(picture, change) {
   return { ...picture, data };
 }
 
-// As a decoder shows the picture that takes the colour differences of BT.601 for those of BT.709.
+// Returns the picture as shown by a decoder that mistakes the colour differences of BT.601 for those of BT.709.
 export const decodedByBt709 = (picture) =>
   withPixels(picture, (red, green, blue) => {
     const luma = 0.299 * red + 0.587 * green + 0.114 * blue;
@@ -99,11 +100,11 @@ export const decodedByBt709 = (picture) =>
     return [luma + 1.5748 * cr, luma - 0.1873 * cb - 0.4681 * cr, luma + 1.8556 * cb];
   });
 
-// As one shows it that takes video's range of 16 to 235 for 0 to 255.
+// Returns the picture as shown by a decoder that mistakes video's range of 16 to 235 for 0 to 255.
 export const decodedAsFullRange = (picture) =>
   withPixels(picture, (...colours) => colours.map((colour) => 16 + (colour * 219) / 255));
 
-// Share of pixels in which two pictures differ by more than a JPEG's noise.
+// Returns the share of pixels in which two pictures differ by more than a JPEG's noise.
 export function differingShare(a, b) {
   const noise = 10;
   const [first, second] = [luminances(a), luminances(b)];

@@ -1,4 +1,5 @@
-// The text that a phone reads from the QR code in "Share": the pixels on the screen, decoded by another library than drew them.
+// Reads the text that a phone would read from the QR code in "Share": the pixels on the screen, decoded by another
+// library than the one that drew them.
 import jsQR from "jsqr";
 import { PNG } from "pngjs";
 

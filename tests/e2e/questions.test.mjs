@@ -1,6 +1,6 @@
-// End-to-end tests of three of a forecaster's questions, by mouse and by keys alone: what changed between the last two runs,
-// send this view to a colleague, and make a movie of the next two hours. Two runs of a model on the real server: the later one has a
-// larger cloud.
+// End-to-end tests of three of a forecaster's questions, by mouse and by keyboard alone. The questions are: what
+// changed between the last two runs, send this view to a colleague, and make a movie of the next two hours. Two runs of
+// a model are on the real server, and the later one has a larger cloud.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
@@ -63,7 +63,7 @@ before(async () => {
   await chooseQuality(page, "Fast");
   await openTool(page, undefined);
   await rested(page);
-  // Not the last time, which is the last of both runs: this one has another place in each.
+  // Avoids the last time, which is last in both runs. This time has another index in each run.
   await changing(() => key(","), page);
 });
 
@@ -74,7 +74,7 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// A page of somebody else: nothing in its storage.
+// Opens a page as another person, with empty storage.
 async function visit(url, prepare = async () => undefined) {
   const context = await browser.newContext({ ...WINDOW, permissions: ["clipboard-read", "clipboard-write"] });
   const opened = await context.newPage();
@@ -85,7 +85,7 @@ async function visit(url, prepare = async () => undefined) {
   return opened;
 }
 
-// Of what is on the screen: texts of what is hidden can be read too.
+// Returns text that is visible on the screen; the text of hidden elements could be read too.
 async function text(id) {
   const shown = page.getByTestId(id);
   await shown.waitFor({ state: "visible" });
@@ -100,7 +100,7 @@ async function comparedPicture() {
   return PNG.sync.read(Buffer.from(url.split(",")[1], "base64"));
 }
 
-// The bar says of A and B which runs they are, both at the same valid time; B has the larger cloud.
+// Checks that the bar names the runs of A and B, both at the same valid time, and that B has the larger cloud.
 async function assertRunsCompared() {
   await until("B's time", async () => /07:00Z/.test(await text("name-b")));
   await restedAndFits(page);
@@ -158,7 +158,7 @@ test("what changed between the last two runs, by keys alone", async () => {
   await key("Escape");
 });
 
-// A fresh page at the link shows what this page shows.
+// Checks that a fresh page at the link shows what this page shows.
 async function assertSameView(link) {
   const { data: here, picture } = await grabStill(page);
   const colleague = await visit(link);
@@ -179,7 +179,7 @@ async function assertSameView(link) {
   }
 }
 
-// The link that an action copies. The note that says so goes after a while.
+// Returns the link that an action copies. The note about it disappears after a while.
 async function copied(action) {
   await atOneMoment(page, async () => {
     await action();
@@ -216,7 +216,7 @@ test("send this view to a colleague, by keys alone", async () => {
   });
 });
 
-// Number of pictures and seconds of a movie.
+// Returns the number of pictures and the seconds of a movie.
 function lengthOf(file) {
   const shown = ["-show_entries", "stream=nb_read_frames:format=duration", "-of", "json"];
   const { streams, format } = JSON.parse(
@@ -225,8 +225,8 @@ function lengthOf(file) {
   return { pictures: Number(streams[0].nb_read_frames), seconds: Number(format.duration) };
 }
 
-// A movie of two hours has three pictures, an hour between them. The person's way ends where the server is at work: how long its
-// pictures take depends on the machine.
+// A movie of two hours has three pictures, an hour apart. The time a person needs ends when the server starts to work,
+// because how long its pictures take depends on the machine.
 async function assertTwoHourMovie(how, ask) {
   const coming = page.waitForEvent("download");
   await holdingMovie(page, () =>
@@ -295,7 +295,7 @@ test("a link to a view outlives the session that it was made in", async () => {
   await context.close();
 });
 
-// A server with a run that has a place.
+// Starts a server with a run that has a place.
 async function startPlace() {
   const data = join(folder, "place");
   mkdirSync(data);
@@ -311,7 +311,7 @@ async function withPlace(look, prepare) {
   await opened.context().close();
 }
 
-// Its words are on the screen, none cut or under what follows.
+// Checks that the element's words are on the screen, neither cut nor covered.
 async function assertIsWhole(opened, name) {
   const words = opened.getByTestId(name);
   await words.waitFor();
@@ -339,7 +339,7 @@ test("a run with a place: local time, borders on the map, latitude and longitude
     assert.ok(high > 0.5, `the border is as high as ${high} of the map`);
     await screenshot("questions-place", opened);
     assert.match(await opened.getByTestId("top-time").innerText(), /08:00Z/);
-    // Its one time is where the slider's thumb is.
+    // The mark of the only time is where the slider's thumb is.
     const [ticks, tick] = await Promise.all([".ticks >> nth=0", ".tick"].map((each) => opened.locator(each).boundingBox()));
     assert.ok(Math.abs(tick.x + tick.width / 2 - ticks.x) < 2, `the tick is at ${tick.x}, the line begins at ${ticks.x}`);
     assert.match(await opened.getByTestId("local-time").innerText(), /10:00/);

@@ -1,4 +1,4 @@
-// Checks the prerequisites of the browser tests, reports missing ones, and runs the files of tests that are named, or all.
+// Checks the prerequisites of the browser tests, reports missing ones, and runs the named test files, or all.
 import { spawnSync } from "node:child_process";
 import { existsSync, readdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -17,7 +17,7 @@ const missing = needed.filter(([path]) => !existsSync(path));
 for (const [path, remedy] of missing) console.error(`The browser test needs ${path}: ${remedy}.`);
 if (missing.length > 0) process.exit(1);
 
-// Those named, or all: two files at a time, as tests mostly wait for pictures.
+// Runs two files at a time, because tests mostly wait for pictures.
 const named = process.argv.slice(2);
 const files = named.length > 0 ? named : readdirSync(here).filter((file) => file.endsWith(".test.mjs"));
 const run = spawnSync(process.execPath, ["--test", "--test-concurrency=2", ...files], { cwd: here, stdio: "inherit" });

@@ -1,4 +1,4 @@
-// Takes screenshots of every tool, panel and kind of picture at three sizes of window, for people to look at.
+// Takes screenshots of every tool, panel and kind of picture at three window sizes, for people to look at.
 //   node screenshots.mjs [folder] [tool ...]
 import { mkdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -12,7 +12,7 @@ const SIZES = [
 ];
 const TOOLS = ["none", "map", "time", "light", "look", "fields", "probe", "marks"];
 const PANELS = ["storms", "share", "people", "keep", "compare", "help", "drawer"];
-// Shown last, as each changes the scene.
+// These are shown last, because each changes the scene.
 const PICTURES = {
   spotter: (page) => cameraOf(page, "From the ground"),
   above: (page) => cameraOf(page, "From above"),
@@ -33,7 +33,7 @@ const PICTURES = {
 };
 const folder = process.argv[2] ?? fileURLToPath(new URL("../../build/screenshots/", import.meta.url));
 const only = process.argv.slice(3);
-// Of the windows' widths; all of them, if it is not set.
+// The only window width to use; all widths if it is not set.
 const onlyWidth = Number(process.env.THUNDERHEAD_WIDTH ?? 0);
 const wanted = (name) => only.length === 0 || only.includes(name);
 
@@ -42,7 +42,7 @@ async function cameraOf(page, kind) {
   await page.getByTestId("camera-kind").getByText(kind, { exact: true }).click();
 }
 
-// A tool is looked at with what it is for in it.
+// Fills a tool with typical contents before its screenshot.
 async function prepare(page, tool) {
   const come = (locator) => locator.waitFor();
   if (tool === "map") await come(page.locator("[data-testid=inset-map] canvas"));
@@ -60,7 +60,7 @@ async function prepare(page, tool) {
   }
 }
 
-// Waits until what was changed is on the screen.
+// Waits until a change is on the screen.
 const painted = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 mkdirSync(folder, { recursive: true });
@@ -76,7 +76,7 @@ try {
     page.on("console", (message) => message.type() === "error" && console.log(message.text()));
     await page.goto(server.url);
     await restedAndFits(page);
-    // The documentation's are small; others are for a closer look.
+    // The documentation's screenshots are small; others are for a closer look.
     const file = process.argv[2] === undefined ? { type: "jpeg", quality: 80 } : { type: "png" };
     const shoot = async (name) => {
       await restedAndFits(page);
@@ -88,7 +88,7 @@ try {
       await prepare(page, name);
       await shoot(name);
     }
-    // Else they lie over all that follows.
+    // Otherwise the marks would cover all following pictures.
     if (wanted("marks")) await page.getByTestId("clear-marks").click();
     await openTool(page, undefined);
     for (const name of PANELS.filter(wanted)) {

@@ -7,11 +7,11 @@ import { fileURLToPath } from "node:url";
 
 export const ROOT = fileURLToPath(new URL("../../", import.meta.url));
 export const BINARY = process.env.THUNDERHEAD_BINARY ?? `${ROOT}build/release/bin/thunderhead`;
-// A program that takes longer to start or to stop hangs.
+// A program that takes longer to start or to stop counts as hung.
 const START_TIMEOUT_MS = 600_000;
 const STOP_TIMEOUT_MS = 600_000;
 
-// A port that is free now; the program uses the same one again after a restart.
+// Returns a port that is free now. The program uses the same port again after a restart.
 export function freePort() {
   return new Promise((resolve, reject) => {
     const server = createServer();
@@ -23,7 +23,8 @@ export function freePort() {
   });
 }
 
-// `state` is a folder in which sessions outlive the program; `data` the storms; `more` are further flags.
+// Starts the server. `state` is a folder in which sessions outlive the program; `data` is the folder of storms; `more`
+// are further flags.
 export async function startServer({
   httpPort,
   grpcPort,

@@ -1,5 +1,5 @@
-// A server that wants tokens and speaks TLS, in a real browser: nobody sees a storm without a token, and a viewer's token
-// watches and does no more.
+// Tests of a server that requires tokens and TLS, in a real browser. No storm is visible without a token, and a
+// viewer's token permits only watching.
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -18,7 +18,7 @@ let browser;
 
 const file = (name) => join(folder, name);
 const audit = () => readFileSync(file("audit.log"), "utf8");
-// A thread of the server writes the lines.
+// Waits for the line, because a thread of the server writes the audit.
 const audited = (line) => until(`${line} in the audit`, () => line.test(audit()));
 
 function writeTokens(lines) {

@@ -1,5 +1,6 @@
-// Measures the page on a slow link while its camera turns: frames a second and latency, from its readout. The latency should not grow,
-// and there should be 8 frames/s on the whole: the first seconds, in which the link is learnt, have fewer.
+// Measures the page on a slow link while its camera turns: frames per second and latency, from its readout. The latency
+// should not grow, and there should be 8 frames/s overall. There are fewer in the first seconds, while the server
+// estimates the link.
 //   node slow_link.bench.mjs [seconds] [kbit/s] [round trip in ms]
 import { setTimeout } from "node:timers/promises";
 import { canvasData, launchBrowser, rested } from "./driver.mjs";

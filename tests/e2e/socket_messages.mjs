@@ -1,10 +1,11 @@
-// Reads what a page sends over its WebSocket: just enough of protobuf's wire format to know the kind of a message.
+// Reads what a page sends over its WebSocket. It parses just enough of protobuf's wire format to know the kind of a
+// message.
 const MESSAGE = 0x00;
 // The number of InteractRequest.update_scene.
 const UPDATE_SCENE = 3;
 const VARINT = 0;
 
-// Returns the function that says how many scenes the page has sent so far. To be called before the page is opened.
+// Returns a function that returns how many scenes the page has sent so far. Call it before the page is opened.
 export function countSceneUpdates(page) {
   let count = 0;
   page.on("websocket", (socket) =>
@@ -15,7 +16,7 @@ export function countSceneUpdates(page) {
   return () => count;
 }
 
-// The numbers of a request's fields: its id, and the message.
+// Returns the numbers of a request's fields: its id, and the message.
 function fieldsOf(payload) {
   const bytes = Buffer.from(payload);
   if (bytes[0] !== MESSAGE) return [];
@@ -24,7 +25,7 @@ function fieldsOf(payload) {
   while (at < bytes.length) {
     const tag = bytes[at];
     fields.push(tag >> 3);
-    // All but the id ends the request.
+    // The id is a varint. Any other field is the message, which ends the request.
     if ((tag & 7) !== VARINT) break;
     at += 1;
     while (bytes[at] & 0x80) at += 1;

@@ -1,20 +1,20 @@
-// A link of limited speed and some length before a server, that can also be cut, fall silent or lose its connections without a
-// word: a TCP proxy. Chromium's own emulation leaves WebSockets alone.
+// A TCP proxy that imitates a link of limited speed and some latency in front of a server. It can also cut the link,
+// silence it, or lose its connections without notice. Chromium's own emulation does not affect WebSockets.
 import { createServer, connect } from "node:net";
 
 const SLICE_BYTES = 1460;
-// After the last slice.
+// The delay of the end of a connection after its last slice.
 const END_MS = 5;
-// How often a silent link is looked at.
+// How often a silent link is checked.
 const SILENCE_MS = 20;
 
-// One direction: bytes leave at the link's speed and arrive after half its round trip. Like a router it holds little, so a
-// sender is held back once that is full.
+// Carries bytes in one direction: they leave at the link's speed and arrive after half its round trip. Like a router it
+// buffers little, so a sender is held back once the buffer is full.
 function carry(from, to, bytesPerMs, delayMs, link, pair) {
   const BUFFER_BYTES = 16 * 1024;
   let freeAt = 0;
   let held = 0;
-  // In order, which timers of different lengths do not keep.
+  // A queue keeps the order, which timers of different lengths do not.
   const onTheirWay = [];
   const arrive = () => {
     if (link.silent) return setTimeout(arrive, SILENCE_MS);
@@ -44,9 +44,12 @@ function carry(from, to, bytesPerMs, delayMs, link, pair) {
   });
 }
 
-// Returns its port; functions that cut it (connections break, new ones are refused), silence it (connections stay, nothing
-// arrives), lose it (the same, but what it carries now never arrives, not even that a connection was closed) and heal it; and
-// the one that closes it.
+// Returns the link's port and the functions that control it.
+// - cut: breaks connections and refuses new ones.
+// - silence: keeps connections, but nothing arrives.
+// - lose: like silence, and the bytes in flight never arrive, nor does the close of a connection.
+// - heal: ends these faults.
+// - close: closes the link.
 export async function throttledLink({ port, kbitPerS, roundTripMs }) {
   const sockets = new Set();
   // Connections from end to end.

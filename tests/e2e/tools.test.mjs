@@ -1,4 +1,5 @@
-// End-to-end tests of the tools: the questions of a forecaster, answered by mouse and by keys alone, on the real server and sample.
+// End-to-end tests of the tools: a forecaster's questions, answered by mouse and by keyboard alone, on the real server
+// and sample.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -32,11 +33,11 @@ import { blockDifference, difference, grabCanvas, greyShare, spread } from "./pi
 import { BINARY, freePort, startServer } from "./server_process.mjs";
 
 const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.url));
-// With a tool open, the picture has even sides, as a movie's.
+// With a tool open, the picture has even sides, like a movie's.
 const VIEWPORT = { width: 1002, height: 620 };
 // Pictures have a quarter of the window's pixels: they cost less, and the page's layout is the same.
 const WINDOW = { viewport: VIEWPORT, deviceScaleFactor: 0.5 };
-// More than the time in which a page takes changes for one (client-web/src/core/history.ts).
+// Longer than the time within which the page treats changes as one (client-web/src/core/history.ts).
 const GESTURE_MS = 1000;
 const complaints = [];
 let folder;
@@ -70,7 +71,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// The text of an element on the screen; hidden elements' texts could be read too, so it waits.
+// Returns the text of an element on the screen. It waits until the element is visible, because hidden elements' texts
+// could be read too.
 async function text(id) {
   const shown = page.getByTestId(id);
   await shown.waitFor({ state: "visible" });
@@ -80,7 +82,7 @@ async function text(id) {
 const key = (name) => page.keyboard.press(name);
 const focusPicture = () => page.getByTestId("storm-canvas").focus();
 
-// By keys alone.
+// Focuses the picture by keyboard alone.
 const toPicture = () => tabTo(page, "storm-canvas");
 
 const degreesOnHorizon = () =>
@@ -93,7 +95,7 @@ const inspected = JSON.parse(execFileSync(BINARY, ["inspect", "--json", SAMPLE],
 const maximumOf = (name) =>
   1000 * inspected.fields.find(({ hydrometeor }) => hydrometeor === `HYDROMETEOR_${name}`).maximum;
 
-// In g/kg, of the newest time, as another reader of netCDF finds it.
+// Returns the maximum in g/kg at the newest time, as found by another netCDF reader.
 function independentMaximum(variable) {
   const script = "import netCDF4, sys; print(1000 * float(netCDF4.Dataset(sys.argv[1])[sys.argv[2]][-1].max()))";
   return Number(execFileSync("/usr/bin/python3", ["-c", script, SAMPLE, variable], { encoding: "utf8" }));
@@ -123,7 +125,7 @@ test("where is the graupel core and how much is there, by keys alone", async () 
     return { core: said, row: await text("probe-graupel") };
   });
   assert.ok(Math.abs(maximumOf("GRAUPEL") / independentMaximum("QGRAUP") - 1) < 1e-5, "another reader finds another core");
-  // Values are brought back to mixing ratios by the mean air of blocks: 9 % at worst (decision 47).
+  // Values are converted back to mixing ratios with the mean air density of blocks: 9 % at worst (decision 47).
   assert.ok(Math.abs(core / maximumOf("GRAUPEL") - 1) < 0.1, `the page says ${core}, the file has ${maximumOf("GRAUPEL")}`);
   const along = Number(/([\d.]+) g\/kg/.exec(row)[1]);
   assert.ok(along > 0.8 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
@@ -147,8 +149,8 @@ test("a second click measures from the first", async () => {
   await key("Escape");
 });
 
-// Above the horizon, which is three quarters down in a spotter's picture, is cloud with light and shade in it. A clear sky is
-// blue, and a wall of haze is even.
+// Checks that the part above the horizon, which is three quarters down in a spotter's picture, contains cloud with
+// light and shade. A clear sky would be blue, and a wall of haze even.
 function assertShowsStorm({ data, width, height }) {
   const rows = Math.floor(0.7 * height);
   const sky = { data: data.subarray(0, 4 * width * rows), width, height: rows };
@@ -224,7 +226,7 @@ test("a click on the map stands there, a drag from there looks, a double click t
   assert.ok(Math.hypot(aside, down) < 8, `the camera is ${aside}, ${down} pixels from where the click was`);
   const scale = await page.getByTestId("map-scale").boundingBox();
   assert.ok(scale.x > x + width / 2, "the scale bar makes way for the camera");
-  // A drag looks to where it ends: to the west.
+  // The drag makes the camera look to where it ends: to the west.
   const stands = { x: x + 0.3 * width, y: y + 0.75 * height };
   await changing(() => dragBetween(page, stands, { x: stands.x - 0.2 * width, y: stands.y }), page);
   await until("the view to the west", async () => /Looks to W \(2(6[5-9]|7[0-5])°\)/.test(await text("camera")));
@@ -235,7 +237,7 @@ test("a click on the map stands there, a drag from there looks, a double click t
   await screenshot("tools-map", page);
 });
 
-// Where the middle of something on the map is, in shares of the storm's domain: the map itself shows more of the world when the
+// Returns the middle of a map element in shares of the storm's domain. The map itself shows more of the world when the
 // camera is outside.
 async function placeInDomain(selector) {
   const [domain, box] = await Promise.all(
@@ -253,7 +255,7 @@ test("keys on the map move a cross, stand there, and turn around that place", as
   await openTool(page, undefined);
   await key("m");
   await tabTo(page, "inset-map");
-  // In the middle, where the cross is first.
+  // The cross is first in the middle.
   await changing(() => key("Enter"), page);
   for (let presses = 0; presses < 8; presses += 1) await key("ArrowRight");
   await key("Shift+ArrowDown");
@@ -290,7 +292,7 @@ test("how wrong is this picture: it says so over it", async () => {
     ),
   );
   const source = page.getByTestId("error-source");
-  // Measured with the computing time that the machine has left, which may be little.
+  // The error is measured with the computing time that the machine has left, which may be little.
   const measured = async () => /^measured: [\d.]+ to [\d.]+ %$/.test(await source.innerText());
   await until("the error to be measured while the picture rests", measured);
   await timed("how wrong is this picture, as measured", async () => {
@@ -310,7 +312,7 @@ test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   const exposure = () => page.getByTestId("exposure-number").inputValue();
   const automatic = page.getByTestId("automatic-exposure");
   assert.ok(await automatic.isChecked());
-  // Changes that follow each other closely are taken back at once.
+  // Changes that closely follow each other are undone together.
   await passTime(page, GESTURE_MS);
   await changing(() => setNumber(page, "exposure", 1.5), page);
   await passTime(page, GESTURE_MS);
@@ -322,7 +324,7 @@ test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   assert.equal(await exposure(), "-1");
   await changing(() => key("Control+z"), page);
   assert.equal(await exposure(), "1.5");
-  // Back to the scene that the other tests expect.
+  // Undoes back to the scene that the other tests expect.
   await changing(() => key("Control+z"), page);
   assert.ok(await automatic.isChecked());
   await openTool(page, undefined);
@@ -347,7 +349,7 @@ test("every setting is found by its name, with its meaning, and can be set", asy
 });
 
 let saved;
-// Of the window's shape.
+// The movie has the window's aspect ratio.
 const MOVIE = { width: 400, height: 248 };
 
 const flipped = ({ data, width, height }) => {
@@ -357,7 +359,8 @@ const flipped = ({ data, width, height }) => {
   return turned;
 };
 
-// Alike but for letters and scales over one of them, which add as much to what its mirror image differs by.
+// Checks that two pictures have the same colours. Letters and scales over one of them may differ; they add as much to
+// the difference from the mirror image.
 function assertSameColours(picture, view, what) {
   const [apart, mirrored] = [blockDifference(picture, view), blockDifference(flipped(picture), view)];
   console.log(`${what}: ${apart.toFixed(2)} from the view, its mirror image ${mirrored.toFixed(2)}`);
@@ -366,7 +369,7 @@ function assertSameColours(picture, view, what) {
 
 const ffmpeg = (...args) => execFileSync("ffmpeg", ["-v", "error", "-y", ...args]);
 
-// The picture of a movie with that number.
+// Returns the picture of a movie with that number.
 function pictureOf(file, number) {
   const picture = join(folder, `picture-${number}.png`);
   ffmpeg("-i", file, "-vf", `select=eq(n\\,${number})`, "-frames:v", "1", picture);
@@ -428,7 +431,7 @@ test("a file that is no scene is refused where it was opened", async () => {
   assert.equal(await page.getByTestId("notices").innerText(), "");
   await page.getByTestId("keep-scene").locator("summary").click();
   await page.keyboard.press("Escape");
-  // Dropped on the picture it is refused over the picture.
+  // A file dropped on the picture is refused there.
   await page.evaluate(() => {
     const data = new DataTransfer();
     data.items.add(new File(["[]"], "dropped.json", { type: "application/json" }));
@@ -460,7 +463,7 @@ test("a browser without H.264 says what it puts into an MP4", async () => {
 
 test("a page without an encoder says at the button that it makes no movie", async () => {
   const other = await (await browser.newContext(WINDOW)).newPage();
-  // As on pages by plain HTTP.
+  // Pages by plain HTTP lack the VideoEncoder too.
   await other.addInitScript(() => delete globalThis.VideoEncoder);
   try {
     await other.goto(server.url);
@@ -492,7 +495,7 @@ async function fillMovieForm(format) {
   await page.getByTestId("movie-format").selectOption(format);
 }
 
-// Codec, size and number of pictures of a movie.
+// Returns codec, size and number of pictures of a movie.
 function streamOf(file) {
   const shown = ["-show_entries", "stream=codec_name,width,height,nb_read_frames", "-of", "json"];
   const probe = execFileSync("ffprobe", ["-v", "error", "-count_frames", "-select_streams", "v:0", ...shown, file], { encoding: "utf8" });
@@ -508,7 +511,8 @@ async function assertIsTheMovie(download, codec = "vp9") {
 
 const rememberedMovie = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
 
-// As the panel has it: without a word an MP4 is H.264. The panel asks the browser, as this does.
+// Returns the movie's codec. The panel shows a note only if an MP4 is not H.264. The panel asks the browser, and so
+// does this function.
 async function saidCodec(format) {
   if (format === "webm") return "vp9";
   const encodes = await page.evaluate(async (size) => {
@@ -564,7 +568,7 @@ async function makeMovie(pictures) {
 }
 
 test("a movie begins at the time shown, unless the newest is, and ends where it is told", async () => {
-  // The whole storm, which no mirror image is like.
+  // The view shows the whole storm, which its mirror image does not resemble.
   await openTool(page, "map");
   await changing(() => page.getByTestId("home").click(), page);
   const newest = await page.getByTestId("time").inputValue();
@@ -625,13 +629,13 @@ test("a movie that is cancelled is neither saved nor made again", async () => {
   page.removeAllListeners("download");
 });
 
-// A place of the window at these shares of a canvas's width and height.
+// Returns the window position at these shares of a canvas's width and height.
 async function placeOn(canvas, right, down) {
   const { x, y, width, height } = await canvas.boundingBox();
   return [x + right * width, y + down * height];
 }
 
-// Values along the rays of two clicks that may be half a pixel apart.
+// Compares values along the rays of two clicks that may be half a pixel apart.
 function assertNearlySame(one, other) {
   const [these, those] = [one, other].map((words) => words.replace(/ away–.*/, "").match(/\d[\d.]*/g).map(Number));
   assert.equal(these.length, those.length, `${one}; ${other}`);
@@ -641,7 +645,7 @@ function assertNearlySame(one, other) {
   });
 }
 
-// The probe over B asks for B's time: the same as that of A once A shows it.
+// Checks that the probe over B shows B's time: the same values as those of A once A shows it.
 async function assertProbesB(compared) {
   const found = async (canvas) => {
     const before = await page.getByTestId("probe-found").allInnerTexts();
@@ -672,7 +676,7 @@ async function assertProbesB(compared) {
   await openTool(page, undefined);
 }
 
-// Others see A alone.
+// Draws over B; other viewers see only A.
 async function assertPenOverBDrawsOnA(compared) {
   await openTool(page, "marks");
   await page.getByTestId("tool-pen").click();
@@ -752,7 +756,7 @@ test("an arrow, words and a ring are put on the storm by keys alone", async () =
   await screenshot("tools-marks", page);
 });
 
-// Of the marks' corners, the share around which the picture has a pixel of the mark's colour.
+// Returns the share of the marks' corners around which the picture has a pixel of the mark's colour.
 async function markedShare({ data, width, height }) {
   const box = await page.getByTestId("storm-canvas").boundingBox();
   const marks = await page.getByTestId("mark").evaluateAll((groups) =>
@@ -797,7 +801,7 @@ test("marks are burnt into a picture that is saved, unless they are switched off
   await openTool(page, "marks");
 });
 
-// Of a corner's pixels, the share that is white as letters are.
+// Returns the share of a corner's pixels that are as white as letters.
 function whiteShare({ data, width }, left, top, right, bottom) {
   let white = 0;
   for (let y = top; y < bottom; y += 1)

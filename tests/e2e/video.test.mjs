@@ -1,4 +1,4 @@
-// Video and stills of higher quality in Chromium show the same picture as JPEG.
+// Tests that video and stills of higher quality in Chromium show the same picture as JPEG.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { canvasData, changing, chooseQuality, dragBetween, launchBrowser, listenForErrors, openTool, rested, restedAndFits, screenshot, until } from "./driver.mjs";
@@ -10,16 +10,18 @@ import { throttledLink } from "./throttled_link.mjs";
 
 // Pictures have half of the window's pixels: they cost less, and the page's layout is the same.
 const WINDOW = { viewport: { width: 1000, height: 700 }, deviceScaleFactor: 0.7 };
-// Where the camera's turns begin and end.
+// The positions where the camera's turns begin and end.
 const [LEFT, RIGHT] = [300, 500].map((x) => ({ x, y: 350 }));
 // A host name other than localhost, which Chromium is told to resolve to this machine.
 const OTHER_HOST = "storms.test";
-// A JPEG frame takes 0.4 s over this link. The server tries smaller frames where one takes more than 0.1 s
+// A JPEG frame takes 0.4 s over this link. The server tries smaller frames if one takes more than 0.1 s
 // (session/link_estimate).
 const SLOW_LINK = { kbitPerS: 500, roundTripMs: 150 };
-// Maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the picture.
+// The maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the
+// picture.
 const ALIKE = 2.5;
-// Share of what a wrong matrix or range would change: video of low quality, whose colours are paler, makes -0.26 of it, a wrong one makes 1.
+// The tolerated share of the change that a wrong matrix or range would make. Video of low quality, whose colours are
+// paler, makes -0.26 of it; a wrong matrix or range makes 1.
 const SAME_COLOURS = 0.5;
 
 let server;
@@ -35,7 +37,8 @@ async function open(link, ...scripts) {
   return page;
 }
 
-// Scripts that make the page behave as in a browser that is asked to save data, and in one that decodes neither VP9 nor AVIF.
+// Scripts that make the page behave as in a browser that is asked to save data, and as in one that decodes neither VP9
+// nor AVIF.
 const savesData = () =>
   Object.defineProperty(navigator.connection, "saveData", { get: () => true });
 const jpegOnly = () => {
@@ -47,7 +50,7 @@ const jpegOnly = () => {
       : decode(source, ...rest);
 };
 
-// Notes, in the page, the sequences of the frames that are shown, by encoding.
+// Runs in the page. Records the sequence numbers of the frames shown, by encoding.
 const watchCanvas = () => {
   const canvas = document.querySelector("[data-testid=storm-canvas]");
   window.seen = {};
@@ -58,7 +61,7 @@ const watchCanvas = () => {
   }).observe(canvas, { attributeFilter: ["data-sequence"] });
 };
 
-// Opens a session, with pictures that have no traced light, by a browser that takes JPEG only.
+// Opens a session whose pictures have no path-traced correction, in a browser that accepts only JPEG.
 async function present(...scripts) {
   const page = await open(server.url, jpegOnly, ...scripts);
   await openTool(page, "look");
@@ -67,7 +70,7 @@ async function present(...scripts) {
   return page;
 }
 
-// Turns the presenter's camera to and fro until `holds` gives true.
+// Turns the presenter's camera back and forth until `holds` returns true.
 async function turningUntil(what, presenter, holds) {
   let [from, to] = [LEFT, RIGHT];
   await until(what, async () => {
@@ -96,7 +99,7 @@ test("a browser that saves data sees video while the camera turns, and a still o
   await viewer.evaluate(watchCanvas);
 
   let numbers = [];
-  // A busy machine shows few pictures a turn.
+  // A busy machine shows few pictures in each turn.
   await turningUntil("ten pictures of video", presenter, async () => {
     numbers = ((await viewer.evaluate(() => window.seen.vp9)) ?? []).map(Number);
     return numbers.length >= 10;
@@ -106,7 +109,7 @@ test("a browser that saves data sees video while the camera turns, and a still o
   await rested(presenter);
   let still;
   let jpeg;
-  // Both of the same frame.
+  // Both pictures are of the same frame.
   await until("the still", async () => {
     const seen = await canvasData(viewer);
     if (seen.encoding !== "avif" || seen.refined !== "true") return false;
@@ -124,7 +127,7 @@ test("a browser that saves data sees video while the camera turns, and a still o
   assert.deepEqual(complaints, []);
 });
 
-// The readout's text about the encoding of the picture shown.
+// Returns the readout's text about the encoding of the picture shown.
 async function sentAs(page) {
   await page.getByTestId("readout-summary").click();
   const text = await page.getByTestId("encoding").innerText();
@@ -142,7 +145,7 @@ test("where there is no video the pictures are JPEG or stills, and the readout s
   await rested(plain);
   assert.equal(await plain.evaluate(() => isSecureContext), false);
   await until("the still", async () => (await sentAs(plain)) === "AVIF, 10 bits; video needs HTTPS or localhost");
-  // Others reach such an address, so Share does not warn.
+  // Other machines can reach such an address, so Share does not warn.
   await plain.getByTestId("share").click();
   const link = await plain.getByTestId("viewers-link").inputValue();
   assert.equal(new URL(link).hostname, OTHER_HOST);
@@ -164,7 +167,7 @@ test("by a slow link come video, or smaller pictures where the browser decodes n
     const slow = await open(`http://127.0.0.1:${links[0].port}/${session}`);
     const old = await open(`http://127.0.0.1:${links[1].port}/${session}`, jpegOnly);
     for (const page of [slow, old]) await rested(page);
-    // At rest both have the full picture.
+    // At rest both pages have the full picture.
     assert.equal((await canvasData(old)).tier, "0");
 
     const reached = { video: false, smaller: false };
@@ -178,7 +181,7 @@ test("by a slow link come video, or smaller pictures where the browser decodes n
     });
     await old.getByTestId("readout-summary").click();
     await screenshot("slow-link", old);
-    // Stills are worth waiting for.
+    // Stills keep their full size even on a slow link.
     await until("the full picture at rest", async () => {
       const { tier, refined } = await canvasData(old);
       return tier === "0" && refined === "true";
@@ -189,7 +192,7 @@ test("by a slow link come video, or smaller pictures where the browser decodes n
 });
 
 test("the colours of video are those of JPEG", async () => {
-  // Keeps the last pictures that were drawn but stills, by their frames' sequences, and what the page tells of them.
+  // Keeps the latest pictures drawn, except stills, by sequence number, with the data that the page reports about them.
   const keepsPictures = () => {
     window.pictures = new Map();
     const drawImage = CanvasRenderingContext2D.prototype.drawImage;
@@ -199,7 +202,7 @@ test("the colours of video are those of JPEG", async () => {
       if (canvas.dataset?.testid !== "storm-canvas") return;
       const copy = new OffscreenCanvas(canvas.width, canvas.height);
       copy.getContext("2d").drawImage(canvas, 0, 0);
-      // The page tells right after it has drawn.
+      // The page reports the data right after drawing.
       queueMicrotask(() => {
         const data = { ...canvas.dataset };
         if (data.encoding === "avif") return;
@@ -219,14 +222,15 @@ test("the colours of video are those of JPEG", async () => {
     return PNG.sync.read(Buffer.from(dataUrl.split(",")[1], "base64"));
   };
   const presenter = await present(keepsPictures);
-  // Strong colours show a wrong matrix.
+  // Strong colours make a wrong matrix visible.
   await openTool(presenter, "look");
   await changing(() => presenter.getByTestId("colours").getByText("False colours").click(), presenter);
   await openTool(presenter, undefined);
   await restedAndFits(presenter);
   const viewer = await open(presenter.url(), savesData, keepsPictures);
   await rested(viewer);
-  // One frame in both encodings, in full quality: moving pictures may be coarse. Either may have left it out.
+  // Compares one frame in both encodings, in full quality, because moving pictures may be coarse. Either page may have
+  // skipped it.
   let rightPx = 120;
   let sequence;
   await until("a frame that rests, as video and as JPEG", async () => {
@@ -247,7 +251,7 @@ test("the colours of video are those of JPEG", async () => {
     return sequence !== undefined;
   });
   const [video, jpeg] = [await pictureOf(viewer, sequence), await pictureOf(presenter, sequence)];
-  // A slow machine gets smaller pictures of video, of lower quality, so that sizes of differences say little.
+  // A slow machine receives smaller video pictures of lower quality, so absolute differences say little.
   for (const [what, wrong] of Object.entries({ matrix: decodedByBt709(jpeg), range: decodedAsFullRange(jpeg) })) {
     const share = shareOfChange(video, jpeg, wrong);
     console.log(`share of another ${what}: ${share.toFixed(3)}`);

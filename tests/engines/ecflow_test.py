@@ -15,7 +15,7 @@ class Ecflow(EngineTest):
         super().setUp()
         self.port = free_port()
         self.environment = {**os.environ, "ECF_PORT": str(self.port), "ECF_HOST": "localhost"}
-        # Its checkpoint and log go to the folder it is started in. The interval is that of its clock and triggers.
+        # The server's checkpoint and log go to its working directory. The interval is that of its clock and triggers.
         self.start("ecflow_server", "ecflow_server", f"--port={self.port}", f"--ecfinterval=1", cwd=self.folder,
                    env={**self.environment, "ECF_HOME": str(self.folder), "ECF_LISTS": str(self.folder / "none")})
         self.wait_for("ecFlow's server", lambda: self.answers("--ping"))
@@ -73,7 +73,7 @@ class Ecflow(EngineTest):
         draw = "/thunderhead/shares/0/draw"
 
         def gave_up() -> bool:
-            # One answer: the task may be submitted again before the next.
+            # Reads one answer, because the task may be submitted again before the next.
             task = self.node(draw)
             return "state:aborted" in task and "try:3" in task and "thunderhead ended with 75" in task
         self.wait_for("tasks that gave up", gave_up)
@@ -81,7 +81,7 @@ class Ecflow(EngineTest):
             self.state(f"/thunderhead/shares/{share}/draw") == "aborted"
             and "try:3" in self.node(f"/thunderhead/shares/{share}/draw") for share in range(4)))
         self.assertEqual(self.state("/thunderhead/movie"), "queued")
-        # Not before: a share that comes late would find the storm at its third try.
+        # The storm appears only now, because a late share would otherwise find it at its third try.
         (self.folder / "later").rename(self.storm)
         for share in range(4):
             self.client("--force=queued", f"/thunderhead/shares/{share}/draw")
@@ -91,16 +91,17 @@ class Ecflow(EngineTest):
     def test_what_another_try_does_not_help_is_not_tried_again(self) -> None:
         bad = self.folder / "bad.nc"
         bad.write_text("no storm")
-        # A mistake of its own for each share.
+        # Each share has a different mistake.
         wrong = {0: (64, "FLAGS", "--size none"), 1: (65, "STORM", str(bad)), 2: (78, "FLAGS", "--size 16x9 --device 99")}
-        # Share 3 waits until it is resumed, and fails with 75 at every try.
+        # Share 3 is suspended until it is resumed, and fails with 75 at every try.
         lines = {share: f"edit {name} '{value}'" for share, (_, name, value) in wrong.items()}
         self.begin({**lines, 3: f"edit STORM '{self.folder}/none'\n      defstatus suspended"})
         for share, (code, _, _) in wrong.items():
             draw = f"/thunderhead/shares/{share}/draw"
             self.wait_for("an aborted task", lambda: self.state(draw) == "aborted")
             self.wait_for(f"the reason {code}", lambda: f"thunderhead ended with {code}" in self.node(draw))
-        # The server begins the second and third try of a task that failed later.
+        # Share 3 fails after the others. When its third try ends, the server would have begun any second try of the
+        # others.
         later = "/thunderhead/shares/3/draw"
         self.assertEqual(self.state(later), "queued")
         self.client("--resume=/thunderhead/shares/3")

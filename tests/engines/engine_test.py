@@ -16,10 +16,10 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("THUNDERHEAD_BINARY", str(ROOT / "build/release/bin/thunderhead"))
-# Twelve files of one run, beside the repository.
+# Twelve files of one model run, next to the repository.
 SERIES = ROOT.parent / "shared/data/supercell-series"
 
-# ctest counts a test that ends with this as skipped.
+# The exit code that ctest counts as skipped.
 SKIPPED = 77
 
 

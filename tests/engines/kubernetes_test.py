@@ -59,7 +59,7 @@ class Kubernetes(unittest.TestCase):
     def test_every_object_fits_the_published_schema(self) -> None:
         things = [thing for file in sorted(FOLDER.glob("*.yaml")) for thing in objects(file.name)]
         self.assertEqual(published_errors(things), [[] for _ in things])
-        # A mistake in each kind of object is found.
+        # The validator must find a mistake in each kind of object.
         for thing in things:
             thing["spec"].update({"Deployment": {"replicas": "2"}, "Job": {"backoffLimit": "3"}, "Service": {"ports": [{}]},
                                   "PersistentVolumeClaim": {"accessModes": "ReadWriteMany"}}[thing["kind"]])
@@ -112,7 +112,8 @@ class Kubernetes(unittest.TestCase):
         self.assertEqual(action, {64: "FailJob", 65: "FailIndex", 78: "FailJob"})
         arguments = objects("sequence.yaml")[0]["spec"]["template"]["spec"]["containers"][0]["args"]
         arguments = [part.replace("/views/", f"{ROOT}/deploy/views/") for part in arguments]
-        # As the pod calls it, where there is no such storm: 75 counts as a try. A flag that does not exist would be 64.
+        # Runs the command as the pod does, without such a storm. Exit code 75 counts as a try; an unknown flag would
+        # give 64.
         done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                               env={"JOB_COMPLETION_INDEX": "1", "JOB_COMPLETIONS": "4"})
         self.assertEqual(done.returncode, 75, done.stderr)

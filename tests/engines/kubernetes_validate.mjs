@@ -1,5 +1,6 @@
-// Checks objects of Kubernetes, JSON on standard input, against the schemas that its API publishes; prints an array of what is wrong
-// with each. They come as the validators that the package kubernetes-models compiles from them; unknown fields they let pass.
+// Checks Kubernetes objects, given as JSON on standard input, against the schemas that its API publishes. Prints an
+// array with the errors of each object. The package kubernetes-models has compiled the schemas to validators, which
+// accept unknown fields.
 import * as apps from 'kubernetes-models/apps/v1';
 import * as batch from 'kubernetes-models/batch/v1';
 import * as core from 'kubernetes-models/v1';

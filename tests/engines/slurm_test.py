@@ -26,7 +26,7 @@ class Slurm(EngineTest):
         self.wait_for("an idle node", lambda: "idle" in self.slurm("sinfo", "-h", "-o", "%T", check=False))
 
     def start_munge(self) -> None:
-        # munged asks that nobody else can write to its folders.
+        # munged requires that no other user can write to its folders.
         munge = self.folder / "munge"
         munge.mkdir(mode=0o755)
         os.chmod(self.folder, 0o755)
@@ -34,7 +34,7 @@ class Slurm(EngineTest):
         key.write_bytes(os.urandom(128))
         key.chmod(stat.S_IRUSR)
         self.socket = munge / "socket"
-        # --force: root runs it here, and /tmp may be written to by others.
+        # --force is needed because root runs it here, and other users may write to /tmp.
         self.start("munged", "munged", "--foreground", "--force", f"--socket={self.socket}", f"--key-file={key}",
                    f"--pid-file={munge}/pid", f"--log-file={munge}/log", f"--seed-file={munge}/seed")
         self.wait_for("munge's socket", self.socket.exists)
@@ -42,7 +42,7 @@ class Slurm(EngineTest):
     def write_config(self) -> None:
         for name in ("state", "spool"):
             (self.folder / name).mkdir()
-        # Jobs wait for as long as their credentials live before they start again: 2 s here, 120 s by default.
+        # Restarted jobs wait for the lifetime of their credentials: 2 s here, 120 s by default.
         (self.folder / "slurm.conf").write_text(f"""
 ClusterName=thunderhead
 SlurmctldHost={self.node}(127.0.0.1)
@@ -138,7 +138,7 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         requeued = self.wait_for("a picture of task 1", lambda: self.program_of(job, 1))
         self.slurm("scontrol", "requeue", f"{job}_1")
         self.wait_for("the signal to task 1", lambda: not self.runs(requeued) or self.is_interrupted(requeued))
-        # Opened at both ends, so that the program's calls return, with an error of the last.
+        # The pipe is opened at both ends, so that the program's calls return; the last returns an error.
         with open(to_requeue, "r+b", buffering=0):
             to_requeue.unlink()
             self.wait_for("the end of task 1", lambda: not self.runs(requeued))

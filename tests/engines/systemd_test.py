@@ -12,7 +12,8 @@ from engine_test import PROGRAM, ROOT, need
 
 FOLDER = ROOT / "deploy/systemd"
 WATCH = FOLDER / "thunderhead-watch@.service"
-# Of systemd-analyze security, from 0 (good) to 10, times ten: what the unit has today, rounded up.
+# The exposure from systemd-analyze security, from 0 (good) to 10, times ten. This is the unit's present value, rounded
+# up.
 EXPOSURE = 8
 
 
@@ -22,7 +23,7 @@ def analyze(*arguments: object) -> subprocess.CompletedProcess:
 
 class Systemd(unittest.TestCase):
     def setUp(self) -> None:
-        # systemd-analyze asks a template for an instance.
+        # systemd-analyze needs an instance of a template unit.
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.unit = pathlib.Path(folder.name) / "thunderhead-watch@run42.service"
@@ -30,7 +31,7 @@ class Systemd(unittest.TestCase):
 
     def test_the_unit_is_sound(self) -> None:
         done = analyze("verify", self.unit)
-        # It also loads the machine's own units, whose mistakes are not ours.
+        # The command also loads the machine's other units, whose mistakes are not ours.
         ours = [line for line in (done.stderr + done.stdout).splitlines() if "thunderhead" in line]
         self.assertEqual(ours, [])
         self.unit.write_text(WATCH.read_text().replace("ProtectSystem=strict", "ProtectSystem=strictly"))
@@ -47,7 +48,7 @@ class Systemd(unittest.TestCase):
 
     def test_others_can_read_the_products(self) -> None:
         settings = dict(re.findall(r"^(\w+)=(.*)$", WATCH.read_text(), re.M))
-        # A dynamic user's folders are root's alone to enter.
+        # Only root may enter a dynamic user's folders.
         self.assertNotIn("DynamicUser", settings)
         self.assertEqual((settings["StateDirectoryMode"], settings["UMask"]), ("0755", "0022"))
         server = dict(re.findall(r"^(\w+)=(.*)$", (FOLDER / "thunderhead.service").read_text(), re.M))
@@ -66,11 +67,11 @@ class Systemd(unittest.TestCase):
                         if line and not line.startswith("#"))
         command = re.search(r"^ExecStart=/usr/bin/env thunderhead (.*)$", WATCH.read_text(), re.M)[1]
         words = shlex.split(command.replace("${FOLDER}", settings["FOLDER"]))
-        # systemd splits $FLAGS at blanks, and leaves the rest as it is.
+        # systemd splits $FLAGS at blanks, and leaves the other words as they are.
         arguments = [part for word in words for part in (settings["FLAGS"].split() if word == "$FLAGS" else [word])]
         arguments = [part.replace("/usr/local/share/thunderhead/views", str(ROOT / "deploy/views")) for part in arguments]
         done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600, cwd=self.unit.parent)
-        # The folder is not there, which may change; a bad flag would be 64.
+        # A missing folder may appear later, hence 75. A bad flag would give 64.
         self.assertEqual(done.returncode, 75, done.stderr)
         self.assertIn("there is no such folder", done.stderr)
 

@@ -1,6 +1,7 @@
-// Coverage for libFuzzer from code that GCC compiled: -fsanitize-coverage=trace-pc calls this once
-// for each basic block, and libFuzzer reads counters of this section besides its own. So the very
-// compiler of the release is fuzzed, with the coroutines that Debian's Clang 14 does not know.
+// Coverage for libFuzzer from code that GCC compiled. With -fsanitize-coverage=trace-pc, GCC calls
+// this function once for each basic block. libFuzzer reads the counters of this section in addition
+// to its own. The release's compiler can thus be fuzzed, including coroutines, which Debian's Clang
+// 14 does not support.
 #include <cstddef>
 #include <cstdint>
 
@@ -19,7 +20,8 @@ __attribute__((no_sanitize_coverage)) void __sanitizer_cov_trace_pc() {
   ++counters[(place * 0x9e3779b97f4a7c15U) >> 48U];
 }
 
-// GCC's comparisons of real numbers, which libFuzzer does not know.
+// GCC calls these functions for comparisons of floating-point numbers; libFuzzer does not define
+// them.
 __attribute__((no_sanitize_coverage)) void __sanitizer_cov_trace_cmpf(float, float) {}
 __attribute__((no_sanitize_coverage)) void __sanitizer_cov_trace_cmpd(double, double) {}
 

@@ -17,7 +17,7 @@ hid_t FixedText(std::size_t size) {
   return type;
 }
 
-// A compound of a number and a text, within each other as often as `depth` says.
+// Returns a compound of a number and a text, nested as often as `depth` says.
 hid_t Compound(std::size_t depth) {
   const hid_t inner = depth == 0 ? H5Tcopy(H5T_NATIVE_FLOAT) : Compound(depth - 1);
   const std::size_t size = H5Tget_size(inner);
@@ -27,7 +27,7 @@ hid_t Compound(std::size_t depth) {
   return type;
 }
 
-// A float with fields of any width at any place.
+// Returns a float type with fields of any width at any position.
 hid_t OddFloat(Dice& dice) {
   const hid_t type = H5Tcopy(H5T_IEEE_F64LE);
   const std::size_t exponent = 1 + dice.Below(20);
@@ -101,7 +101,7 @@ hid_t OddType(Dice& dice) {
 hid_t OddSpace(Dice& dice, hid_t usual) {
   if (dice.OneIn(2)) return usual;
   if (dice.OneIn(8)) return H5Screate(dice.OneIn(2) ? H5S_NULL : H5S_SCALAR);
-  // A long one is rare, because reading much takes long.
+  // A long dataspace is rare, because reading much data takes long.
   constexpr std::array<hsize_t, 6> kLengths = {0, 1, 2, 4, 8, 100};
   const int rank = 1 + static_cast<int>(dice.OneIn(8) ? dice.Below(H5S_MAX_RANK) : dice.Below(5));
   std::vector<hsize_t> lengths(static_cast<std::size_t>(rank), 1);
@@ -113,8 +113,8 @@ hid_t OddSpace(Dice& dice, hid_t usual) {
   return H5Screate_simple(rank, lengths.data(), most.data());
 }
 
-// Values in other files. They are all beside the file itself, and no value is written to them: HDF5
-// would overwrite any file that this user may write.
+// Stores values in other files. These files are all next to the file itself, and no value is
+// written to them, because HDF5 would overwrite any file that this user may write.
 void PlaceElsewhere(Dice& dice, hid_t creation, hid_t space, const std::string& path) {
   const std::string name = path + (dice.OneIn(2) ? "" : ".elsewhere");
   if (dice.OneIn(2)) {
@@ -152,7 +152,7 @@ void AddFilters(Dice& dice, hid_t creation) {
         H5Pset_szip(creation, H5_SZIP_NN_OPTION_MASK, 8);
         break;
       default: {
-        // Filters that are not installed; HDF5 writes them only as optional ones.
+        // These filters are not installed. HDF5 writes them only as optional filters.
         constexpr std::array kIds = {307, 32'000, 32'015, 65'535};
         const std::array<unsigned, 3> values = {0, 1, 0xffffffff};
         H5Pset_filter(creation, dice.Of(kIds), H5Z_FLAG_OPTIONAL, dice.Below(4), values.data());
@@ -193,7 +193,7 @@ hid_t OddLayout(Dice& dice, hid_t type, hid_t space, const std::string& path) {
   return creation;
 }
 
-// Those of netCDF-4 tell which dimensions a variable has.
+// netCDF-4's attributes say which dimensions a variable has.
 void CopyAttributes(hid_t from, hid_t to) {
   H5Aiterate2(
       from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr,
@@ -249,7 +249,7 @@ void ReplaceAttribute(Dice& dice, hid_t object) {
                       : dice.OneIn(3) ? H5Screate(H5S_SCALAR)
                                       : H5Screate_simple(1, &length, nullptr);
   const hid_t attribute = H5Acreate2(object, name, OddType(dice), space, H5P_DEFAULT, H5P_DEFAULT);
-  // Of types without pointers alone: others stay as they are, which is empty.
+  // Only types without pointers are filled. Attributes of other types stay empty.
   const hid_t type = attribute < 0 ? -1 : H5Aget_type(attribute);
   const H5T_class_t kind = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
   if ((kind == H5T_FLOAT || kind == H5T_INTEGER || kind == H5T_OPAQUE ||

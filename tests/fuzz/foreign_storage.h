@@ -1,5 +1,5 @@
-// Changes how an HDF5 file stores its variables, in ways that netCDF-C itself never writes: types,
-// layouts, filters, dataspaces, attributes and links.
+// Changes to how an HDF5 file stores its variables, in ways that netCDF-C itself never writes:
+// types, layouts, filters, dataspaces, attributes and links.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace thunderhead::testing {
 
-// Changes one to three things. Use it in a process of its own, since it leaves objects of HDF5
-// open. What HDF5 refuses to write stays as it was.
+// Makes one to three changes. Use it in a separate process, because it leaves HDF5 objects open.
+// Whatever HDF5 refuses to write stays unchanged.
 void ChangeStorage(Dice& dice, const std::string& path);
 
 }  // namespace thunderhead::testing

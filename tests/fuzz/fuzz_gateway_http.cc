@@ -1,5 +1,5 @@
-// A request as a browser's bytes: HTTP's header by the gateway's parser, its access rules, the
-// page's files, the translation into a gRPC call, and the frame of its message.
+// Fuzzes a browser's request as bytes. The target runs the gateway's HTTP parser, its access rules,
+// the page's files, the translation into a gRPC call, and the frame of its message.
 #include <algorithm>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
@@ -51,7 +51,7 @@ StaticFiles Page() {
 
 using fuzz::Must;
 
-// gRPC ends the process for metadata that breaks its rules.
+// Checks the metadata's rules, because gRPC ends the process if metadata breaks them.
 void CheckMetadata(const Metadata& metadata) {
   for (const auto& [name, value] : metadata) {
     Must(!name.empty() && std::ranges::none_of(name, [](char c) { return c >= 'A' && c <= 'Z'; }));
@@ -100,7 +100,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   parser.eager(true);
   boost::system::error_code error;
   boost::asio::const_buffer rest(data, size);
-  // In parts, as from a socket.
+  // The bytes arrive in parts, as from a socket.
   while (rest.size() > 0 && !error && !parser.is_done()) {
     const std::size_t used = parser.put(rest, error);
     rest += used;

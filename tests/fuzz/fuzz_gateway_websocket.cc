@@ -1,6 +1,7 @@
-// Bytes that a client sends after the upgrade to a WebSocket, to a live gateway before a live
-// service: frames that are whole, cut, masked wrongly, fragmented, too long, and any messages. The
-// connection must end once the client has sent all, and the gateway must answer the next one.
+// Fuzzes the bytes that a client sends after the upgrade to a WebSocket, with a live gateway and a
+// live service behind it. Frames are complete, truncated, wrongly masked, fragmented or too long,
+// with any messages. The connection must end once the client has sent everything, and the gateway
+// must answer the next one.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -18,7 +19,7 @@
 namespace thunderhead::gateway {
 namespace {
 
-// However many processes compete with this one.
+// The timeout is long enough even if many processes compete with this one.
 constexpr int kPatience_ms = 600'000;
 
 using fuzz::Must;
@@ -39,7 +40,7 @@ class Socket {
     address.sin_port = htons(Port());
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     Must(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0);
-    // No ports wait for what was on its way.
+    // Closes the socket at once, so that no port stays reserved for bytes in flight.
     const linger at_once{1, 0};
     setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof(at_once));
   }
@@ -47,7 +48,7 @@ class Socket {
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
 
-  // The server may have closed it before all was sent.
+  // Sends the bytes, unless the server closes the connection before.
   void Send(const std::string& bytes) {
     for (std::size_t sent = 0; sent < bytes.size();) {
       const ssize_t now = send(socket_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
@@ -57,12 +58,12 @@ class Socket {
   }
   void SendNoMore() { shutdown(socket_, SHUT_WR); }
 
-  // All bytes received until `end` has come or the server has closed.
+  // Returns all bytes received until `end` has arrived or the server has closed.
   std::string Read(const std::string& end) {
     std::string read;
     while (end.empty() || read.find(end) == std::string::npos) {
       pollfd ready{socket_, POLLIN, 0};
-      Must(poll(&ready, 1, kPatience_ms) == 1);  // neither an answer nor an end
+      Must(poll(&ready, 1, kPatience_ms) == 1);  // fails if there is neither an answer nor an end
       char part[4096];
       const ssize_t now = recv(socket_, part, sizeof(part), 0);
       if (now <= 0) break;

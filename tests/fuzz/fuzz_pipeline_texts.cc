@@ -1,5 +1,5 @@
-// Small texts and bytes from outside: manifest lines, names of products, rules of readiness, marks
-// from the store, and what `thunderhead load` gets from a server.
+// Fuzzes small texts and bytes from outside: manifest lines, names of products, readiness rules,
+// marks from the store, and what `thunderhead load` receives from a server.
 #include <cstdint>
 #include <string>
 

@@ -1,5 +1,5 @@
-// Replies of a reader that a hostile file has taken over: those which the server accepts must not
-// harm the rooms that use them.
+// Fuzzes replies of a reader process that a hostile file has taken over. Replies that the server
+// accepts must not harm the rooms that use them.
 #include <unistd.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kAllowance = 1 << 20;
 
-// Reads what the fields' arrays say of each other.
+// Reads the fields' arrays, which must be consistent with each other.
 void ReadArrays(const volume::HydrometeorFields& fields) {
   const std::size_t cells = fields.grid.CellCount();
   for (const volume::HydrometeorField& field : fields.fields) {

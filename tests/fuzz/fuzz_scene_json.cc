@@ -1,4 +1,4 @@
-// Scene files: Protobuf JSON, as `--scene` and pictures have it.
+// Fuzzes scene files: Protobuf JSON, as in `--scene` and pictures.
 #include <google/protobuf/util/json_util.h>
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Scenes and requests of Interact as their bytes arrive: parsed, checked against the limits, filled
-// in, and turned into the view that is drawn.
+// Fuzzes the bytes of scenes and Interact requests: they are parsed, checked against the limits,
+// completed, and converted to the view that is drawn.
 #include <algorithm>
 #include <cstdint>
 
@@ -40,7 +40,7 @@ void TakeRequest(const v1::InteractRequest& request) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace v1 = thunderhead::v1;
-  // It writes a line for each text that is not UTF-8.
+  // Protobuf would log a line for each text that is not UTF-8.
   [[maybe_unused]] static const auto quiet = google::protobuf::SetLogHandler(nullptr);
   if (size == 0) return 0;
   const int bytes = static_cast<int>(size - 1);

@@ -1,4 +1,5 @@
-// Scenes in PNGs (iTXt). Checksums of chunks are mended first, or no mutation would come far.
+// Fuzzes scenes in PNGs (iTXt). The checksums of chunks are corrected first, because otherwise no
+// mutation would get past them.
 #include <google/protobuf/util/json_util.h>
 #include <zlib.h>
 

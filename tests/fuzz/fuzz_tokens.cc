@@ -1,4 +1,4 @@
-// The parsers that decide who may enter: lists of tokens, keys and JSON Web Tokens, and tokens in
+// Fuzzes the parsers that control access: lists of tokens, keys and JSON Web Tokens, and tokens in
 // headers.
 #include <cstdint>
 #include <cstdlib>
@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       static_cast<void>(JwtKey::Parse(text));
       break;
     case 2:
-      // Nobody without the key can sign one; the seeds' token has expired.
+      // No token may verify: only the key's owner can sign one, and the seeds' token has expired.
       if (key->Verify(text, {}, std::chrono::system_clock::now()).ok()) std::abort();
       break;
     default:

@@ -1,5 +1,5 @@
-// The same bytes as fuzz_gateway_websocket's, through the gateway's reader of messages alone: no
-// socket, no call and no thread, so some hundred times as many a second.
+// Fuzzes the gateway's message reader with the same bytes as fuzz_gateway_websocket. It uses no
+// socket, no call and no thread, so it is some hundred times as fast.
 #include "gateway/websocket_reader.h"
 
 #include <boost/asio/co_spawn.hpp>
@@ -40,7 +40,8 @@ http::request<http::string_body> Upgrade() {
   return request;
 }
 
-// As WebSocketExchange reads them; what a call would get must keep the protocol's rules.
+// Reads messages as WebSocketExchange does, and checks that what a call would receive keeps the
+// protocol's rules.
 net::awaitable<void> Take(Socket& socket) {
   static const http::request<http::string_body> upgrade = Upgrade();
   error_code error;
@@ -71,14 +72,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   namespace gateway = thunderhead::gateway;
   namespace net = boost::asio;
   if (size == 0) return 0;
-  // One for all: its parts in the kernel cost more than the rest.
+  // All inputs share one context, because its kernel objects cost more than everything else.
   static net::io_context context(1);
   context.restart();
   boost::beast::test::stream client(context);
   gateway::Socket socket{boost::beast::test::stream(context)};
   socket.next_layer().connect(client);
   socket.next_layer().append(thunderhead::fuzz::WebSocketBytes(data, size));
-  // Bytes come one by one, or in parts of any size.
+  // Bytes arrive one at a time, or in parts of any size.
   if (const std::size_t part = data[0] / 2; part > 0) socket.next_layer().read_size(part);
   socket.next_layer().close_remote();
   bool ended = false;

@@ -1,8 +1,9 @@
-// Reads mutated storm files of three formats, each in a confined process of its own, as the server
-// reads what it does not trust; netCDF-4 files whose variables have types, storage layouts and
-// filters that netCDF-C never writes; and sparse files of enormous dimensions. Every file must give
-// a storm or one clear error that names it. Only netCDF-C and HDF5 may crash or take too long,
-// which ends their process alone; our own code that does is a failure.
+// Reads mutated storm files in confined processes, one each, as the server reads files that it does
+// not trust. There are mutated files of three formats and sparse files of enormous dimensions.
+// There are also netCDF-4 files whose variables have types, storage layouts and filters that
+// netCDF-C never writes. Every file must give a storm or one clear error that names the file. Only
+// netCDF-C and HDF5 may crash or take too long, which ends just their process. If our own code
+// does, the test fails.
 //   hostile_files [NUMBER] [SEED] [FILE, the only one to be read; exits with its outcome]
 #include <dlfcn.h>
 #include <execinfo.h>
@@ -48,7 +49,7 @@ constexpr std::uint64_t kMemory = std::uint64_t{512} << 20;
 constexpr std::array kOddNumbers = {0.0,  -1.0,  1e-30, 1e30,  1e300, -1e300, 9.96921e36,
                                     1e-5, 100.0, 1e5,   0.499, 0.501, 2.2e-38};
 
-// A description of a WRF file, changed here and there.
+// Returns the description of a WRF file with random changes.
 SyntheticWrf OddWrf(Dice& dice, WrfFormat format) {
   SyntheticWrf file;
   file.format = format;
@@ -111,7 +112,7 @@ SyntheticWrf OddWrf(Dice& dice, WrfFormat format) {
   return file;
 }
 
-// The same of a CF file.
+// Returns the description of a CF file with random changes.
 testing::SyntheticCf OddCf(Dice& dice) {
   const double value = dice.OneIn(2) ? 1e-3 : dice.Of(kOddNumbers);
   testing::SyntheticCf file =
@@ -158,7 +159,7 @@ testing::SyntheticCf OddCf(Dice& dice) {
   return file;
 }
 
-// Bytes changed here and there, mostly in the header.
+// Changes random bytes, mostly in the header.
 void Damage(Dice& dice, std::string& bytes) {
   constexpr std::array<unsigned char, 6> kBytes = {0, 1, 0x7f, 0x80, 0xfe, 0xff};
   for (std::size_t edits = 1 + dice.Below(3); edits > 0 && !bytes.empty(); --edits) {
@@ -196,9 +197,9 @@ absl::Status ReadStorm(const std::string& path) {
 enum Outcome {
   kRead = 0,
   kClearError = 10,
-  kLibraryCrashed = 11,  // netCDF-C or HDF5; it is what the confinement is for
-  kLibraryHung = 12,     // its time was over in one of them
-  // Failures.
+  kLibraryCrashed = 11,  // in netCDF-C or HDF5, which the confinement is for
+  kLibraryHung = 12,     // a timeout in one of them
+  // The following outcomes are failures.
   kUnclearError = 13,
   kNotConfined = 14,
   kWeCrashed = 15,
@@ -228,12 +229,12 @@ const char* NameOf(int outcome) {
   }
 }
 
-// True if the innermost code on the stack that is not the C and C++ libraries' is netCDF-C's or
-// HDF5's.
+// Returns true if the innermost frame on the stack outside the C and C++ libraries is in netCDF-C
+// or HDF5.
 bool IsInLibrary() {
   std::array<void*, 64> stack{};
   const int depth = backtrace(stack.data(), static_cast<int>(stack.size()));
-  // Of this function and the handler.
+  // The first two frames belong to this function and the handler.
   for (int i = 2; i < depth; ++i) {
     Dl_info info{};
     const bool known = dladdr(stack[static_cast<std::size_t>(i)], &info) != 0;
@@ -250,8 +251,8 @@ void EndBySignal(int signal) {
   _exit(hung ? kWeHung : kWeCrashed);
 }
 
-// Installs handlers of fatal signals, which tell whose code was at fault. They run on a stack of
-// their own, as the signal may be a stack overflow.
+// Installs handlers of fatal signals, which report whose code was at fault. They run on a separate
+// stack, because the signal may be a stack overflow.
 void NoteSignals() {
   static std::array<char, std::size_t{1} << 16> stack;
   const stack_t other{.ss_sp = stack.data(), .ss_flags = 0, .ss_size = stack.size()};
@@ -265,7 +266,8 @@ void NoteSignals() {
   }
 }
 
-// In a process of its own; a signal is the negative of its number.
+// Returns the exit code of reading the file in a separate process, or the negative number of its
+// signal.
 int OutcomeOf(const std::string& path, const std::string& bytes) {
   const pid_t child = fork();
   if (child == 0) {
@@ -285,8 +287,8 @@ int OutcomeOf(const std::string& path, const std::string& bytes) {
   return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-// True if the file could be written: netCDF-C refuses some values, and the test support then ends
-// its process.
+// Returns true if the file could be written: netCDF-C refuses some values, and the test support
+// then ends its process.
 template <typename Write>
 bool Writes(const Write& write) {
   const pid_t child = fork();
@@ -305,7 +307,7 @@ std::string BytesOf(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// A netCDF-4 file of a few kilobytes that announces a grid of 10^5 cells along each axis.
+// Writes a netCDF-4 file of a few kilobytes that announces a grid of 10^5 cells along each axis.
 void WriteSparse(const std::string& path, bool cf) {
   constexpr std::size_t kLength = 99'999;  // and one more interface
   int id = 0;
@@ -352,7 +354,7 @@ void WriteSparse(const std::string& path, bool cf) {
   must(nc_close(id));
 }
 
-// What is mutated.
+// A kind of file that is mutated.
 struct Kind {
   const char* name;
   bool cf = false;
@@ -393,7 +395,7 @@ int main(int argc, char** argv) {
   for (std::size_t i = 0; i < number; ++i) {
     const std::size_t at = i % kKinds.size();
     const Kind& kind = kKinds[at];
-    // A new description now and then: writing one costs more than reading it.
+    // A new description is written only occasionally, because writing costs more than reading.
     if (sound[at].empty() || dice.OneIn(kind.foreign ? 2 : 8)) {
       constexpr std::array kClassic = {WrfFormat::kClassic, WrfFormat::kOffset64, WrfFormat::kCdf5};
       const WrfFormat format = kind.classic ? dice.Of(kClassic) : WrfFormat::kNetcdf4;

@@ -1,5 +1,5 @@
-// A condition that must hold for every input of a fuzz target. Where it does not, the target ends,
-// and libFuzzer keeps the input.
+// A condition that must hold for every input of a fuzz target. If it does not hold, the target
+// aborts, and libFuzzer keeps the input.
 #pragma once
 
 #include <cstdlib>

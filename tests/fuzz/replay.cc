@@ -1,8 +1,9 @@
 // Runs a fuzz target without libFuzzer: every kept input, then a number of mutations of them, which
-// depend on the seed alone; with --seconds more of them, until that time is over.
+// depend only on the seed. With --seconds it runs further mutations until that time is over.
 //   fuzz_NAME FOLDER|FILE... [--runs N] [--seed N] [--seconds N]
+//
 // An input that ends the process is left in the file finding-NAME. An input that does not end in
-// ten minutes counts as hanging, and so does the target's end, in which it frees what it kept.
+// ten minutes counts as hanging. So does the exit of the target, in which it frees what it kept.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -29,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 
-// The input that runs, and the file to keep it in: for the handlers of fatal signals.
+// The input that runs, and the file to keep it in, for the handlers of fatal signals.
 std::string running;
 std::string finding;
 bool all_ran = false;
@@ -57,7 +58,7 @@ void OnSignal(int signal) {
 
 void Run(std::string input) {
   running = std::move(input);
-  // A copy without anything behind it, so that reading beyond it is seen.
+  // Copies the input without spare capacity, so that a sanitizer detects reads beyond its end.
   const std::vector<std::uint8_t> bytes(running.begin(), running.end());
   LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
 }
@@ -171,7 +172,7 @@ int main(int argc, char** argv) {
     }
   }
   if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(KeepFinding);
-  // However many processes compete with this one.
+  // The limit is long enough even if many processes compete with this one.
   constexpr unsigned kSlowest_s = 600;
   for (const std::string& input : inputs) {
     alarm(kSlowest_s);

@@ -1,5 +1,5 @@
-// The way of a scene from a client to what draws it, as far as it needs no device: what every fuzz
-// target of scenes does with what it has decoded.
+// The path of a scene from a client to its renderer, as far as it needs no device. Every fuzz
+// target of scenes runs it on what it has decoded.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace thunderhead::fuzz {
 
-// One storm of a few cells, without a file.
+// A store with one storm of a few cells, without a file.
 class FixedStore final : public storm_store::StormStore {
  public:
   FixedStore() {
@@ -63,7 +63,7 @@ class FixedStore final : public storm_store::StormStore {
   std::shared_ptr<const volume::HydrometeorFields> fields_;
 };
 
-// Aborts if a scene that was taken has a view that cannot be drawn.
+// Aborts if an accepted scene has a view that cannot be drawn.
 inline void TakeScene(v1::Scene scene) {
   static FixedStore store;
   static const std::vector<scene::TechniqueInfo> techniques = test_support::TechniquesOfTheSchema();
@@ -75,7 +75,7 @@ inline void TakeScene(v1::Scene scene) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(view.eye_m[axis]) || !std::isfinite(view.forward[axis])) std::abort();
   }
-  // As it is sent to viewers and kept in the store.
+  // Serialises the scene as it is sent to viewers and stored.
   v1::Scene again;
   if (!again.ParseFromString(scene.SerializeAsString())) std::abort();
 }

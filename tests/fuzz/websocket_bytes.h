@@ -8,7 +8,8 @@
 
 namespace thunderhead::fuzz {
 
-// Frames by the input: each begins with its opcode and a size, and is masked as it should be.
+// Returns frames built from the input. Each begins with its opcode and a size, and is masked
+// correctly.
 inline std::string Framed(const std::uint8_t* data, std::size_t size) {
   std::string frames;
   std::size_t at = 0;
@@ -27,7 +28,8 @@ inline std::string Framed(const std::uint8_t* data, std::size_t size) {
   return frames;
 }
 
-// An even first byte: frames of the rest. Otherwise the rest as it is, which has a mask of its own.
+// Returns frames of the rest if the first byte is even. Otherwise returns the rest unchanged, with
+// its own mask.
 inline std::string WebSocketBytes(const std::uint8_t* data, std::size_t size) {
   if (data[0] % 2 == 0) return Framed(data + 1, size - 1);
   return {reinterpret_cast<const char*>(data + 1), size - 1};

@@ -1,4 +1,4 @@
-// The gRPC-Web bridge, seen from raw bytes on one side and from the handlers on the other.
+// Tests of the gRPC-Web bridge, from raw bytes on one side and from the handlers on the other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,8 @@ std::string Counting(uint32_t count, uint32_t interval_ms = 0, uint32_t payload_
   return request.SerializeAsString();
 }
 
-// Counts to that number, but stops after `hold_after` responses until the site releases it.
+// Makes a call that counts to that number, but stops after `hold_after` responses until the site
+// releases it.
 std::string Held(uint32_t count, uint32_t hold_after) {
   CountRequest request;
   request.set_count(count);
@@ -103,7 +104,7 @@ TEST_F(BridgeTest, EachMessageIsFlushed) {
     const int before = Record().written;
     RawClient client(Site().Port());
     client.Send(CallRequest("Count", Frame(Held(2, messages))));
-    // The headers come before the first message is written, and the first message before the
+    // The headers arrive before the first message is written, and the first message before the
     // second.
     const Response headers = client.ReadHeaders();
     EXPECT_EQ(headers["Transfer-Encoding"], "chunked");
@@ -174,14 +175,15 @@ TEST_F(BridgeTest, MetadataThatGrpcForbidsIsAnErrorNotACrash) {
   EXPECT_THAT(value.Trailer("grpc-message"), HasSubstr("x-name"));
   EXPECT_EQ(MakeCall("Say", "", {{"x!name", "a"}}).Trailer("grpc-status"), "3");
   EXPECT_EQ(MakeCall("Say", "", {{"x-bin", "*"}}).Trailer("grpc-status"), "3");
-  // Base64 of bytes that are not printable, under the one name in -bin that gRPC takes for text.
+  // The value is Base64 of bytes that are not printable, under "-bin", the only name ending in -bin
+  // that gRPC treats as text.
   EXPECT_EQ(MakeCall("Say", "", {{"-bin", "gzip"}}).Trailer("grpc-status"), "0");
   EXPECT_EQ(MakeCall("Say", "").Trailer("grpc-status"), "0");
 }
 
 TEST_F(BridgeTest, DeadlinesEndCalls) {
-  // A deadline that is over before the call reaches its handler ends the call too, so longer ones
-  // follow until the handler has seen one.
+  // A deadline that expires before the call reaches its handler also ends the call. Longer
+  // deadlines follow until the handler has seen a call.
   for (int ms = 200; Record().started == 0; ms *= 2) {
     const auto begin = Clock::now();
     const CallResult call = MakeCall("Wait", "", {{"grpc-timeout", absl::StrCat(ms, "m")}});
@@ -198,7 +200,7 @@ TEST_F(BridgeTest, DeadlinesEndCalls) {
   }
   EXPECT_EQ(messages, 1U);
   EXPECT_EQ(MakeCall("Say", "", {{"grpc-timeout", "soon"}}).Trailer("grpc-status"), "3");
-  // A deadline in centuries counts as none.
+  // A deadline in centuries counts as no deadline.
   EXPECT_EQ(MakeCall("Say", "", {{"grpc-timeout", "99999999H"}}).Trailer("grpc-status"), "0");
 }
 
@@ -302,10 +304,11 @@ TEST_F(BridgeTest, SlowReaderHoldsTheHandlerBack) {
   client.Send(CallRequest("Count", Frame(Counting(2000, 0, 100'000))));
   client.ReadHeaders();
   AwaitHandlersHeldBack();
-  // Of 200 MB, what the kernel buffers for a client that reads nothing (tcp_wmem: mostly 4 MB, 42
-  // messages) and gRPC's windows, which grow with speed (24 messages were seen).
+  // Only a part of the 200 MB may be written. The limit allows for what the kernel buffers for a
+  // client that reads nothing (tcp_wmem: mostly 4 MB, 42 messages). It also allows for gRPC's
+  // windows, which grow with speed (24 messages were seen).
   EXPECT_LT(Record().written, 100);
-  // It continues when the client does.
+  // The call continues when the client does.
   client.ReadBody(20'000'000);
   EXPECT_GE(Record().written, 190);
   client.Close();
@@ -318,8 +321,8 @@ TEST_F(BridgeTest, ReaderThatTakesNothingIsGivenUp) {
   RawClient client(Site().Port(), /*receive_buffer_bytes=*/16 << 10);
   client.Send(CallRequest("Count", Frame(Counting(2000, 0, 100'000))));
   client.ReadHeaders();
-  // A reader that is slow stays. What it reads at a time is more than buffers hold, so the gateway
-  // has written some of it since the time moved.
+  // A slow reader keeps its connection. It reads more at a time than the buffers hold, so the
+  // gateway has written some of it since the time advanced.
   for (size_t bytes = 20'000'000; bytes <= 60'000'000; bytes += 20'000'000) {
     time_.Advance(seconds(15));
     client.ReadBody(bytes);
@@ -338,7 +341,7 @@ TEST_F(BridgeTest, LiveStreamsOutlastTheIdleTimeout) {
   client.Send(CallRequest("Count", Frame(Held(3, 1))));
   client.ReadHeaders();
   client.ReadBody(5);
-  // The gateway has acted on the new time when it has closed the idle connection.
+  // The gateway has handled the new time once it has closed the idle connection.
   EXPECT_TRUE(WaitWhileTimePasses([&] { return idle.HasInput(); }));
   EXPECT_TRUE(idle.IsClosed());
   Site().Release();
@@ -380,7 +383,7 @@ TEST_F(BridgeTest, StoppingTheGatewayEndsCallsAndConnections) {
   waiting.Send(CallRequest("Wait", Frame("")));
   stalled.Send(CallRequest("Count", Frame(Counting(2000, 0, 100'000))));
   ASSERT_TRUE(WaitFor([&] { return Record().started == 3 && Record().written > 0; }));
-  // No limit of time is over: nothing is waited for.
+  // No timeout has expired, so nothing is waited for.
   Site().StopGateway();
   EXPECT_TRUE(idle.IsClosed());
   EXPECT_TRUE(WaitFor([&] { return Record().cancelled == 3 && Record().done == 3; }));
@@ -409,7 +412,7 @@ TEST_F(BridgeTest, ManyClientsAtOnce) {
     clients.emplace_back([&, port = Site().Port(), i] {
       for (int round = 0; round < 10; ++round) {
         if (i % 4 == 0) {
-          // Leaves in the middle.
+          // The client leaves in the middle of the stream.
           RawClient client(port);
           client.Send(CallRequest("Count", Frame(Counting(1000, 1, 100))));
           client.ReadHeaders();

@@ -1,5 +1,5 @@
-// A gateway for the test service, for clients in other languages: prints its port, then the counts
-// of its calls for every line read, and ends at the end of its input.
+// A gateway for the test service, for clients in other languages. It prints its port, then the
+// counts of its calls for every line read. It exits at the end of its input.
 #include <cstdio>
 #include <iostream>
 #include <string>

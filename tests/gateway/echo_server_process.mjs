@@ -1,4 +1,4 @@
-// The C++ test server as a child process.
+// Runs the C++ test server as a child process.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { createInterface } from "node:readline";
@@ -14,7 +14,7 @@ export async function startEchoServer() {
   const { port } = await nextLine();
   return {
     url: `http://localhost:${port}`,
-    // The counts of its calls so far.
+    // Returns the counts of the server's calls so far.
     async record() {
       child.stdin.write("\n");
       return nextLine();

@@ -27,7 +27,7 @@ grpc::Status FailureOf(const FailRequest& request) {
   return {static_cast<grpc::StatusCode>(request.code()), request.message(), request.details()};
 }
 
-// Writes `count` responses with a pause before each, then finishes with `end`.
+// A call that writes `count` responses with a pause before each, then finishes with `end`.
 class Counter final : public grpc::ServerWriteReactor<CountResponse>, private HeldCall {
  public:
   Counter(EchoRecord& record, HeldCalls& held, CountRequest request, grpc::Status end)
@@ -97,7 +97,7 @@ class Counter final : public grpc::ServerWriteReactor<CountResponse>, private He
   HeldCalls& held_;
   const CountRequest request_;
   const grpc::Status end_;
-  std::mutex mutex_;  // between a cancellation and the next alarm
+  std::mutex mutex_;  // guards against a cancellation during the next alarm
   bool cancelled_ = false;
   bool is_held_ = false;
   bool released_ = false;
@@ -106,8 +106,10 @@ class Counter final : public grpc::ServerWriteReactor<CountResponse>, private He
   uint32_t next_ = 0;
 };
 
-// Reads a request when the responses to the one before are written. gRPC ends the process where an
-// operation begins after Finish, so both are begun under the lock.
+// A call that reads a request once the responses to the previous request are written.
+//
+// Reads, writes and Finish begin under the lock, because gRPC ends the process if an operation
+// begins after Finish.
 class Conversation final : public grpc::ServerBidiReactor<ConverseRequest, ConverseResponse> {
  public:
   explicit Conversation(EchoRecord& record) : record_(record) {
@@ -160,7 +162,7 @@ class Conversation final : public grpc::ServerBidiReactor<ConverseRequest, Conve
   EchoRecord& record_;
   ConverseRequest request_;
   ConverseResponse response_;
-  std::mutex mutex_;  // between a cancellation and what is begun next
+  std::mutex mutex_;  // guards against a cancellation while the next operation begins
   std::uint64_t responses_left_ = 0;
   bool ended_ = false;
 };
@@ -246,11 +248,11 @@ grpc::ServerUnaryReactor* EchoService::Wait(grpc::CallbackServerContext*, const 
 
 std::unique_ptr<EchoSite> EchoSite::Start(const GatewayOptions& options) {
   // When its last object is gone, gRPC 1.51 often waits for a polling thread that sleeps up to 10
-  // s. Kept initialised, it does not.
+  // s. If gRPC stays initialised, it does not wait.
   static const bool is_kept = (grpc_init(), true);
   static_cast<void>(is_kept);
   std::unique_ptr<EchoSite> site(new EchoSite());
-  // In Linux's abstract namespace, which needs no file.
+  // The socket is in Linux's abstract namespace, which needs no file.
   static std::atomic<int> count = 0;
   const std::string address = absl::StrCat("unix-abstract:echo-", getpid(), "-", ++count);
   grpc::ServerBuilder builder;

@@ -31,7 +31,7 @@ class HeldCall {
   virtual void Release() = 0;
 };
 
-// The calls that may be held. Safe from any thread.
+// The calls that may be held. It is safe to use from any thread.
 class HeldCalls {
  public:
   void Add(HeldCall* call) {
@@ -78,14 +78,14 @@ class EchoService final : public Echo::CallbackService {
   HeldCalls held_;
 };
 
-// The service, its server and a gateway to it, by a Unix socket as in the program.
+// The service, its server and a gateway to it, connected by a Unix socket as in the program.
 class EchoSite {
  public:
   static std::unique_ptr<EchoSite> Start(const GatewayOptions& options = {});
   ~EchoSite();
 
   EchoRecord& Record() { return service_.Record(); }
-  // Lets the calls continue that are held by CountRequest.hold_after.
+  // Lets the calls continue that CountRequest.hold_after holds.
   void Release() { service_.Held().ReleaseAll(); }
   const Gateway& Front() const { return *gateway_; }
   uint16_t Port() const { return gateway_->Port(); }

@@ -1,4 +1,4 @@
-// A fixture with a gateway to the test service, which is started when a test first asks for it.
+// A fixture with a gateway to the test service, which starts when a test first uses it.
 #pragma once
 
 #include <chrono>
@@ -14,8 +14,9 @@ namespace thunderhead::gateway::test {
 
 class EchoTest : public ::testing::Test {
  protected:
-  // No limit of time is reached in a test, however slow the machine is, nor while a test in vain
-  // lets time pass. A test of one sets it, and mostly drives it by time_.
+  // Sets the timeouts so long that none expires in a test, however slow the machine is. A failing
+  // test that lets time pass does not reach them either. A test of a timeout sets it, and usually
+  // controls it by time_.
   EchoTest() {
     constexpr std::chrono::hours kNever{24 * 30};
     options_.idle_timeout = kNever;
@@ -31,7 +32,7 @@ class EchoTest : public ::testing::Test {
   }
   EchoRecord& Record() { return Site().Record(); }
 
-  // Puts the gateway's limits of time under time_.
+  // Makes the gateway's timeouts use time_.
   void DriveTime() { options_.time = &time_; }
   // Lets time pass until `condition()` is true.
   template <typename Condition>
@@ -45,9 +46,9 @@ class EchoTest : public ::testing::Test {
     return time_.Now() - begin;
   }
 
-  // The gateway and the server have handled another client's call meanwhile.
+  // Returns when the gateway and the server have handled another client's call.
   void LetOthersCall() { EXPECT_EQ(Call(Site().Port(), "Say", "").Trailer("grpc-status"), "0"); }
-  // Waits until handlers write no more responses, however many other calls are handled.
+  // Waits until handlers write no further responses, however many other calls are handled.
   void AwaitHandlersHeldBack() {
     constexpr int kCalls = 50;
     int before = -1;

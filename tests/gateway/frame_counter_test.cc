@@ -12,7 +12,7 @@ namespace {
 
 using Time = base::Allowance::Time;
 
-// A masked frame of a client: FIN and opcode in the first byte.
+// Returns a masked client frame, with FIN and opcode in the first byte.
 std::string FrameOf(unsigned char first, std::size_t payload) {
   std::string frame(1, static_cast<char>(first));
   if (payload < 126) {
@@ -32,7 +32,7 @@ class FrameCounterTest : public ::testing::Test {
   bool Take(const std::string& bytes) {
     return counter_.Take(std::as_bytes(std::span(bytes)), now_);
   }
-  // Frames until the first that is one too many; at most 1000.
+  // Returns the number of frames until the first refused frame; at most 1000.
   int FramesUntilRefused(const std::string& frame) {
     for (int i = 1; i <= 1000; ++i) {
       if (!Take(frame)) return i;
@@ -72,7 +72,7 @@ TEST_F(FrameCounterTest, ThoseOfTheLimitAreTakenForEver) {
 }
 
 TEST_F(FrameCounterTest, BytesMayComeInAnyPieces) {
-  // Messages whose payload looks like empty frames, byte by byte.
+  // The payload of the messages looks like empty frames, byte by byte.
   std::string stream;
   for (int i = 0; i < 300; ++i) stream += FrameOf(kBinary, 300);
   for (const char byte : stream) ASSERT_TRUE(Take(std::string(1, byte)));
@@ -85,8 +85,8 @@ TEST_F(FrameCounterTest, BytesMayComeInAnyPieces) {
 
 class FloodedWebSocketTest : public test::EchoTest {
  protected:
-  // Upgrades, sends `frames` as often as the server takes them, at most `most` times, and returns
-  // what the server answers after the upgrade until it ends the connection.
+  // Upgrades, then sends `frames` repeatedly, at most `most` times, until the server accepts none.
+  // Returns everything that the server answers after the upgrade until it ends the connection.
   std::string AnswerTo(const std::string& frames, int most) {
     test::RawClient client(Site().Port());
     client.Send(
@@ -106,7 +106,7 @@ class FloodedWebSocketTest : public test::EchoTest {
 const std::string kPolicyError = "\x03\xf0";
 
 TEST_F(FloodedWebSocketTest, EmptyFragmentsEndIt) {
-  // The first fragment holds the kind of a message.
+  // The first fragment contains the kind of the message.
   const std::string begin = FrameOf(0x02, 1);
   std::string empty;
   for (int i = 0; i < 1000; ++i) empty += FrameOf(kContinuation, 0);

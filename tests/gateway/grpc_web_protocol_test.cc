@@ -51,7 +51,7 @@ TEST(TakeSingleMessage, SaysWhatIsWrong) {
   EXPECT_THAT(error(Bytes({0, 0, 0, 0, 2, 'a'})).message().data(), HasSubstr("announces 2 bytes"));
   EXPECT_THAT(error(Bytes({0, 255, 255, 255, 255, 'a'})).message().data(),
               HasSubstr("announces 4294967295 bytes"));
-  // A second message.
+  // The body contains a second message.
   EXPECT_THAT(error(Bytes({0, 0, 0, 0, 0, 0, 0, 0, 0, 0})).message().data(),
               HasSubstr("5 bytes after its first message"));
   EXPECT_EQ(error(Bytes({1, 0, 0, 0, 0})).code(), absl::StatusCode::kUnimplemented);
@@ -106,7 +106,7 @@ TEST(RequestHeaders, OfHttpAndTheBrowserStayBehind) {
         "Accept-Language", "Sec-Fetch-Mode", "Referer"}) {
     EXPECT_THAT(Added(name, "x"), IsEmpty()) << name;
   }
-  // Not even with bytes that are invalid in metadata.
+  // The header is dropped even if its bytes are invalid in metadata.
   EXPECT_THAT(Added("Cookie", "caf\xc3\xa9"), IsEmpty());
 }
 
@@ -124,7 +124,7 @@ TEST(RequestHeaders, ThatBreakGrpcsRulesAreRefused) {
   EXPECT_THAT(metadata, IsEmpty());
 }
 
-// gRPC takes "-bin" alone for a name of text, and aborts the process where its value is not.
+// gRPC treats "-bin" alone as a name of text, and aborts the process if its value is not text.
 TEST(RequestHeaders, AreBinaryWhereGrpcTakesThemForBinary) {
   EXPECT_THAT(Added("-bin", "gzip"), ElementsAre(Pair("-bin", "gzip")));
   EXPECT_THAT(Added("a-bin", "AP8"), ElementsAre(Pair("a-bin", Bytes({0, 255}))));

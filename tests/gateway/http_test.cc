@@ -1,4 +1,5 @@
-// The gateway's port as HTTP: page, health, methods, hosts, origins and the life of connections.
+// Tests of the gateway's port over HTTP: page, health, methods, hosts, origins and the life of
+// connections.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/inotify.h>
@@ -35,7 +36,7 @@ class HttpTest : public EchoTest {
   HttpTest() {
     std::filesystem::create_directories(folder_.Path() / "assets");
     std::ofstream(folder_.File("index.html")) << "<html>storm</html>";
-    // Larger than the kernel's buffers.
+    // The file is larger than the kernel's buffers.
     std::ofstream(folder_.File("assets/big-1a2b.js")) << std::string(9'000'000, 'x');
     options_.page_directory = folder_.Path().string();
   }
@@ -77,7 +78,7 @@ TEST_F(HttpTest, AKeptFileThatWasSentToItsEndIsTold) {
     leaves.Close();
   }
   EXPECT_EQ(Ask("GET", "/results/key/1").result(), http::status::not_found);
-  Site().StopGateway();  // its thread tells
+  Site().StopGateway();  // its thread reports the refusals
   EXPECT_EQ(sent, 3);
 }
 
@@ -238,7 +239,7 @@ TEST_F(HttpTest, OnLoopbackForeignHostsAreRefused) {
                            "[::2]", "10.0.0.1", "localhost@example"}) {
     EXPECT_EQ(Ask("GET", "/", {{"Host", host}}).result(), http::status::forbidden) << host;
   }
-  // A call is refused before it is made.
+  // The gateway refuses the call before it makes it.
   const Response call =
       Ask("POST", "/thunderhead.gateway.test.Echo/Wait",
           {{"Host", "evil.example"}, {"Content-Type", "application/grpc-web"}}, Frame(""));
@@ -394,7 +395,7 @@ TEST_F(HttpTest, AddressesAreChecked) {
     return std::string(Gateway::Start(options, nullptr).status().message());
   };
   EXPECT_THAT(start("storms.example"), HasSubstr("'storms.example' is not an IP address"));
-  // Reserved for documentation, so no machine has it.
+  // The address is reserved for documentation, so no machine has it.
   EXPECT_THAT(start("192.0.2.1"), HasSubstr("choose an address of this machine"));
   EXPECT_EQ(start("localhost"), "");
 }

@@ -1,4 +1,5 @@
-// Files whose storage does not answer, by named pipes: opening one for reading waits for a writer.
+// Tests of files whose storage does not answer. They use named pipes: opening a pipe for reading
+// waits for a writer.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,13 +46,13 @@ class HungFilesTest : public EchoTest {
     };
   }
   ~HungFilesTest() override {
-    // The storage comes back: who waits in the kernel goes on.
+    // The storage answers again: the calls that wait in the kernel continue.
     const int storage = open(hung_.c_str(), O_RDWR | O_NONBLOCK);
     site_.reset();
     close(storage);
   }
 
-  // So many clients ask, and the gateway has their requests.
+  // Lets so many clients request the hung file, and waits until the gateway has their requests.
   std::vector<std::unique_ptr<RawClient>> AskHung(int count) {
     std::vector<std::unique_ptr<RawClient>> clients;
     for (int i = 0; i < count; ++i) {
@@ -77,8 +78,8 @@ TEST_F(HungFilesTest, OnlyWhoWantsThemWaits) {
   EXPECT_TRUE(viewer.Receive().has_value());
   EXPECT_EQ(Ask("/").body(), "<html>storm</html>");
   EXPECT_EQ(Call(Site().Port(), "Say", "").Trailer("grpc-status"), "0");
-  // As many as there are threads hang, and yet another result comes once they have hung for a
-  // while.
+  // As many requests hang as there are threads. Another result still arrives once they have hung
+  // for a while.
   RawClient fine(Site().Port());
   fine.Send("GET /results/fine/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(WaitWhileTimePasses([&] { return fine.HasInput(); }));
@@ -91,7 +92,7 @@ TEST_F(HungFilesTest, WhoWantsThemIsToldToTryAgain) {
   DriveTime();
   options_.file_timeout = std::chrono::seconds(10);
   const auto begin = time_.Now();
-  // More than may hang at once.
+  // More requests hang than may at once.
   const auto hung = AskHung(40);
   for (const auto& client : hung) {
     EXPECT_TRUE(WaitWhileTimePasses([&] { return client->HasInput(); }));
@@ -105,7 +106,7 @@ TEST_F(HungFilesTest, WhoWantsThemIsToldToTryAgain) {
 }
 
 TEST_F(HungFilesTest, TheGatewayEndsWithoutThem) {
-  // Static, as a thread that is left behind may still read it.
+  // The time is static because an abandoned thread may still read it.
   static WatchedTime time;
   options_.time = &time;
   const auto hung = AskHung(1);
@@ -114,7 +115,7 @@ TEST_F(HungFilesTest, TheGatewayEndsWithoutThem) {
     site_->StopGateway();
     is_stopped = true;
   });
-  // It leaves the thread behind after a few seconds.
+  // The gateway abandons the thread after a few seconds.
   EXPECT_TRUE(testing::WaitFor([&] {
     time.Advance(std::chrono::seconds(1));
     return is_stopped.load();
@@ -124,7 +125,7 @@ TEST_F(HungFilesTest, TheGatewayEndsWithoutThem) {
 }
 
 TEST_F(HungFilesTest, WhoCannotBeSentItsBeginningIsToldToTryAgain) {
-  // A file of the kernel's, which says that it is longer than what can be read of it.
+  // The kernel reports a size for this file that is larger than its readable contents.
   const std::string short_file = "/sys/kernel/address_bits";
   std::error_code error;
   if (std::filesystem::file_size(short_file, error) != 4096) {
@@ -139,7 +140,7 @@ TEST_F(HungFilesTest, WhoCannotBeSentItsBeginningIsToldToTryAgain) {
   EXPECT_EQ(answer.result(), http::status::service_unavailable);
   EXPECT_EQ(answer["Retry-After"], "10");
   EXPECT_FALSE(answer.count("Content-Range"));
-  // The connection goes on. What fails after the beginning ends it.
+  // The connection stays open. A failure after the beginning of a response ends it.
   client.Send("GET /results/short/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_EQ(client.ReadHeaders().result(), http::status::ok);
   EXPECT_TRUE(client.IsEnded());
@@ -153,7 +154,7 @@ TEST_F(HungFilesTest, PartsOfResultsAreSent) {
   EXPECT_EQ(part.result(), http::status::partial_content);
   EXPECT_EQ(part.body(), "ctu");
   EXPECT_EQ(part["Content-Range"], "bytes 2-4/7");
-  // Only GET has parts.
+  // Only GET supports ranges.
   for (const std::string range : {"bytes=2-4", "bytes=7-"}) {
     const Response head =
         RawClient(Site().Port()).Ask("HEAD", "/results/fine/0", {{"Range", range}});

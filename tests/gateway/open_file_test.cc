@@ -48,7 +48,7 @@ TEST_F(OpenFileTest, WhoLetsItGoDoesNotWaitForAStorageThatHangs) {
         until.wait();
         close(number);
       });
-  // More than there are threads. Without threads of the closer, the first would never end.
+  // These are more files than threads. Without the closer's own threads, the first would never end.
   for (int i = 0; i < 40; ++i) Open(closer);
   answers.set_value();
 }

@@ -8,7 +8,8 @@ namespace {
 using std::chrono::milliseconds;
 using Verdict = PeerLiveness::Verdict;
 
-// Pings after 100 ms, writes stall after 300 ms, closing takes at most 200 ms.
+// A fixture that pings after 100 ms, treats writes as stalled after 300 ms, and closes within 200
+// ms.
 class PeerLivenessTest : public ::testing::Test {
  protected:
   Verdict At(int ms) { return liveness_.Judge(seen_, begin_ + milliseconds(ms)); }
@@ -43,7 +44,8 @@ TEST_F(PeerLivenessTest, PeerThatStillTakesInWhatPrecedesThePingStays) {
   }
   seen_.delivered_bytes = 1002;
   EXPECT_EQ(At(1050), Verdict::kFine);
-  // From here on the peer has the ping, and receiving more bytes does not count as an answer.
+  // From here on the peer has received the ping, and further received bytes do not count as an
+  // answer.
   seen_.sent_bytes = seen_.delivered_bytes = 2000;
   EXPECT_EQ(At(1149), Verdict::kFine);
   seen_.sent_bytes = seen_.delivered_bytes = 3000;
@@ -96,7 +98,7 @@ TEST_F(PeerLivenessTest, ClosingEndsUnlessSomethingIsStillBeingDelivered) {
   EXPECT_EQ(At(50), Verdict::kFine);
   seen_.delivered_bytes = 1;
   EXPECT_EQ(At(200), Verdict::kFine);
-  // Bytes that the client still sends do not prolong it.
+  // Bytes that the client still sends do not prolong the wait.
   seen_.received_bytes = 1000;
   EXPECT_EQ(At(399), Verdict::kFine);
   EXPECT_EQ(At(400), Verdict::kDrop);

@@ -21,32 +21,35 @@ using Headers = std::vector<std::pair<std::string, std::string>>;
 
 class RawClient {
  public:
-  // `receive_buffer_bytes` above 0 limits the bytes that the kernel buffers for the client.
+  // Connects. `receive_buffer_bytes` above 0 limits the bytes that the kernel buffers for the
+  // client.
   explicit RawClient(uint16_t port, int receive_buffer_bytes = 0);
 
   void Send(const std::string& bytes);
-  // The same to a server that may close before it has read them all; false if it did.
+  // Sends the bytes to a server that may close before it has read them all. Returns false if it
+  // did.
   bool SendUntilClosed(const std::string& bytes);
-  // The next response; one to a HEAD request has no body.
+  // Reads the next response; a response to a HEAD request has no body.
   Response Read(bool to_head = false);
   // Sends a request with a Host header and reads its response.
   Response Ask(const std::string& method, const std::string& target, const Headers& headers = {},
                const std::string& body = "");
 
-  // A response whose body is read as it arrives.
+  // Reads the headers of a response whose body is read as it arrives.
   Response ReadHeaders();
-  // Reads until the body has `bytes` bytes, or has ended; returns the body so far.
+  // Reads until the body has `bytes` bytes, or has ended. Returns the body so far.
   const std::string& ReadBody(size_t bytes);
 
-  // True if the server ends the connection within the wait and sends nothing more.
+  // Returns true if the server ends the connection within the wait and sends nothing before.
   bool IsClosed();
-  // The same, whatever the server sends before.
+  // Returns true if the server ends the connection within the wait, whatever it sends before.
   bool IsEnded();
-  // All bytes that the server sends before the connection ends.
+  // Returns all bytes that the server sends before the connection ends.
   std::string ReadToEnd();
-  // True if bytes of the server, or its end of the connection, wait to be read.
+  // Returns true if bytes or the end of the connection can be read.
   bool HasInput();
-  // Sends what the kernel takes at once; also while another thread waits for the server.
+  // Sends the bytes that the kernel accepts at once. Another thread may wait for the server
+  // meanwhile.
   void SendNow(const std::string& bytes);
   void ShutdownSending();
   void Close();
@@ -56,7 +59,7 @@ class RawClient {
   template <typename Start>
   boost::system::error_code Await(Start start);
   boost::system::error_code Write(const std::string& bytes);
-  // Appends all bytes that come; returns why no more do.
+  // Appends all bytes that arrive. Returns the error that ended the reading.
   boost::system::error_code ReadInto(std::string* all);
 
   boost::asio::io_context io_;
@@ -65,24 +68,24 @@ class RawClient {
   std::unique_ptr<Parser> parser_;
 };
 
-// "POST" of a gRPC-Web call with its Host header and content type.
+// Returns the "POST" request of a gRPC-Web call with its Host header and content type.
 std::string CallRequest(const std::string& method, const std::string& body,
                         const Headers& headers = {});
 
-// `message` in a frame.
+// Returns `message` in a frame.
 std::string Frame(const std::string& message, uint8_t flags = 0);
 
 // The parsed body of a response.
 struct CallResult {
   std::vector<std::string> messages;
-  std::multimap<std::string, std::string> trailers;  // or the headers, if there is no body
+  std::multimap<std::string, std::string> trailers;  // from the headers if there is no body
   bool trailers_only = false;
 
   std::string Trailer(const std::string& name) const;
 };
 CallResult ParseResult(const Response& response);
 
-// One whole call on a connection of its own.
+// Makes one whole call on a separate connection.
 CallResult Call(uint16_t port, const std::string& method, const std::string& message,
                 const Headers& headers = {});
 

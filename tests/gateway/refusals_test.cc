@@ -1,4 +1,4 @@
-// Who is told of what the gateway refuses before there is a call.
+// Tests that the listener is notified of requests that the gateway refuses before there is a call.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class RefusalsTest : public EchoTest {
       peers_.push_back(refusal.peer);
     };
   }
-  // Ends the gateway, whose thread tells.
+  // Stops the gateway, because its thread reports refusals.
   ~RefusalsTest() override {
     if (started_) Site().StopGateway();
   }

@@ -1,5 +1,5 @@
-// Checks the prerequisites of the stock clients' test, reports what is missing, generates the messages' code and runs
-// the test.
+// Checks the prerequisites of the stock clients' test, reports missing ones, generates the messages' code and runs the
+// test.
 import { spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -19,7 +19,7 @@ const missing = needed.filter(([path]) => !existsSync(path));
 for (const [path, remedy] of missing) console.error(`The stock clients' test needs ${path}: ${remedy}.`);
 if (missing.length > 0) process.exit(1);
 
-// Below node_modules, so that the generated code finds its runtime and git does not find the code.
+// The folder is below node_modules, so that the generated code finds its runtime and git ignores the code.
 const generated = mkdtempSync(`${here}node_modules/.generated-`);
 try {
   // Node.js 18 treats a .js file as a module only if a package.json says so.

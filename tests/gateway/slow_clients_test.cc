@@ -1,4 +1,4 @@
-// Clients that open connections and say or read little lock nobody out.
+// Tests that clients which open connections but send or read little do not lock out other clients.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ class SilentSockets {
       const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
       sockets_.push_back(socket);
       EXPECT_EQ(connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-      // Fails where the server has already closed it.
+      // Sending fails if the server has already closed the socket.
       static_cast<void>(send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL));
     }
   }
@@ -80,9 +80,9 @@ class SlowClientsTest : public EchoTest {
   testing::TemporaryFolder folder_;
 };
 
-// Where a connection is locked out, it waits for a limit of time that no test reaches.
+// A connection that is locked out waits for a timeout that no test reaches.
 TEST_F(SlowClientsTest, HalfOpenSocketsLockNobodyOut) {
-  // As many as there may be, and twice as many again.
+  // There are as many connections as allowed, and twice as many again.
   const SilentSockets silent(Site().Port(), 768, "");
   LoadPage();
   const SilentSockets half_said(Site().Port(), 768, "GET / HTTP/1.1\r\nHo");
@@ -131,7 +131,7 @@ TEST_F(SlowClientsTest, Ipv4AndIpv6AreNotOneAddress) {
   address.sin6_port = htons(Site().Port());
   address.sin6_addr = in6addr_loopback;
   ASSERT_EQ(connect(v6, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-  // By IPv6 it is "::ffff:127.0.0.1".
+  // As an IPv6 address it is "::ffff:127.0.0.1".
   RawClient v4(Site().Port());
   EXPECT_EQ(v4.Ask("GET", "/").result(), http::status::ok);
   char byte = 0;
@@ -159,7 +159,7 @@ TEST_F(SlowClientsTest, CallsDoNotMakeRoom) {
 
 class DribblingTest : public SlowClientsTest {
  protected:
-  // Sends a byte each second until the server ends the connection; returns how long that takes.
+  // Sends a byte each second until the server ends the connection. Returns how long that takes.
   WatchedTime::Clock::duration Dribble(const std::string& bytes) {
     DriveTime();
     const auto begin = time_.Now();
@@ -193,15 +193,15 @@ TEST_F(DribblingTest, ABodyHasATimeHoweverOftenBytesCome) {
   EXPECT_EQ(Site().Record().started, 0);
 }
 
-// Time passes for a client that takes 30 MB, which it must do within 30 s and the time of the least
-// rate.
+// A fixture that lets time pass for a client that takes 30 MB. The client must do so within 30 s
+// plus the time at the minimum rate.
 class LeastRateTest : public SlowClientsTest {
  protected:
   LeastRateTest() {
     DriveTime();
     options_.header_timeout = seconds(10);
     options_.min_bytes_per_second = 1e9;
-    // It waits by the time to the end, which AwaitLooks() needs.
+    // This client waits by the time until the end, which AwaitLooks() needs.
     waiting_ = std::make_unique<RawClient>(Site().Port());
     EXPECT_EQ(waiting_->Ask("GET", "/healthz").result(), http::status::ok);
   }
@@ -215,7 +215,7 @@ class LeastRateTest : public SlowClientsTest {
     client.ReadBody(15'000'000);
     time_.Advance(seconds(2));
     EXPECT_TRUE(time_.AwaitLooks());
-    // The kernel holds fewer bytes than the rest.
+    // The kernel buffers fewer bytes than the rest.
     EXPECT_ANY_THROW(client.ReadBody(30'000'000));
   }
 
@@ -228,7 +228,7 @@ TEST_F(LeastRateTest, OfAFile) {
   TakesTooLong(client);
 }
 
-// A request of Count for messages of that size.
+// Returns a request of Count for messages of that size.
 std::string Sized(uint32_t count, uint32_t payload_bytes) {
   CountRequest request;
   request.set_count(count);
@@ -246,7 +246,7 @@ TEST_F(LeastRateTest, OfAnAnswer) {
 TEST_F(LeastRateTest, OfMessagesOfAWebSocket) {
   WebSocketClient client(Site().Port(), {"Count", {}, /*receive_buffer_bytes=*/16 << 10});
   client.Send(std::string(1, '\0') + Sized(20, 3'000'000));
-  // It takes none of them. The limit counts from a message's beginning.
+  // The client takes none of the messages. The timeout counts from the beginning of a message.
   ASSERT_TRUE(WaitFor([&] { return Record().written > 0; }));
   const auto begin = time_.Now();
   EXPECT_TRUE(WaitWhileTimePasses([&] { return Record().cancelled == 1; }));
@@ -265,14 +265,14 @@ TEST_F(SlowClientsTest, AnswersThatNobodyTakesHaveALimitInAll) {
   viewer.Send(std::string(1, '\0') + Sized(1, 30'000'000));
   EXPECT_THAT(viewer.Receive().value_or(""), ::testing::HasSubstr("grpc-status:8"));
   EXPECT_EQ(Call(Site().Port(), "Count", Sized(1, 10'000'000)).Trailer("grpc-status"), "0");
-  // It has had its time.
+  // The client's time is over.
   time_.Advance(milliseconds(5500));
   const CallResult result = Call(Site().Port(), "Count", Sized(1, 30'000'000));
   EXPECT_EQ(result.Trailer("grpc-status"), "0");
   EXPECT_TRUE(hoarder.IsEnded());
 }
 
-// Debian's slowhttptest, in its modes of slow headers, bodies and reading.
+// Runs Debian's slowhttptest, in its modes of slow headers, bodies and reading.
 TEST_F(SlowClientsTest, Slowhttptest) {
   const char* const program = "/usr/bin/slowhttptest";
   if (!std::filesystem::exists(program)) {

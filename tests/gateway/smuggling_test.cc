@@ -1,5 +1,5 @@
-// Requests that a proxy in front could understand otherwise than the gateway. What follows such a
-// request on its connection is never answered.
+// Tests of requests that a proxy in front could interpret differently from the gateway. Bytes after
+// such a request on its connection are never answered.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -17,7 +17,7 @@ const std::string kNext = "GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnectio
 
 class SmugglingTest : public EchoTest {
  protected:
-  // Returns all that the server answers before it ends the connection.
+  // Returns everything that the server answers before it ends the connection.
   std::string AnswersTo(const std::string& bytes) {
     RawClient client(Site().Port());
     client.SendUntilClosed(bytes);
@@ -28,7 +28,8 @@ class SmugglingTest : public EchoTest {
     const std::string answers = AnswersTo(bytes + kNext);
     EXPECT_TRUE(answers.starts_with("HTTP/1.1 400") || answers.starts_with("HTTP/1.0 400"))
         << bytes << answers;
-    // The text of an answer names versions of HTTP, too, but ends in a full stop and a line break.
+    // The text of an answer may also name versions of HTTP, but not after a full stop and a line
+    // break.
     EXPECT_EQ(answers.find(".\nHTTP/1."), std::string::npos) << "a second answer: " << answers;
     EXPECT_TRUE(answers.ends_with(".\n")) << answers;
   }
@@ -66,7 +67,7 @@ TEST_F(SmugglingTest, RepeatedHostAndOriginAreRefused) {
   ExpectRefused(kPost + kHost + kType + kType + "Content-Length: 5\r\n\r\n" + Frame(""));
 }
 
-// Nothing here would decode it.
+// The gateway would not decode the body.
 TEST_F(SmugglingTest, AnEncodedBodyIsRefused) {
   for (const std::string coding : {"gzip", "deflate", "gzip, identity"}) {
     ExpectRefused(kPost + kHost + kType + "Content-Encoding: " + coding +
@@ -83,7 +84,7 @@ TEST_F(SmugglingTest, APortThatIsNoNumberIsRefused) {
 }
 
 TEST_F(SmugglingTest, APlainRequestIsAnswered) {
-  // A client that ends its side of the connection ends its call, so this one does not.
+  // If a client ends its side of the connection, its call ends, so this client does not.
   RawClient client(Site().Port());
   client.Send(kPost + "Host: localhost:8080\r\n" + kType +
               "Transfer-Encoding: Chunked\r\n\r\n5\r\n" + Frame("") + "\r\n0\r\n\r\n" + kNext);

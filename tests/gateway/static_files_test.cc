@@ -19,7 +19,7 @@ void Write(const fs::path& path, const std::string& text) {
   std::ofstream(path) << text;
 }
 
-// A page next to secret files that no request may reach.
+// A fixture with a page next to secret files that no request may reach.
 class StaticFilesTest : public ::testing::Test {
  protected:
   StaticFilesTest() {
@@ -29,7 +29,7 @@ class StaticFilesTest : public ::testing::Test {
     Write(root_ / "a b.txt", "spaced");
     Write(root_ / ".built", "hidden");
     Write(folder_.Path() / "secret.txt", "secret");
-    // Its name begins with the page's.
+    // The name of this folder begins with the page's name.
     Write(folder_.Path() / "page-secret/key", "secret");
     fs::create_symlink(folder_.Path() / "secret.txt", root_ / "leak.txt");
     fs::create_directory_symlink(folder_.Path() / "page-secret", root_ / "leak");
@@ -52,7 +52,7 @@ TEST_F(StaticFilesTest, FindsThePageAndItsFiles) {
   EXPECT_EQ(Find("/favicon.svg")->content_type, "image/svg+xml");
   EXPECT_EQ(Find("/assets/index-Ab12.js")->content_type, "text/javascript; charset=utf-8");
   EXPECT_TRUE(Find("/a%20b.txt").has_value());
-  // A link within the page is a file like any other.
+  // A link within the page works like any other file.
   EXPECT_TRUE(Find("/alias.svg").has_value());
 }
 

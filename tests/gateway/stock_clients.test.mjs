@@ -1,4 +1,4 @@
-// The gateway with third-party clients from npm: connect-web (as in the page), connect-node, grpc-web and, for
+// Tests of the gateway with third-party clients from npm: connect-web (as in the page), connect-node, grpc-web and, for
 // bidirectional calls, ws. They do not know the gateway, and the gateway does not know their messages.
 import assert from "node:assert/strict";
 import { once } from "node:events";
@@ -14,14 +14,14 @@ import WebSocket from "ws";
 import xhr2 from "xhr2";
 import { startEchoServer } from "./echo_server_process.mjs";
 
-// The code generated from echo.proto and from google.rpc as the server has it.
+// Imports the code generated from echo.proto and from the server's version of google.rpc.
 const generated = (name) => import(pathToFileURL(`${process.env.THUNDERHEAD_GENERATED}/${name}_pb.js`));
 const { ConverseRequestSchema, ConverseResponseSchema } = await generated("echo");
 const { Echo, SayRequestSchema, SayResponseSchema, FailRequestSchema, WaitRequestSchema } = await generated("echo");
 const { StatusSchema } = await generated("google/rpc/status");
 const { BadRequestSchema, ErrorInfoSchema, RetryInfoSchema } = await generated("google/rpc/error_details");
 
-// grpc-web is made for browsers; xhr2 is their XMLHttpRequest for Node.js.
+// grpc-web is made for browsers; xhr2 provides their XMLHttpRequest in Node.js.
 globalThis.XMLHttpRequest = xhr2.XMLHttpRequest ?? xhr2;
 const grpcWeb = (await import("grpc-web")).default;
 
@@ -37,7 +37,7 @@ async function eventually(condition) {
   assert.fail("what was waited for did not happen");
 }
 
-// The server's counts once no call is running: a call that a client has cancelled ends a moment later.
+// Returns the server's counts once no call is running: a call that a client has cancelled ends a moment later.
 async function recordAtRest(server) {
   let record;
   await eventually(async () => {
@@ -47,7 +47,7 @@ async function recordAtRest(server) {
   return record;
 }
 
-// Makes the call with longer and longer deadlines until one leaves it the time to reach its handler.
+// Makes the call with longer and longer deadlines until one leaves it time to reach its handler.
 async function longEnough(server, before, call) {
   for (let timeoutMs = 500; (await server.record()).started === before.started; timeoutMs *= 2) {
     assert.ok(timeoutMs < HANG_LIMIT_MS, "no call reached its handler");
@@ -106,7 +106,7 @@ for (const [name, createTransport] of Object.entries(transports)) {
       const leave = new AbortController();
       for await (const _ of client.count({ count: 2, holdAfter: 1 }, { signal: leave.signal })) {
         seen += 1;
-        // The server holds the second back.
+        // The server holds the second response back.
         assert.equal((await server.record()).done, before.done, "the first came with the last");
         break;
       }
@@ -115,7 +115,7 @@ for (const [name, createTransport] of Object.entries(transports)) {
     });
 
     test("an error has its code, message, details and trailers", async () => {
-      // google.rpc.Status with the code, the message and no details.
+      // The bytes are a google.rpc.Status with the code, the message and no details.
       const details = new Uint8Array([0x08, 5, 0x12, 1, 0x78]);
       const error = await failureOf(client.failOnce({ code: 5, message: "kein Sturm: 100 % ☀\n", details }));
       assert.equal(error.code, Code.NotFound);
@@ -136,7 +136,7 @@ for (const [name, createTransport] of Object.entries(transports)) {
         anyPack(BadRequestSchema, create(BadRequestSchema, { fieldViolations: [violation] })),
       ];
       const status = toBinary(StatusSchema, create(StatusSchema, { code: 3, message, details }));
-      // One after the other: one that fails while nobody waits for it ends the program.
+      // The calls run one after the other, because a call that fails before the test awaits it ends the program.
       for (const call of [
         () => client.failOnce({ code: 3, message, details: status }),
         () => collect(client.fail({ code: 3, message, messages: 2, details: status })),
@@ -242,7 +242,7 @@ for (const [name, createTransport] of Object.entries(transports)) {
   });
 }
 
-// In its binary format grpc-web supports only unary calls: it waits for the whole body, and streams only as
+// In its binary format grpc-web supports only unary calls: it waits for the whole body. It streams only as
 // grpc-web-text, which the gateway does not support.
 describe("grpc-web", () => {
   let server;
@@ -262,7 +262,7 @@ describe("grpc-web", () => {
       (message) => toBinary(request, message),
       (bytes) => fromBinary(response, bytes),
     );
-  // The callback reports the call's end; the status of one that succeeds is a separate event, before or after it.
+  // The callback reports the end of the call. The status of a successful call is a separate event, before or after it.
   const call = (descriptor, request, metadata = {}) =>
     new Promise((resolve) => {
       const outcome = {};
@@ -313,7 +313,7 @@ describe("grpc-web", () => {
   });
 });
 
-// In the format of server/gateway/websocket_protocol.h.
+// The messages have the format of server/gateway/websocket_protocol.h.
 describe("ws", () => {
   const [MESSAGE, HALF_CLOSE, TRAILERS] = [0x00, 0x01, 0x80];
   let server;

@@ -1,4 +1,4 @@
-// The gateway's port by TLS: page, calls, WebSockets, and a certificate that changes.
+// Tests of the gateway's port over TLS: page, calls, WebSockets, and a certificate that changes.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ namespace websocket = boost::beast::websocket;
 using net::ip::tcp;
 using ::testing::HasSubstr;
 
-// A client that trusts the certificate in a file alone.
+// A client that trusts only the certificate in a file.
 class TlsClient {
  public:
   using Stream = net::ssl::stream<tcp::socket>;
@@ -62,7 +62,7 @@ class TlsClient {
     http::write(socket_->next_layer(), request);
     Response response;
     http::response_parser<http::string_body> parser;
-    // boost::none refuses every body that comes after its header in Beast 1.74.
+    // In Beast 1.74, boost::none refuses every body that arrives after its header.
     parser.body_limit(std::numeric_limits<uint64_t>::max());
     http::read(socket_->next_layer(), buffer_, parser);
     return parser.release();
@@ -76,9 +76,9 @@ class TlsClient {
     socket_->binary(true);
   }
 
-  // Sends one message of the size and returns that of the answer.
+  // Sends one message of the size and returns the size of the answer.
   size_t Converse(size_t bytes) {
-    // A ConverseRequest with text.
+    // The message is a ConverseRequest with text.
     std::string message = std::string("\0\x0a", 2);
     for (size_t rest = bytes; true; rest >>= 7) {
       message += static_cast<char>((rest & 0x7f) | (rest > 0x7f ? 0x80 : 0));
@@ -115,13 +115,13 @@ class TlsTest : public EchoTest {
   void WriteSelfSigned(const std::string& certificate, const std::string& key, long serial) {
     testing::WriteSelfSigned(certificate, key, serial);
   }
-  // Waits until new connections see the certificate of that number, which is in the file.
+  // Waits until new connections see the certificate with that serial number, which is in the file.
   bool AwaitSerial(long serial, const std::string& file) {
     return WaitWhileTimePasses([&] {
       try {
         return TlsClient(site_->Port(), file).Serial() == serial;
       } catch (const boost::system::system_error&) {
-        return false;  // it does not trust what it sees
+        return false;  // it does not trust the certificate that it sees
       }
     });
   }
@@ -156,7 +156,7 @@ TEST_F(TlsTest, CurlTrustsIt) {
   ASSERT_EQ(std::system(command.c_str()), 0) << "is Debian's package curl installed?";
   std::ifstream file(answer);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "<html>storm</html>");
-  // Without trust in it, curl refuses.
+  // curl does not trust the certificate, so it refuses.
   EXPECT_NE(std::system(
                 absl::StrCat("curl --silent --max-time 600 https://localhost:", site_->Port(), "/")
                     .c_str()),
@@ -167,7 +167,7 @@ TEST_F(TlsTest, ANewCertificateIsForNewConnections) {
   TlsClient old(site_->Port(), Certificate());
   EXPECT_EQ(old.Serial(), 1);
   old.Upgrade();
-  // The new key alone does not fit the old certificate, so that stays.
+  // The new key alone does not match the old certificate, so the old pair stays in use.
   testing::WriteSelfSigned(folder_.File("new.pem"), Key(), 2);
   for (int i = 0; i < 3; ++i) {
     time_.Advance(std::chrono::seconds(1));
@@ -184,7 +184,7 @@ TEST_F(TlsTest, ACertificateWhoseStorageHangsHoldsUpNobody) {
   testing::WriteSelfSigned(folder_.File("kept.pem"), folder_.File("kept_key.pem"), 2);
   std::filesystem::copy_file(Certificate(), folder_.File("trusted.pem"));
   std::filesystem::copy_file(folder_.File("kept.pem"), folder_.File("next.pem"));
-  // A pipe that nobody writes to hangs as it is opened.
+  // Opening a pipe without a writer hangs.
   std::filesystem::remove(Certificate());
   ASSERT_EQ(mkfifo(Certificate().c_str(), 0600), 0);
   for (int i = 0; i < 5; ++i) {
@@ -193,7 +193,7 @@ TEST_F(TlsTest, ACertificateWhoseStorageHangsHoldsUpNobody) {
     EXPECT_EQ(TlsClient(site_->Port(), folder_.File("trusted.pem")).Serial(), 1);
   }
   EXPECT_EQ(old.Get("/").result(), http::status::ok);
-  // It answers again, and the next certificate counts.
+  // The file answers again, and the next certificate is used.
   { const base::FileDescriptor writer(open(Certificate().c_str(), O_RDWR | O_NONBLOCK)); }
   std::filesystem::rename(folder_.File("kept_key.pem"), Key());
   std::filesystem::rename(folder_.File("kept.pem"), Certificate());
@@ -216,10 +216,10 @@ TEST_F(TlsTest, OneAddressHasSoManyHandshakesASecond) {
       TlsClient client(site_->Port(), Certificate());
       ++shaken;
     } catch (const boost::system::system_error&) {
-      // It was closed.
+      // The connection was closed.
     }
   }
-  // Twice as many at once.
+  // Twice as many connections are opened at once.
   EXPECT_EQ(shaken, 10);
   EXPECT_EQ(refused, 30);
   time_.Advance(std::chrono::milliseconds(250));

@@ -1,4 +1,4 @@
-// A manual time that knows how often it was looked at.
+// A manual time that counts how often it was read.
 #pragma once
 
 #include <atomic>
@@ -15,9 +15,9 @@ class WatchedTime : public testing::ManualTime {
     return ManualTime::LookAgainAt(deadline);
   }
 
-  // Waits until those that wait by this time have looked at it often enough that each has acted on
-  // the present time. Needs one that waits, and suits a test with few of them. The gateway handles
-  // its sockets and its timers on one thread, so what reached its sockets before is handled too.
+  // Waits until every waiter of this time has read it often enough to have handled the present
+  // time. It needs at least one waiter, and suits tests with few of them. The gateway handles its
+  // sockets and its timers on one thread, so input that reached its sockets before is handled too.
   bool AwaitLooks() const {
     constexpr long kLooks = 20;
     const long wanted = looks_ + kLooks;

@@ -1,6 +1,6 @@
-// A WebSocket client for tests, with nothing of grpc-websocket.v1 but the subprotocol's name. It
-// reads, and answers pings and closing, only within Receive() and the like. Every wait ends after
-// testing::kHangLimit.
+// A WebSocket client for tests. Of grpc-websocket.v1 it knows only the subprotocol's name. It
+// reads, and answers pings and closing, only within Receive() and similar functions. Every wait
+// ends after testing::kHangLimit.
 #pragma once
 
 #include <atomic>
@@ -31,38 +31,38 @@ class WebSocketClient {
   explicit WebSocketClient(uint16_t port) : WebSocketClient(port, Options()) {}
   WebSocketClient(uint16_t port, const Options& options);
 
-  // Sends a binary message whole.
+  // Sends a whole binary message.
   void Send(const std::string& message);
   // Sends a message while Receive() runs.
   void SendLater(const std::string& message);
   void SendText(const std::string& message);
-  // Sends a message until the server accepts none however often it does something else, which
-  // `elsewhere` makes it do; returns how many it accepted.
+  // Sends a message repeatedly until the server accepts none, even after it has handled other work,
+  // which `elsewhere` causes. Returns how many it accepted.
   int SendUntilHeldBack(const std::string& message, int most,
                         const std::function<void()>& elsewhere);
-  // The next message; none if the connection has ended, with CloseCode().
+  // Returns the next message; none if the connection has ended, with CloseCode().
   std::optional<std::string> Receive();
   // Reads all messages until the connection ends.
   std::deque<std::string> ReceiveAll();
-  // The server's close code; 1006 if the connection ended without one.
+  // Returns the server's close code; 1006 if the connection ended without one.
   int CloseCode();
   std::string CloseText();
 
-  // Closes the WebSocket by its handshake.
+  // Closes the WebSocket with the closing handshake.
   void Close();
-  // Closes the connection without a word.
+  // Closes the connection without a closing handshake.
   void Vanish() { socket_.next_layer().close(); }
-  // True if the connection ends within the wait, though this client answers nothing.
+  // Returns true if the connection ends within the wait, although this client answers nothing.
   bool IsCut();
 
-  // Pings that were answered. From any thread.
+  // Returns the number of pings that were answered. It may be called from any thread.
   int PingsAnswered() const { return pings_answered_; }
-  // Bytes that the kernel keeps for this client.
+  // Returns the number of bytes that the kernel buffers for this client.
   int UnreadBytes();
-  // True if the kernel has acknowledged all that the gateway has sent, which it does up to 200 ms
-  // later. Needs a gateway in this process.
+  // Returns true if the kernel has acknowledged everything that the gateway has sent, which it does
+  // up to 200 ms later. Needs a gateway in this process.
   bool HasAcknowledged();
-  // True if the server has ended the connection.
+  // Returns true if the server has ended the connection.
   bool HasHungUp();
 
  private:

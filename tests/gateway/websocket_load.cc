@@ -1,6 +1,8 @@
-// Many viewers of one stream by WebSocket: how much one gateway thread carries. Each client starts
-// a call that sends messages at a rate, and reads whatever comes; one of them may stop reading.
-// Prints messages a second, the processor time of the gateway's thread and of all, and delays.
+// Measures the capacity of one gateway thread with many viewers of one stream by WebSocket. Each
+// client starts a call that sends messages at a rate, and reads them; some clients may stop
+// reading. Prints messages per second, the processor time of the gateway's thread and of all
+// threads, and delays.
+//
 // Arguments: [clients] [messages a second] [bytes a message] [seconds] [clients that stop reading]
 #include <sys/resource.h>
 #include <time.h>
@@ -40,7 +42,7 @@ struct Tally {
   std::vector<double> late_ms;
 };
 
-// Reads a message every so often; each is late by the time since it was due.
+// A client that reads a message at each interval. A message is late by the time since it was due.
 class Viewer {
  public:
   Viewer(net::io_context& io, uint16_t port, const Load& load, bool is_stopped, Tally& tally)
@@ -70,7 +72,7 @@ class Viewer {
       }
       const auto now = Clock::now();
       ++tally_.messages;
-      // The pause begins when the message before was written, so what counts is the gap.
+      // The pause begins when the previous message was written, so the gap between messages counts.
       if (last_ != Clock::time_point()) {
         const std::chrono::duration<double, std::milli> gap = now - last_;
         tally_.late_ms.push_back(std::max(0.0, gap.count() - interval_ms_));

@@ -1,4 +1,4 @@
-// Calls by WebSocket, seen from Beast's client on one side and from the handlers on the other.
+// Tests of calls by WebSocket, from Beast's client on one side and from the handlers on the other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ std::string PayloadOf(const std::optional<std::string>& message) {
 
 using TrailerMap = std::map<std::string, std::string>;
 
-// The trailers in the last message, which must follow `responses` others.
+// Returns the trailers in the last message, which must follow `responses` others.
 TrailerMap TrailersAfter(size_t responses, WebSocketClient& client) {
   const std::deque<std::string> messages = client.ReceiveAll();
   EXPECT_EQ(messages.size(), responses + 1);
@@ -245,7 +245,7 @@ TEST_F(WebSocketTest, DeadlinesEndCalls) {
 }
 
 TEST_F(WebSocketTest, ClosingCancelsTheCall) {
-  DriveTime();  // no limit of time does it
+  DriveTime();  // no timeout ends it
   WebSocketClient client(Site().Port());
   client.Send(Saying("hello"));
   EXPECT_EQ(PayloadOf(client.Receive()), "hello");
@@ -255,7 +255,7 @@ TEST_F(WebSocketTest, ClosingCancelsTheCall) {
 }
 
 TEST_F(WebSocketTest, VanishingCancelsTheCall) {
-  DriveTime();  // no limit of time does it
+  DriveTime();  // no timeout ends it
   WebSocketClient client(Site().Port());
   client.Send(Saying("hello"));
   EXPECT_EQ(PayloadOf(client.Receive()), "hello");
@@ -264,7 +264,7 @@ TEST_F(WebSocketTest, VanishingCancelsTheCall) {
 }
 
 TEST_F(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
-  // The end of the connection is behind messages that are not read; only a ping finds it.
+  // The end of the connection is behind messages that are not read, so only a ping detects it.
   DriveTime();
   options_.websocket_ping_interval = seconds(15);
   WebSocketClient client(Site().Port());
@@ -276,12 +276,12 @@ TEST_F(WebSocketTest, VanishingIsNoticedWhileTheServerReadsNothing) {
 }
 
 TEST_F(WebSocketTest, VanishingBehindFewMessagesNeedsNoPing) {
-  DriveTime();  // no limit of time does it
+  DriveTime();  // no timeout ends it
   WebSocketClient client(Site().Port());
   client.Send(ReadingNoMore());
   ASSERT_EQ(PayloadOf(client.Receive()), "");
-  // Fewer bytes than the kernel keeps for a connection that is not read: the end arrives behind
-  // them.
+  // These are fewer bytes than the kernel buffers for a connection that is not read, so the end
+  // arrives behind them.
   SendUntilHeldBack(client, Saying(std::string(10'000, 'x')), 5);
   client.Vanish();
   EXPECT_TRUE(AllCancelled(1));
@@ -317,7 +317,7 @@ TEST_F(WebSocketTest, WhoNeverStopsSendingWhatIsTooLargeIsCutOff) {
   RawClient client(Site().Port());
   Upgrade(client);
   ASSERT_TRUE(WaitFor([&] { return Record().started == 1; }));
-  // The head of a masked binary frame of 2^40 bytes.
+  // The bytes are the head of a masked binary frame of 2^40 bytes.
   client.Send(std::string("\x82\xff\x00\x00\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00", 14) +
               kMessage);
   EXPECT_TRUE(AllCancelled(1));
@@ -350,10 +350,11 @@ TEST_F(WebSocketTest, BrokenRulesCloseWithTheirCode) {
   EXPECT_TRUE(WaitFor([&] { return Record().done == Record().started; }));
 }
 
-// These clients read and close nothing afterwards.
+// These clients neither read nor close anything afterwards.
 TEST_F(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
-  DriveTime();  // no limit of time does it
-  // Frames of clients must be masked: 1002, a protocol error. A close frame is answered by 1000.
+  DriveTime();  // no timeout ends it
+  // Client frames must be masked, so the first is answered with 1002, a protocol error. A close
+  // frame is answered with 1000.
   const std::pair<std::string, std::string> last_words[] = {{{"\x82\x01\x00", 3}, "\x03\xea"},
                                                             {{"\x88\x80\0\0\0\0", 6}, "\x03\xe8"}};
   for (const auto& [bytes, answer] : last_words) {
@@ -369,24 +370,24 @@ TEST_F(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
   }
 }
 
-// The masked frame of a client, of at most 125 bytes.
+// Returns a masked client frame of at most 125 bytes.
 std::string ClientFrame(const std::string& payload) {
   return std::string("\x82") + static_cast<char>(0x80 | payload.size()) + std::string(4, '\0') +
          payload;
 }
 
-// Beast 1.74 never ends a read that finds a broken frame while a close frame is being written, nor
-// the closing that waits for it: such a connection would stay, and keep the gateway from stopping.
-// It was one in sixty of these.
+// Beast 1.74 never ends a read that finds a broken frame while a close frame is being written. The
+// close that waits for the read does not end either. Such a connection would stay open, and keep
+// the gateway from stopping. This happened in one of sixty of these connections.
 TEST_F(WebSocketTest, ABrokenFrameBesideTheGatewaysCloseFrameEndsTheConnection) {
-  DriveTime();  // no limit of time does it
+  DriveTime();  // no timeout ends it
   constexpr int kConnections = 1000;
   for (int i = 0; i < kConnections; ++i) {
     RawClient client(Site().Port());
     Upgrade(client);
     client.Send(ClientFrame(Ending(0, "")));
-    // The answer, and with it the close frame, is pending. Nothing is waited for: the sleep only
-    // varies the moment at which the broken frame comes.
+    // The answer, and with it the close frame, is pending. The sleep does not wait for anything; it
+    // only varies the moment at which the broken frame arrives.
     std::this_thread::sleep_for(std::chrono::microseconds(i % 500));
     client.SendUntilClosed(std::string("\x82\x01\x00", 3));
     client.ShutdownSending();
@@ -465,10 +466,11 @@ TEST_F(WebSocketTest, SlowReaderHoldsTheHandlerBack) {
   WebSocketClient client(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
   client.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
   AwaitHandlersHeldBack();
-  // Of 200 MB, what the kernel buffers for a client that reads nothing (tcp_wmem: mostly 4 MB, 42
-  // messages) and gRPC's windows, which grow with speed (24 messages were seen).
+  // Only a part of the 200 MB may be written. The limit allows for what the kernel buffers for a
+  // client that reads nothing (tcp_wmem: mostly 4 MB, 42 messages). It also allows for gRPC's
+  // windows, which grow with speed (24 messages were seen).
   EXPECT_LT(Record().written, 100);
-  // It continues when the client does.
+  // The call continues when the client does.
   for (int i = 0; i < 200; ++i) ASSERT_EQ(PayloadOf(client.Receive()).size(), 100'000u);
   EXPECT_GE(Record().written, 190);
 }
@@ -477,7 +479,8 @@ TEST_F(WebSocketTest, SlowHandlerHoldsTheClientBack) {
   WebSocketClient client(Site().Port());
   client.Send(ReadingNoMore());
   ASSERT_EQ(PayloadOf(client.Receive()), "");
-  // Of 300 MB, what the kernel's buffers, gRPC's windows and the gateway's one message hold.
+  // Only a part of the 300 MB may be accepted: what the kernel's buffers, gRPC's windows and the
+  // gateway's one message hold.
   EXPECT_LT(SendUntilHeldBack(client, Saying(std::string(100'000, 'x')), 3000), 150);
   EXPECT_EQ(Record().read, 1);
 }
@@ -489,7 +492,7 @@ TEST_F(WebSocketTest, ClientHeldBackIsNotTakenForSilent) {
   client.Send(ReadingNoMore());
   ASSERT_EQ(PayloadOf(client.Receive()), "");
   SendUntilHeldBack(client, Saying(std::string(100'000, 'x')), 3000);
-  // The pings are acknowledged by its kernel. That a ping follows shows that the one before did not
+  // The client's kernel acknowledges the pings. A further ping shows that the previous ping did not
   // count as unanswered.
   for (int ping = 0; ping < 4; ++ping) {
     const int before = client.UnreadBytes();
@@ -506,8 +509,8 @@ TEST_F(WebSocketTest, ReaderThatTakesNothingIsCut) {
   options_.write_stall_timeout = seconds(20);
   WebSocketClient client(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
   client.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
-  // A reader that is slow stays. What it reads at a time is more than buffers hold, so the gateway
-  // has written some of it since the time moved.
+  // A slow reader keeps its connection. It reads more at a time than the buffers hold, so the
+  // gateway has written some of it since the time advanced.
   for (int round = 0; round < 3; ++round) {
     time_.Advance(seconds(15));
     for (int i = 0; i < 200; ++i) ASSERT_EQ(PayloadOf(client.Receive()).size(), 100'000u);
@@ -557,7 +560,7 @@ TEST_F(WebSocketTest, QuietPeerThatAnswersPingsStays) {
   request.set_hold_after(0);
   client.Send(kMessage + request.SerializeAsString());
   ASSERT_TRUE(WaitFor([&] { return Record().started == 1; }));
-  // Reads, and so answers pings, for ten times as long.
+  // The client reads, and so answers pings, for ten times as long.
   std::thread reading([&] { EXPECT_EQ(TrailersAfter(1, client)["grpc-status"], "0"); });
   for (int ping = 1; ping <= 10; ++ping) {
     EXPECT_TRUE(time_.AwaitLooks());
@@ -596,7 +599,7 @@ TEST_F(WebSocketTest, StoppingTheGatewayClosesWithGoingAway) {
     is_stopped = true;
   });
   EXPECT_EQ(polite.CloseCode(), 1001);
-  // The others have a second to answer.
+  // The other clients have a second to answer.
   const auto begin = time_.Now();
   EXPECT_FALSE(is_stopped);
   EXPECT_TRUE(WaitWhileTimePasses([&] { return is_stopped.load(); }));

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kRadius_m = 100.0;
 constexpr int kSide_px = 96;
-// Buffers are half floats, of 11 bits.
+// Buffers are half floats with 11 significant bits.
 constexpr double kHalfFloat = 1.0 / 1024.0;
 
 class CumulusRendererTest : public testing::Test {
@@ -49,7 +49,7 @@ class CumulusRendererTest : public testing::Test {
     context_.reset();
   }
 
-  // From the south, without perspective, `half_m` to each side.
+  // Looks from the south, without perspective, `half_m` to each side.
   void LookParallel(double half_m) {
     settings_.view = {};
     settings_.view.eye_m = {0.0, -1000.0, 0.0};
@@ -76,7 +76,8 @@ class CumulusRendererTest : public testing::Test {
 
   scene::Cumulus& Cumulus() { return test_support::CumulusOf(settings_.technique); }
 
-  // Texels of the eye buffer: rgb sent, share of the background that passes.
+  // Returns the texels of the eye buffer: rgb is the radiance sent, alpha the share of the
+  // background that passes.
   std::vector<glm::vec4> Draw(const clouds::CumulusSurface& surface,
                               const std::vector<glm::vec3>& light_map) {
     renderer_->SetSurface(surface);
@@ -92,7 +93,7 @@ class CumulusRendererTest : public testing::Test {
     return Draw(surface, std::vector<glm::vec3>(9, glm::vec3(0.0F)));
   }
 
-  // The ray of a texel.
+  // The ray through a texel.
   struct Ray {
     glm::dvec3 origin_m;
     glm::dvec3 direction;
@@ -109,7 +110,7 @@ class CumulusRendererTest : public testing::Test {
   struct Hit {
     bool is = false;
     glm::dvec3 normal{0.0};
-    double depth_m = 0.0;  // below a ball's surface where the ray is deepest
+    double depth_m = 0.0;  // below a ball's surface, at the deepest point of the ray
   };
   Hit MeetBall(const Ray& ray) const {
     const double along_m = -glm::dot(ray.origin_m, ray.direction);
@@ -150,7 +151,7 @@ class CumulusRendererTest : public testing::Test {
 
 TEST_F(CumulusRendererTest, ABallsCoreIsLamberts) {
   Cumulus().component = scene::CumulusComponent::kDirect;
-  // At the terminator the shadow map's texels let the ball shade itself.
+  // At the terminator the finite texels of the shadow map let the ball shade itself.
   ExpectLambert(Draw(OneBall()), 0.15);
   LookFrom({0.0, -400.0, 0.0}, 0.35);
   ExpectLambert(Draw(OneBall()), 0.15);
@@ -201,7 +202,7 @@ TEST_F(CumulusRendererTest, TheCoronaShinesAtSilhouettesAgainstTheSunOnly) {
   EXPECT_EQ(ring(Draw(OneBall())), 0.0);
 }
 
-// Over all suns the corona sends no more than the share that it takes: rho of the sunlight.
+// Over all sun directions the corona sends no more than the share of sunlight that it takes, rho.
 TEST_F(CumulusRendererTest, TheCoronaSendsNoMoreThanItTakes) {
   Cumulus().component = scene::CumulusComponent::kCorona;
   settings_.illumination.sunlight = glm::vec3(1.0F);
@@ -209,7 +210,7 @@ TEST_F(CumulusRendererTest, TheCoronaSendsNoMoreThanItTakes) {
   constexpr int kSines = 20;
   constexpr int kAzimuths = 8;
   for (int i = 0; i < kSines; ++i) {
-    // About the axis of view, finer where the lobe is.
+    // Integrates about the axis of view, in finer steps near the lobe.
     const double share = (i + 0.5) / kSines;
     const double angle = share * share * std::numbers::pi / 2.0;
     const double solid = 2.0 * share / kSines * std::numbers::pi / 2.0 * std::sin(angle) * 2.0 *
@@ -267,7 +268,7 @@ TEST_F(CumulusRendererTest, ComponentsSumToTheWhole) {
   }
 }
 
-// A white furnace: a cloud that absorbs nothing and is lit evenly from everywhere is not seen.
+// A white furnace: a cloud that absorbs nothing and is lit evenly from all directions is invisible.
 TEST_F(CumulusRendererTest, AWhiteFurnaceHidesTheCloud) {
   settings_.illumination.sunlight = glm::vec3(0.0F);
   Cumulus().roughness = 0.6F;
@@ -298,14 +299,14 @@ TEST_F(CumulusRendererTest, NothingIsBrighterThanItsTrapsAllow) {
         ASSERT_GE(std::min({texel.r, texel.g, texel.b}), 0.0F);
         ASSERT_GE(texel.a, 0.0F);
         ASSERT_LE(texel.a, 1.0F);
-        // Lambert's law, the traps of all scales, what comes through, the surroundings; and the
-        // narrowest lobe in front.
+        // Lambert's law, the traps of all scales, the transmitted light and the surroundings make
+        // up the bound, plus the narrowest lobe in front.
         const double core = std::numbers::inv_pi * (1.0 + 1.0 / 0.4 + 0.2) + 0.3;
         const double corona = 0.25 * 401.0 * 0.5 * std::numbers::inv_pi;
         ASSERT_LE(texel.r, core + corona);
         brightest = std::max(brightest, texel.r);
       }
-      // More than the surroundings alone: the sun reaches it.
+      // The pixel is brighter than the surroundings alone, so the sun reaches it.
       EXPECT_GT(brightest, 0.35F) << azimuth_deg << ' ' << elevation_deg;
     }
   }
@@ -319,7 +320,7 @@ TEST_F(CumulusRendererTest, ValleysAreBrighterThanWithoutTraps) {
     for (const glm::vec4& texel : texels) sum += texel.g;
     return sum;
   };
-  // Two scales trap more than one.
+  // Two scales trap more light than one.
   clouds::CumulusSurface two = SmallCauliflower();
   clouds::CumulusSurface one = two;
   for (clouds::Bubble& bubble : one.bubbles) bubble.parent = -1;
@@ -331,8 +332,8 @@ TEST_F(CumulusRendererTest, ValleysAreBrighterThanWithoutTraps) {
   EXPECT_EQ(sum_of(Draw(two)), 0.0);
 }
 
-// 100 : 1 axes, seen from the side that looks thin and from the one that does not. Pixels are as
-// flat as the ellipsoid: as many lie across it upwards as sidewards.
+// The axes are 100 : 1, seen from the side that looks thin and from the other side. Pixels are as
+// flat as the ellipsoid: as many lie across it vertically as horizontally.
 TEST_F(CumulusRendererTest, AFlatEllipsoidKeepsItsShape) {
   for (const bool upright : {false, true}) {
     clouds::Ellipsoid ellipsoid;
@@ -385,7 +386,7 @@ TEST_F(CumulusRendererTest, ABaseCutsFlat) {
   }
 }
 
-// The valley between two balls side by side has no edge: where they meet their shading is mixed.
+// The valley between two adjacent balls has no edge: where they meet, their shading is mixed.
 TEST_F(CumulusRendererTest, BallsThatMeetAreMixed) {
   clouds::CumulusSurface surface;
   surface.bubbles = {clouds::BallOf({-50.0, 0.0, 0.0}, 80.0),

@@ -1,5 +1,5 @@
-// The cover of the ground in pictures: fields, land use with water, coasts and borders, and rings;
-// against the formulas on the CPU and against the reference.
+// Tests of ground cover in pictures: fields, land use with water, coasts and borders, and rings.
+// They compare with the formulas on the CPU and with the reference.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,8 +29,8 @@ float Luminance(const glm::vec3& rgb) {
   return glm::dot(rgb, glm::vec3(0.2126F, 0.7152F, 0.0722F));
 }
 
-// A black sky without haze, so that what is seen of the ground is the sun's light on it, through
-// air that is the same for every cover.
+// A fixture with a black sky and no haze. The visible light of the ground is the sun's, through air
+// that is the same for every cover.
 class GroundCoverTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -65,7 +65,7 @@ class GroundCoverTest : public testing::Test {
            static_cast<std::size_t>(scene_.output.height_px);
   }
 
-  // Sea in the west of 40 km, grassland in the east, under snow in the north.
+  // Sets land use with sea in the west of 40 km and grassland in the east, under snow in the north.
   void HaveCoast() {
     auto fields = std::make_shared<volume::HydrometeorFields>(*fields_);
     fields->grid.spacing_m = {1000.0, 1000.0, fields->grid.spacing_m.z};
@@ -83,7 +83,7 @@ class GroundCoverTest : public testing::Test {
     fields_ = fields;
   }
 
-  // A line of three points, in texels of 500 m.
+  // Sets a border line of three points, in texels of 500 m.
   void HaveBorder() {
     auto fields = std::make_shared<volume::HydrometeorFields>(*fields_);
     const volume::BorderGrid grid{{-20e3, -20e3}, 500.0, {80, 80}, 0.0};
@@ -92,7 +92,7 @@ class GroundCoverTest : public testing::Test {
     fields_ = fields;
   }
 
-  // The pixel that shows a place on the ground.
+  // Returns the pixel that shows a place on the ground.
   std::size_t PixelOf(const glm::dvec2& place_m) const {
     const scene::View view = scene::ViewOf(scene_, *fields_);
     const glm::dvec2 off_m = place_m - view.touch_m;
@@ -126,7 +126,7 @@ class GroundCoverTest : public testing::Test {
   scene::Scene scene_ = test_support::PlainScene();
 };
 
-// The device filters a texture of 8 bits where the CPU has floats.
+// The device filters a texture of 8 bits where the CPU uses floats.
 TEST_F(GroundCoverTest, FieldsAreThePatternOfTheirPixels) {
   const std::vector<float> plain = Pixels(scene::GroundCover::kPlain);
   const std::vector<float> fields = Pixels(scene::GroundCover::kFields);
@@ -161,8 +161,8 @@ TEST_F(GroundCoverTest, FieldsAreAsBrightAsPlainGroundOnAverage) {
   EXPECT_NEAR(of_fields / of_plain, 1.0, 0.015);
 }
 
-// Against pictures of 64 rays a pixel, from a low eye and from far off; the share of the mean that
-// the pattern's own contrast is.
+// Compares with pictures of 64 rays per pixel, from a low eye and from a higher one. The RMS error
+// is given as a share of the mean.
 TEST_F(GroundCoverTest, OneRayAPixelIsNearMany) {
   for (const double elevation_deg : {6.0, 25.0}) {
     scene_.camera = scene::OrbitCamera{{0.0, 0.0, 0.0}, 200.0, elevation_deg, 30e3, 35.0};
@@ -173,7 +173,7 @@ TEST_F(GroundCoverTest, OneRayAPixelIsNearMany) {
     double squares = 0.0;
     double mean = 0.0;
     int count = 0;
-    // The upper part of the lower picture is sky.
+    // The upper part of the lower view is sky.
     for (int y = 0; y < 16; ++y) {
       for (int x = 0; x < 60; ++x) {
         float sum = 0.0F;
@@ -203,7 +203,7 @@ TEST_F(GroundCoverTest, TheStormGetsTheSameLightFromEveryCover) {
   for (std::size_t i = 0; i < Count(); ++i) {
     if (plain[4 * i + 3] < 0.99F) continue;
     ++storm;
-    // Up to a hundredth of the ground shows through.
+    // Up to a hundredth of the ground's light shows through the storm.
     ASSERT_NEAR(Luminance(Pixel(fields, i)), Luminance(Pixel(plain, i)), 1e-3F);
   }
   EXPECT_GT(storm, 500);
@@ -228,8 +228,8 @@ TEST_F(GroundCoverTest, RingsAreOrangeAndVanishWhenOff) {
   EXPECT_EQ(red_at(with, 15e3, 10.0), red_at(without, 15e3, 10.0));
 }
 
-// From above and from the side, near and far off, where a pixel is wider than the line. A line
-// paints yellow: it leaves hardly any blue.
+// Views are from above and from the side, near and far, where a pixel is wider than the line. A
+// line is painted yellow, so it leaves hardly any blue.
 TEST_F(GroundCoverTest, BordersAreWhereTheirPointsAreProjected) {
   HaveBorder();
   scene_.output = {480, 320, 90};
@@ -245,7 +245,7 @@ TEST_F(GroundCoverTest, BordersAreWhereTheirPointsAreProjected) {
     std::vector<bool> near(Count(), false);
     int on_line = 0;
     for (std::size_t i = 1; i < kBorder_m.size(); ++i) {
-      // Not the ends, which are in the middles of pixels that show ground beyond them.
+      // The ends are left out. They lie in the middles of pixels that also show ground beyond them.
       for (int step = 4; step <= 196; ++step) {
         const glm::dvec2 place_m = glm::mix(kBorder_m[i - 1], kBorder_m[i], step / 200.0);
         const std::size_t at = PixelOf(place_m);
@@ -279,7 +279,7 @@ TEST_F(GroundCoverTest, BordersThatCannotBeDrawnAreNotShown) {
   HaveBorder();
   EXPECT_NE(Pixels(scene::GroundCover::kPlain, false, true), without);
   EXPECT_TRUE(not_shown_.empty());
-  // There are data, but no line there.
+  // There are border data, but no line here.
   auto fields = std::make_shared<volume::HydrometeorFields>(*fields_);
   fields->borders = std::make_shared<const volume::BorderMap>();
   fields_ = fields;
@@ -290,19 +290,19 @@ TEST_F(GroundCoverTest, BordersThatCannotBeDrawnAreNotShown) {
 TEST_F(GroundCoverTest, WaterGlintsBelowTheSunAndLandDoesNot) {
   HaveCoast();
   scene_.sky = {1.0, 0.2, 1.5};
-  // From the east over the land's edge to the sun above the sea.
+  // Looks from the east over the land's edge to the sun above the sea.
   scene_.sun = {270.0, 30.0, 1.0};
   scene_.camera = scene::OrbitCamera{{-8e3, -8e3, 0.0}, 90.0, 30.0, 6e3, 30.0};
   const std::vector<float> covered = Pixels(scene::GroundCover::kLandUse);
   const std::vector<float> plain = Pixels(scene::GroundCover::kPlain);
   const std::size_t middle = 96 * 32 + 48;
   EXPECT_GT(Luminance(Pixel(covered, middle)), 5.0F * Luminance(Pixel(plain, middle)));
-  // From the west, away from the sun, the sea is dark and blue.
+  // Seen from the west, away from the sun, the sea is dark and blue.
   scene_.camera = scene::OrbitCamera{{-8e3, -8e3, 0.0}, 270.0, 60.0, 6e3, 30.0};
   const glm::vec3 away = Pixel(Pixels(scene::GroundCover::kLandUse), middle);
   EXPECT_LT(Luminance(away), 0.5F * Luminance(Pixel(Pixels(scene::GroundCover::kPlain), middle)));
   EXPECT_GT(away.z, 1.3F * away.x);
-  // Land has no glint; snow is white.
+  // Land has no glint, and snow is white.
   scene_.camera = scene::OrbitCamera{{8e3, -8e3, 0.0}, 90.0, 30.0, 6e3, 30.0};
   const float land = Luminance(Pixel(Pixels(scene::GroundCover::kLandUse), middle));
   EXPECT_LT(land, 1.3F * Luminance(Pixel(plain, middle)));
@@ -315,8 +315,8 @@ TEST_F(GroundCoverTest, WithoutLandUseTheGroundIsPlain) {
   EXPECT_EQ(Pixels(scene::GroundCover::kLandUse), plain);
 }
 
-// Both draw a point where a ray meets the ground; the reference shows no footprint, so that pixels
-// are compared in blocks.
+// Both renderers draw a point where a ray meets the ground. The reference does not filter by a
+// pixel's footprint, so pixels are compared in blocks.
 TEST_F(GroundCoverTest, TheReferenceShowsTheSameGround) {
   HaveCoast();
   HaveBorder();
@@ -325,7 +325,7 @@ TEST_F(GroundCoverTest, TheReferenceShowsTheSameGround) {
   for (const auto& [cover, camera] :
        {std::pair{scene::GroundCover::kFields,
                   scene::OrbitCamera{{0.0, 0.0, 0.0}, 200.0, 20.0, 8e3, 35.0}},
-        // Half sea, half land; and the sun's glint.
+        // One view is half sea, half land; another has the sun's glint.
         std::pair{scene::GroundCover::kLandUse,
                   scene::OrbitCamera{{0.0, -8e3, 0.0}, 180.0, 25.0, 10e3, 35.0}},
         std::pair{scene::GroundCover::kLandUse,
@@ -351,7 +351,7 @@ TEST_F(GroundCoverTest, TheReferenceShowsTheSameGround) {
       squares += (of_drawn - of_traced) * (of_drawn - of_traced) / 24.0;
       mean += of_traced / 24.0;
     }
-    // Bruneton's mean reflectance of rough water is a fit; the rest is within a percent.
+    // Bruneton's mean reflectance of rough water is a fit; the other covers agree within a percent.
     const double bound = cover == scene::GroundCover::kFields ? 0.01 : 0.05;
     EXPECT_LT(std::sqrt(squares) / mean, bound) << static_cast<int>(cover);
   }

@@ -1,5 +1,5 @@
-// The medium as the light volume's light sees it, against what the medium's own code without GL
-// says.
+// Tests of the medium as seen by the light of the light volume, compared with the medium's own code
+// without GL.
 #include "renderers/light_volume/light_medium.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class LightMediumTest : public testing::Test {
     return {medium.Content(), std::get<scene::LightVolume>(scene_.rendering.technique).medium};
   }
 
-  // Extinction of light at cells, or that of transport, in 1/m.
+  // Returns the extinction of light at cells, or the transport extinction, in 1/m.
   std::vector<double> Made(LightMedium* light, const ResidentMedium& medium,
                            bool transport = false) {
     const absl::Status status = light->Update(medium, WeightsOf(medium), transport);
@@ -56,7 +56,7 @@ class LightMediumTest : public testing::Test {
     return values;
   }
 
-  // The mean of the medium over each cell from `samples` along each side, in 1/m.
+  // Returns the mean of the medium over each cell, from `samples` along each side, in 1/m.
   std::vector<double> Expected(const ResidentMedium& medium, const std::vector<double>& weights,
                                int samples) {
     const auto detailed = scene::DetailedMedium::Of(scene_, *fields_, medium.Variant().details > 0);
@@ -91,7 +91,7 @@ class LightMediumTest : public testing::Test {
   ResidentMedium::Cost cost_;
 };
 
-// The mean of |a - b| over that of b.
+// Returns the mean of |a - b| over the mean of b.
 double Off(const std::vector<double>& a, const std::vector<double>& b) {
   double off = 0.0;
   double all = 0.0;
@@ -112,7 +112,7 @@ TEST_F(LightMediumTest, WithoutDetailIsTheMediumAtCells) {
   test_support::SetMode(&scene_.rendering.technique, test_support::kPerFieldPhase);
   const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
   LightMedium light(programs_);
-  // Half floats of the medium's and its own.
+  // The tolerance is for the half floats of the medium and of the light medium.
   EXPECT_LT(Off(Made(&light, medium), Expected(medium, WeightsOf(medium).light, 1)), 1e-3);
 }
 
@@ -124,7 +124,7 @@ TEST_F(LightMediumTest, WithDetailIsTheMeanOverEachCell) {
   const std::vector<double> made = Made(&light, medium);
   const std::vector<double> expected = Expected(medium, WeightsOf(medium).light, 4);
   EXPECT_NEAR(Mean(made) / Mean(expected), 1.0, 0.02);
-  // 0.038; 0.066 with the medium at the cells' centres.
+  // The measured value is 0.038; it would be 0.066 with the medium at the cells' centres.
   EXPECT_LT(Off(made, expected), 0.05);
 }
 
@@ -134,7 +134,7 @@ TEST_F(LightMediumTest, HasTransportWhereItIsAskedFor) {
       scene::Transport::kConsistent;
   const ResidentMedium medium(scene_, *fields_, &noises_, &cost_);
   LightMedium light(programs_);
-  Made(&light, medium);  // without
+  Made(&light, medium);  // without transport extinction
   const GroupWeights weights = WeightsOf(medium);
   EXPECT_LT(Off(Made(&light, medium, true), Expected(medium, weights.transport, 1)), 1e-3);
   EXPECT_LT(Off(TexelsOf(light, medium, GL_RED), Expected(medium, weights.light, 1)), 1e-3);
@@ -156,7 +156,8 @@ TEST_F(LightMediumTest, IsMadeAnewForOtherFieldsOrWeightsAlone) {
   ASSERT_TRUE(light.Update(medium, half, false).ok());
   EXPECT_NEAR(std::ranges::max(TexelsOf(light, medium, GL_RED)) / most, 0.5, 0.001);
 
-  // Nothing is made for what it is already: what has been cleared stays so.
+  // An update that changes nothing does not recompute the texture: what has been cleared stays
+  // cleared.
   glClearTexImage(light.Texture().Get(), 0, GL_RED, GL_HALF_FLOAT, nullptr);
   ASSERT_TRUE(light.Update(medium, half, false).ok());
   EXPECT_EQ(std::ranges::max(TexelsOf(light, medium, GL_RED)), 0.0);

@@ -29,11 +29,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr int kSide = 65;  // odd: a pixel lies in the middle
+constexpr int kSide = 65;  // odd, so that a pixel lies in the middle
 constexpr double kPi = std::numbers::pi;
 
-// The integral of Wyvill's field along a line at `u` radii from the middle, over the radius: Man's
-// eq. 12 as it is printed but for its signs, summed by midpoints.
+// Returns the integral of Wyvill's field along a line at `u` radii from the middle, over the
+// radius. This is Man's eq. 12 as it is printed except for its signs, summed by midpoints.
 double Column(double u) {
   constexpr int kSteps = 20000;
   double sum = 0.0;
@@ -56,7 +56,7 @@ class MetaballTest : public testing::Test {
     group.phase = {physics::PhaseKind::kHenyeyGreenstein, 0.0};
     content_.groups = {group};
     test_support::SetTechnique(&settings_.technique, test_support::kMetaball);
-    // Light that is scattered is lost, and no direction is special: single scattering.
+    // The mode is single scattering: scattered light is lost, and no direction is special.
     test_support::SetMode(&settings_.technique, test_support::kLowAlbedo);
     settings_.illumination = {{0.0, 0.0, 1.0}, glm::vec3(1.0F), glm::vec3(0.0F)};
     settings_.eye_size = glm::ivec2(kSide);
@@ -67,7 +67,7 @@ class MetaballTest : public testing::Test {
     context_.reset();
   }
 
-  // Parallel rays, straight down; the middle pixel's goes through x = y = 0.
+  // Makes rays parallel and straight down. The middle pixel's ray goes through x = y = 0.
   void LookDown(double width_m) {
     settings_.view = scene::ViewOf(scene::TopDownCamera{{0.0, 0.0}, width_m}, 1.0);
   }
@@ -80,7 +80,7 @@ class MetaballTest : public testing::Test {
     return ball;
   }
 
-  // Four floats a pixel.
+  // Returns four floats for each pixel.
   std::vector<float> Draw(const std::vector<Ball>& balls) {
     const absl::Status lit = renderer_->CarryLight({balls, 0.0}, content_, settings_);
     EXPECT_TRUE(lit.ok()) << lit;
@@ -126,7 +126,8 @@ TEST_F(MetaballTest, PerspectiveAndParallelRaysAgreeOnTheMiddle) {
     settings_.view = scene::ViewOf(camera, 1.0);
     const std::vector<float> pixels = DrawAgain();
     EXPECT_NEAR(pixels[kMiddle + 3], parallel[kMiddle + 3], 2e-4) << distance_m;
-    // The square covers all of the ball: its outline fills the picture's middle row alike.
+    // The square covers the whole ball: its outline fills the picture's middle row at every
+    // distance.
     const auto covered = [&](int x) { return pixels[Pixel(x, kSide / 2) + 3] < 1.0F; };
     EXPECT_TRUE(covered(6 * kSide / 32) && covered(26 * kSide / 32)) << distance_m;
   }
@@ -151,8 +152,8 @@ TEST_F(MetaballTest, TransmittancesOfBallsInLineMultiply) {
   EXPECT_NEAR(pixels[kMiddle + 3], std::exp(-column * (0.4 + 1.0 + 0.5)), 1e-6);
 }
 
-// Seen and lit from above: the share of sunlight that a ball takes in its middle comes back evenly
-// to all sides, through what the ball keeps of it in the mean over itself.
+// The ball is seen and lit from above. It scatters the share of sunlight that it takes in its
+// middle, evenly to all sides.
 TEST_F(MetaballTest, AThinBallScattersWhatItTakes) {
   const double depth = 1e-3;
   const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
@@ -169,7 +170,8 @@ TEST_F(MetaballTest, ABallScattersByThePhaseFunctionsOfItsShares) {
     ball.shares = {1.0F - share, share};
     return Draw({ball})[kMiddle];
   };
-  // The view is straight down: the light turns by 180 degrees less the sun's zenith angle.
+  // The view is straight down, so the light is deflected by 180 degrees minus the sun's zenith
+  // angle.
   for (const double zenith_deg : {0.0, 60.0, 120.0, 179.0}) {
     const double zenith = zenith_deg * kPi / 180.0;
     settings_.illumination.towards_sun = {std::sin(zenith), 0.0, std::cos(zenith)};
@@ -180,8 +182,8 @@ TEST_F(MetaballTest, ABallScattersByThePhaseFunctionsOfItsShares) {
 }
 
 TEST_F(MetaballTest, LightThatABallTakesIsLightThatItHas) {
-  // Over all pixels a ball lit and seen by parallel rays gives back (1 - exp(-d)) of its light in
-  // the mean, however thick it is: what it shows is that mean, weighted by its own matter.
+  // A ball lit and seen by parallel rays scatters (1 - exp(-d)) of its light in the mean over all
+  // pixels, however thick it is. What it shows is that mean, weighted by its own matter.
   for (const double depth : {0.1, 2.0, 50.0}) {
     const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
     double taken = 0.0;
@@ -196,18 +198,19 @@ TEST_F(MetaballTest, LightThatABallTakesIsLightThatItHas) {
     }
     const double arrives = taken / matter;
     const double seen = -std::expm1(-depth * Column(0.0)) / (4 * kPi) * arrives;
-    // Some 64 texels across the light buffer.
+    // The tolerance is for some 64 texels across the light buffer.
     EXPECT_NEAR(pixels[kMiddle] / seen, 1.0, 0.02) << depth;
   }
 }
 
 TEST_F(MetaballTest, ABallInAnothersShadowHasWhatPasses) {
-  // The sun shines along x; the far ball is seen beside the near one from above.
+  // The sun shines along x. Seen from above, the far ball lies next to the near one.
   settings_.illumination.towards_sun = {1.0, 0.0, 0.0};
   LookDown(8000.0);
   const Ball lit = At({2000.0, 0.0, 5000.0}, 1000.0, 1e-6);
   const Ball thick = At({2000.0, 0.0, 5000.0}, 1000.0, 2e-3);
-  // Small, so that the whole of it lies under the middle of the other; in the middle of a pixel.
+  // The ball is so small that all of it lies behind the middle of the other. It is in the middle of
+  // a pixel.
   constexpr int kColumn = kSide / 4;
   const double east_m = ((kColumn + 0.5) / kSide - 0.5) * 8000.0;
   const Ball behind = At({east_m, 0.0, 5000.0}, 50.0, 1e-3);
@@ -215,15 +218,15 @@ TEST_F(MetaballTest, ABallInAnothersShadowHasWhatPasses) {
   const float free = Draw({behind})[at];
   EXPECT_NEAR(Draw({behind, lit})[at] / free, 1.0, 5e-3);
   EXPECT_NEAR(Draw({behind, thick})[at] / free, std::exp(-2.0 * Column(0.0)), 5e-3);
-  // With the sun on the other side it is the other that lies in shadow. The light buffer is laid
-  // out anew: its texels meet the small ball elsewhere.
+  // With the sun on the other side, the other ball lies in shadow. The light buffer has a new
+  // layout, so its texels meet the small ball elsewhere.
   settings_.illumination.towards_sun = {-1.0, 0.0, 0.0};
   EXPECT_NEAR(Draw({behind, thick})[at] / free, 1.0, 1e-4);
 }
 
 TEST_F(MetaballTest, TheNearestBallIsDrawnLast) {
-  // Grey light: what is in front hides what is behind, from either side and in any order of the
-  // list. The upper ball is lit, the lower one in its shadow.
+  // The light is grey. The ball in front hides the ball behind it, from either side and in any
+  // order of the list. The upper ball is lit, and the lower ball lies in its shadow.
   const Ball upper = At({0.0, 0.0, 8000.0}, 1000.0, 20e-3);
   const Ball lower = At({0.0, 0.0, 4000.0}, 1000.0, 20e-3);
   const float above = Draw({upper, lower})[kMiddle];
@@ -236,7 +239,7 @@ TEST_F(MetaballTest, TheNearestBallIsDrawnLast) {
   settings_.view = scene::ViewOf(camera, 1.0);
   const float below = Draw({upper, lower})[kMiddle];
   EXPECT_EQ(Draw({lower, upper})[kMiddle], below);
-  // A tenth of the light passes by the upper one's rim.
+  // A tenth of the light passes the rim of the upper ball.
   EXPECT_GT(above, 5.0F * below);
 }
 
@@ -251,13 +254,13 @@ TEST_F(MetaballTest, PaperTransportIsAsPrinted) {
   const std::vector<float> one = Draw({ball});
   EXPECT_NEAR(one[kMiddle], albedo * tau / (4 * kPi), 1e-3);
   EXPECT_NEAR(one[kMiddle + 3], std::exp(-tau), 1e-5);
-  // Straight back Rayleigh's function is 3/2, across it is 3/4.
+  // Rayleigh's function is 3/2 straight back and 3/4 across.
   test_support::MetaballsOf(settings_.technique).isotropic = false;
   EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 1.5, 1e-4);
   settings_.illumination.towards_sun = {1.0, 0.0, 0.0};
   EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 0.75, 1e-4);
-  // Two in line with the light: the second has the mean over its disc of eq. 27, g + T I with g for
-  // straight on.
+  // Two balls are in line with the light. The second receives the mean of eq. 27 over its disc, g +
+  // T I with g for straight on.
   Ball behind = ball;
   behind.middle_m.x -= 3000.0;
   double mean = 0.0;
@@ -282,8 +285,8 @@ TEST_F(MetaballTest, SkyAndGroundLightFromBothSides) {
   settings_.illumination.sunlight = glm::vec3(0.0F);
   settings_.illumination.from_sky = {0.2F, 0.3F, 0.9F};
   settings_.illumination.from_ground = {0.2F, 0.1F, 0.05F};
-  // A white furnace: alike from both sides, the cloud is as bright as its surroundings wherever it
-  // is opaque.
+  // A white furnace: with the same light on both sides, the cloud is as bright as its surroundings
+  // wherever it is opaque.
   RenderSettings furnace = settings_;
   furnace.illumination.from_ground = furnace.illumination.from_sky;
   std::swap(settings_, furnace);
@@ -336,7 +339,7 @@ TEST_F(MetaballLightsTest, LightsAddUp) {
         ASSERT_EQ(all[i], sun[i]);
         continue;
       }
-      // Sums of three terms in single precision.
+      // The sums have three terms in single precision.
       ASSERT_NEAR(all[i], sun[i] + red[i] + blue[i], 1e-6 * (1.0 + all[i]));
       brightest = std::max<double>(brightest, all[i]);
     }
@@ -356,7 +359,8 @@ TEST_F(MetaballLightsTest, ALightInTheSunsPlaceIsTheSun) {
 
 TEST_F(MetaballLightsTest, LightsFromAnywhereStaySound) {
   const glm::vec3 strongest(100.0F);
-  // As many as a scene may have: straight down, straight up, from the eye and the sun's own place.
+  // The lights are as many as a scene may have: straight down, straight up, from the eye and from
+  // the sun's place.
   const std::vector<Beam> beams = {{{0.0, 0.0, 1.0}, strongest},
                                    {{0.0, 0.0, -1.0}, strongest},
                                    {-settings_.view.forward, glm::vec3(0.0F)},
@@ -370,7 +374,7 @@ TEST_F(MetaballLightsTest, LightsFromAnywhereStaySound) {
       ASSERT_GE(pixels[i], 0.0F);
       if (i % 4 != 3) brightest = std::max(brightest, pixels[i]);
     }
-    // Of all three lights' irradiance.
+    // The bound is the irradiance of all three lights.
     EXPECT_LE(brightest, 300.0F);
     EXPECT_GT(brightest, 1.0F);
   }
@@ -444,7 +448,7 @@ TEST_F(MetaballTest, ExtremesStaySound) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       ASSERT_TRUE(std::isfinite(pixels[i])) << what << ' ' << i;
       ASSERT_GE(pixels[i], 0.0F) << what;
-      // Of the sun's unit irradiance and no other light.
+      // The sun's unit irradiance is the only light, so it is the bound.
       ASSERT_LE(pixels[i], 1.0F) << what;
     }
   };
@@ -561,7 +565,7 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   EXPECT_GT(frame.content.fit_error, 0.0);
   EXPECT_LT(frame.content.fit_error, 0.5);
   EXPECT_EQ(frame.slices, 0);
-  // Turbulent detail is the noise.
+  // The metaballs' noise stands for turbulent detail.
   EXPECT_THAT(NotShown(frame),
               ElementsAre("structure finer than the metaballs, but for noise on their surfaces"));
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
@@ -632,8 +636,8 @@ TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
     }
     return sum / 144.0;
   };
-  // Of the fit, and of balls that are lit and dark as wholes. Both without detail, as PlainScene
-  // has the light volume.
+  // The tolerance is for the fit, and because balls are lit and dark as a whole. Both pictures have
+  // no detail, as in PlainScene's light volume.
   EXPECT_NEAR(mean(test_support::kMetaball) / mean(test_support::kLightVolume), 1.0, 0.15);
 }
 
@@ -648,7 +652,7 @@ TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
   ASSERT_TRUE(first.ok()) << first.status();
   EXPECT_TRUE(fits.Has(scene, fields));
   EXPECT_EQ(*fits.Get(scene, fields), *first);
-  // Another storm, though alike.
+  // This is another storm, although it is similar.
   EXPECT_FALSE(fits.Has(scene, support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0)));
   scene::Scene thinner = scene;
   thinner.fields[0].scale = 0.5F;
@@ -666,16 +670,17 @@ TEST(FitBalls, TheSumOfBallsIsTheMedium) {
   ASSERT_TRUE(cloud.ok());
   double sum = 0.0;
   for (const Ball& ball : cloud->balls) {
-    // The field's integral over a ball of radius 1: 4 pi times 1/3 - 22/45 + 17/63 - 4/81.
+    // The field's integral over a ball of radius 1 is 4 pi times 1/3 - 22/45 + 17/63 - 4/81.
     const double volume = 4 * kPi * (1.0 / 3 - 22.0 / 45 + 17.0 / 63 - 4.0 / 81);
     sum += ball.extinction_per_m * std::pow(ball.radius_m, 3.0) * volume;
     EXPECT_FLOAT_EQ(ball.shares[0], 1.0F);
     EXPECT_GT(ball.radius_m, 0.0);
     EXPECT_GE(ball.extinction_per_m, 0.0);
   }
-  // 5 optical depths over 4 x 4 km; balls reach beyond the faces, where the fit is not penalised.
+  // There are 5 optical depths over 4 x 4 km. Balls extend beyond the faces, where the fit has no
+  // penalty.
   EXPECT_NEAR(sum / (5.0 * 4000.0 * 4000.0), 1.0, 0.2);
-  // More balls than cells are as many as cells.
+  // If more balls than cells are requested, there are as many balls as cells.
   const auto few = support::MakeSlab(100.0, 100.0, 0.01, glm::ivec3(2));
   EXPECT_LE(FitBalls(scene::GroupedFieldsOf(scene, *few), *few, 1000)->balls.size(), 8U);
   EXPECT_THAT(FitBalls({}, *fields, 10)->balls, IsEmpty());

@@ -1,4 +1,4 @@
-// Pictures drawn in pieces, against the same drawn whole.
+// Tests of pictures drawn in pieces, compared with the same pictures drawn whole.
 #include "gl/pieces.h"
 
 #include <functional>
@@ -22,7 +22,7 @@
 namespace thunderhead {
 namespace {
 
-// Counts the pieces, and refuses one.
+// A turn that counts the pieces and refuses one.
 class CountedTurn final : public base::DeviceTurn {
  public:
   absl::Status Take() override {
@@ -39,7 +39,7 @@ class CountedTurn final : public base::DeviceTurn {
   }
 
   void Refuse(int piece) { refused_ = taken_ + piece; }
-  // Every piece for which that is true; null: none.
+  // Refuses every piece for which `refuses` returns true; null refuses none.
   void RefuseIf(std::function<bool()> refuses) { refuses_ = std::move(refuses); }
   int Taken() const { return taken_; }
   bool IsHeld() const { return held_; }
@@ -51,7 +51,7 @@ class CountedTurn final : public base::DeviceTurn {
   std::function<bool()> refuses_;
 };
 
-// A scene of each technique, with the sun in the picture and lit ground.
+// Returns a scene of each technique, with the sun in the picture and lit ground.
 std::vector<std::pair<std::string, scene::Technique>> Techniques() {
   const auto light_volume = [](scene::Transport transport, int slices) {
     scene::Technique technique = scene::LightVolume{};
@@ -72,7 +72,7 @@ std::vector<std::pair<std::string, scene::Technique>> Techniques() {
 
 class PiecesTest : public testing::Test {
  protected:
-  // Drawn by one renderer of its own.
+  // A drawing with its own renderer.
   struct Drawing {
     explicit Drawing(base::DeviceTurn* turn)
         : programs(std::make_shared<gl::ProgramCache>(turn)),
@@ -101,7 +101,7 @@ class PiecesTest : public testing::Test {
     std::vector<std::uint16_t> fine;
   };
 
-  // A picture drawn whole.
+  // A picture that was drawn whole.
   struct Picture {
     std::vector<float> radiance;
     std::vector<std::uint8_t> rgb;
@@ -131,11 +131,11 @@ class PiecesTest : public testing::Test {
     orbit.distance_m = 60e3;
     orbit.elevation_deg = 8.0;
     scene_.sun.elevation_deg = 20.0;
-    // Behind the storm: its disc and aureole are in the picture.
+    // The sun is behind the storm, so its disc and aureole are in the picture.
     scene_.sun.azimuth_deg = orbit.azimuth_deg + 180.0;
   }
 
-  // The picture by that technique, which is drawn for the first test that asks.
+  // Returns the picture by that technique. It is drawn for the first test that asks for it.
   const Picture& Whole(const std::string& name) {
     const auto known = wholes_.find(name);
     if (known != wholes_.end()) return known->second;
@@ -180,7 +180,7 @@ TEST_F(PiecesTest, WhatIsCancelledEndsAtTheNextPieceAndIsDrawnRightAfterwards) {
       turn.Refuse(piece);
       const int before = turn.Taken();
       const auto cancelled = cut.Draw(scene_, fields_);
-      if (cancelled.ok()) break;  // it has fewer pieces
+      if (cancelled.ok()) break;  // the picture has fewer pieces
       EXPECT_TRUE(absl::IsCancelled(cancelled.status())) << cancelled.status();
       EXPECT_EQ(turn.Taken(), before + piece);
       EXPECT_FALSE(turn.IsHeld());
@@ -221,7 +221,8 @@ TEST_F(PiecesTest, WhatIsCancelledWithinItsViewKeepsItsLight) {
 }
 
 TEST_F(PiecesTest, StagesDoNotCountTheTimeThatTheyWaited) {
-  // Others have their turn before each piece. The wait is long beside what no stage counts.
+  // Other work has its turn before each piece. The wait is long compared with the time that no
+  // stage counts.
   class SlowTurn final : public base::DeviceTurn {
    public:
     absl::Status Take() override {

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A macro left out of a variant, or a uniform's value of another type, does not compile.
+// A variant that lacks a macro, or a uniform value of another type, does not compile.
 static_assert(!std::is_default_constructible_v<DefineValue>);
 template <typename T>
 concept IsGain = requires(const Program& program, const T& value) {
@@ -51,7 +51,7 @@ TEST(Program, NamesADefineThatItsShadersDoNotMention) {
   EXPECT_THAT(std::string(program.status().message()), HasSubstr("FILMICK"));
 }
 
-// A compute program of `declarations` that stores `used`.
+// Returns a compute program with `declarations` that stores the value of `used`.
 GLuint Computing(const std::string& declarations, const std::string& used) {
   const std::string text = "#version 450 core\nlayout(local_size_x = 1) in;\n" + declarations +
                            "layout(binding = 7, r32f) uniform writeonly image2D result;\n"
@@ -84,7 +84,7 @@ TEST(CheckBindings, NamesWhatSharesABinding) {
   const auto message = [](const std::string& declarations, const std::string& used) {
     return std::string(CheckBindings(Computing(declarations, used)).message());
   };
-  // An array takes as many as it has elements.
+  // An array takes as many bindings as it has elements.
   EXPECT_THAT(message("layout(binding = 4) uniform sampler2D noise[3];\n"
                       "layout(binding = 6) uniform sampler3D light;\n",
                       "texture(noise[0], vec2(0)) + texture(noise[2], vec2(0)) + "

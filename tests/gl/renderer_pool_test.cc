@@ -37,7 +37,7 @@ class RendererPoolTest : public testing::Test {
     return names;
   }
 
-  // A scene that shares no extinction with those of other scales.
+  // Returns a scene that shares no extinction with scenes of other scales.
   scene::Scene Scaled(float scale) const {
     scene::Scene scene = scene_;
     scene.fields[0].scale = scale;

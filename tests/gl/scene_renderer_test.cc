@@ -99,7 +99,7 @@ TEST_F(SceneRendererTest, WaterPathsThatWereKeptQuicklyAreKeptInFullAtRest) {
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   DrawQuality moving;
   moving.quick_water_paths = true;
-  // Without detail there is nothing to keep.
+  // Without detail there are no water paths to keep.
   StagesOf(moving);
   EXPECT_THAT(StagesOf(), ElementsAre("view", "air", "composite"));
   scene::MediumSettingsOf(&scene_.rendering.technique)->look.detail = true;
@@ -109,7 +109,7 @@ TEST_F(SceneRendererTest, WaterPathsThatWereKeptQuicklyAreKeptInFullAtRest) {
   EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "air", "composite"));
   SceneRenderer fresh;
   EXPECT_EQ(Pixels(renderer_.get()), Pixels(&fresh));
-  // What is kept better stays.
+  // A result of higher quality is kept.
   Orbit().azimuth_deg += 5.0;
   EXPECT_THAT(StagesOf(moving), ElementsAre("view", "air", "composite"));
 }
@@ -123,24 +123,24 @@ TEST_F(SceneRendererTest, ACumulusRerunsOnlyWhatAChangeDirties) {
   EXPECT_THAT(StagesOf(), ElementsAre("view", "air", "composite"));
   cumulus.component = scene::CumulusComponent::kAmbient;
   EXPECT_THAT(StagesOf(), ElementsAre("view", "air", "composite"));
-  cumulus.corona = 0.5F;  // what casts a shadow is what is deeper
+  cumulus.corona = 0.5F;  // only deeper parts cast a shadow
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "air", "composite"));
   scene_.sun.elevation_deg += 5.0;
   EXPECT_THAT(StagesOf(), ElementsAre("light", "view", "air", "composite"));
-  scene::SetSlices(&scene_.rendering.technique, 17);  // it has none
+  scene::SetSlices(&scene_.rendering.technique, 17);  // the technique has no slices
   EXPECT_THAT(StagesOf(), IsEmpty());
   cumulus.seed = 2;
   EXPECT_THAT(StagesOf(), ElementsAre("surface", "light", "view", "air", "composite"));
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   EXPECT_THAT(StagesOf(), ElementsAre("extinction", "upload", "light", "view", "air", "composite"));
-  cumulus.seed = 3;  // not looked at
+  cumulus.seed = 3;  // this technique does not use it
   EXPECT_THAT(StagesOf(), IsEmpty());
 }
 
 TEST_F(SceneRendererTest, ACumulusOfAStormStandsWhereTheStormIs) {
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kCumulus);
   scene_.camera = scene::TopDownCamera{{4000.0, 0.0}, 16e3};
-  scene_.sun.elevation_deg = 90.0;  // its shadow lies below it
+  scene_.sun.elevation_deg = 90.0;  // the shadow lies below the cloud
   const std::vector<float> with = Pixels(renderer_.get());
   scene_.fields[0].visible = false;
   const std::vector<float> without = Pixels(renderer_.get());
@@ -150,7 +150,7 @@ TEST_F(SceneRendererTest, ACumulusOfAStormStandsWhereTheStormIs) {
       const double north_m = 16e3 * (32.0 / 48.0) * ((static_cast<double>(y) + 0.5) / 32 - 0.5);
       const double outside_m = std::max(std::abs(east_m), std::abs(north_m)) - 2000.0;
       const std::size_t at = 4 * (48 * y + x);
-      // Bubbles stick out; corners are rounded.
+      // Bubbles extend beyond the box, and corners are rounded.
       if (outside_m > 1000.0) {
         ASSERT_NEAR(with[at], without[at], 0.01F * without[at]) << east_m << ' ' << north_m;
       } else if (std::hypot(east_m, north_m) < 1600.0) {
@@ -174,7 +174,7 @@ TEST_F(SceneRendererTest, ACumulusWithoutSurfaceIsTheSkyAlone) {
 }
 
 // The aureole belongs to the medium. Around balls and surfaces it would follow the cells of a
-// medium that is not seen.
+// medium that is not visible.
 TEST_F(SceneRendererTest, OnlyAMediumThatIsSeenHasAnAureole) {
   fields_ = support::MakeSlab(4000.0, 2000.0, 1e-4);
   Orbit().azimuth_deg = 75.0;
@@ -292,14 +292,15 @@ TEST_F(SceneRendererTest, ACloudIsBrighterThanTheGroundBehindIt) {
   const std::vector<float> without = Pixels(renderer_.get());
   const std::size_t middle = 4 * (16 * 48 + 24);
   EXPECT_GT(with[middle], 2.0F * without[middle]);
-  // The sky in the top corner is the same.
+  // The sky in the top corner is unchanged.
   EXPECT_EQ(with[4 * (31 * 48)], without[4 * (31 * 48)]);
 }
 
 TEST_F(SceneRendererTest, FromAboveACloudStandsWhereItsCoordinatesSay) {
-  // 4 km of cloud in the left half of 16 km: its middle is 4 km west of the picture's.
+  // There are 4 km of cloud in the left half of 16 km: its middle is 4 km west of the picture's
+  // middle.
   scene_.camera = scene::TopDownCamera{{4000.0, 0.0}, 16e3};
-  scene_.sun.elevation_deg = 90.0;  // its shadow lies below it
+  scene_.sun.elevation_deg = 90.0;  // the shadow lies below the cloud
   const std::vector<float> with = Pixels(renderer_.get());
   scene_.fields[0].visible = false;
   const std::vector<float> without = Pixels(renderer_.get());
@@ -310,7 +311,7 @@ TEST_F(SceneRendererTest, FromAboveACloudStandsWhereItsCoordinatesSay) {
       const double outside_m = std::max(std::abs(east_m), std::abs(north_m)) - 2000.0;
       const std::size_t at = 4 * (48 * y + x);
       if (outside_m > 0.0) {
-        // It hides up to half of the sky, which gives a tenth of the ground's light.
+        // The cloud hides up to half of the sky, which gives a tenth of the ground's light.
         ASSERT_NEAR(with[at], without[at], 0.05F * without[at]) << east_m << ' ' << north_m;
       } else if (outside_m < -400.0) {
         ASSERT_GT(with[at], 1.5F * without[at]) << east_m << ' ' << north_m;
@@ -322,15 +323,15 @@ TEST_F(SceneRendererTest, FromAboveACloudStandsWhereItsCoordinatesSay) {
 TEST_F(SceneRendererTest, ASpottersHorizonDips) {
   scene::SpotterCamera camera;
   camera.place_m = {0.0, -60e3};
-  camera.eye_height_m = 12000.0;  // the dip is sqrt(2 h / R): 3.25 degrees
-  camera.azimuth_deg = 180.0;     // away from the storm
+  camera.eye_height_m = 12000.0;  // the dip of the horizon is sqrt(2 h / R): 3.25 degrees
+  camera.azimuth_deg = 180.0;     // looks away from the storm
   camera.elevation_deg = 0.0;
   camera.focal_length_mm = 50.0;
   scene_.camera = camera;
   scene_.sky = {1.0, 0.0, 1.0};
   scene_.output = {8, 400, 90};
   const std::vector<float> pixels = Pixels(renderer_.get());
-  // Black ground behind air is darker than the sky above it: the edge is where brightness falls
+  // Black ground behind air is darker than the sky above it, so the edge is where brightness falls
   // most.
   const auto row = [&](int y) { return pixels[static_cast<std::size_t>(4 * 8 * y)]; };
   int edge = 100;
@@ -341,8 +342,8 @@ TEST_F(SceneRendererTest, ASpottersHorizonDips) {
   EXPECT_NEAR(edge + 1, 200.0 * (1.0 - dip * 50.0 / 12.0), 1.5);
 }
 
-// Black sky, white ground, no haze: what is seen of the ground is the sun's light on it, through
-// air that is the same with and without a cloud.
+// A fixture with a black sky, white ground and no haze. The visible light of the ground is the
+// sun's, through air that is the same with and without a cloud.
 class GroundTest : public SceneRendererTest {
  protected:
   void SetUp() override {
@@ -354,14 +355,14 @@ class GroundTest : public SceneRendererTest {
     scene_.sun = {270.0, 45.0, 1.0};
   }
 
-  // The red of the pixel at a place on the ground.
+  // Returns the red value of the pixel at a place on the ground.
   static float At(const std::vector<float>& pixels, double east_m, double north_m) {
     const auto column = static_cast<std::size_t>((east_m / 24e3 + 0.5) * 96);
     const auto row = static_cast<std::size_t>((north_m / 8e3 + 0.5) * 32);
     return pixels[4 * (96 * row + column)];
   }
 
-  // A copy of the slab on terrain.
+  // Replaces the fields by a copy of the slab on terrain.
   void SetTerrain(const std::function<double(double east_m, double north_m)>& height_m) {
     auto fields = std::make_shared<volume::HydrometeorFields>(*fields_);
     const volume::RegularGrid& grid = fields->grid;
@@ -376,12 +377,13 @@ class GroundTest : public SceneRendererTest {
 };
 
 TEST_F(GroundTest, ACloudsShadowIsItsTransmittance) {
-  // 4 km wide and 2 km high; the sun in the west, 45 degrees up. A sun ray that comes down e metres
-  // east of the slab's east face has entered it through its top, or through its west face.
+  // The slab is 4 km wide and 2 km high, and the sun is in the west, 45 degrees up. A sun ray that
+  // comes down e metres east of the slab's east face has entered the slab through its top or its
+  // west face.
   for (const double extinction_per_m : {1e-4, 5e-4, 1e-2}) {
     fields_ = support::MakeSlab(4000.0, 2000.0, extinction_per_m);
     scene_.fields[0].visible = true;
-    scene_.fields[0].optics.albedo = 0.0F;  // or light would come through it, too
+    scene_.fields[0].optics.albedo = 0.0F;  // otherwise scattered light would come through too
     const std::vector<float> with = Pixels(renderer_.get());
     scene_.fields[0].visible = false;
     const std::vector<float> without = Pixels(renderer_.get());
@@ -401,19 +403,19 @@ TEST_F(GroundTest, ACloudsShadowIsItsTransmittance) {
 TEST_F(GroundTest, SlopesAreLitByTheSunsAngleToThem) {
   scene_.fields[0].visible = false;
   const float level = At(Pixels(renderer_.get()), 0.0, 0.0);
-  // Rising to the east by one in four: the sun in the west stands on it at 45 + 14 degrees. The
-  // terrain is a few hundred metres high: 4 % of a scale height of air.
+  // The terrain rises to the east by one in four, so the sun in the west is at 45 + 14 degrees from
+  // it. The terrain is a few hundred metres high: 4 % of a scale height of air.
   SetTerrain([](double east_m, double) { return 500.0 + east_m / 4.0; });
   const double facing = std::sin(std::numbers::pi / 4 + std::atan(0.25));
   EXPECT_NEAR(At(Pixels(renderer_.get()), 0.0, 0.0) / level / (facing * std::sqrt(2.0)), 1.0, 0.01);
-  // Falling to the east by two in one it is turned away from the sun.
+  // Terrain that falls to the east by two in one is turned away from the sun.
   fields_ = support::MakeSlab(4000.0, 2000.0, 0.01);
   SetTerrain([](double east_m, double) { return 4000.0 - 2.0 * east_m; });
   EXPECT_EQ(At(Pixels(renderer_.get()), 0.0, 0.0), 0.0F);
 }
 
 TEST_F(GroundTest, AMountainHidesWhatIsBehindIt) {
-  // A wall of 6 km between the spotter in the south and the slab.
+  // A wall 6 km high stands between the spotter in the south and the slab.
   scene::SpotterCamera camera;
   camera.place_m = {0.0, -30e3};
   camera.azimuth_deg = 0.0;
@@ -429,7 +431,8 @@ TEST_F(GroundTest, AMountainHidesWhatIsBehindIt) {
       const std::vector<float> without = Pixels(renderer_.get());
       int different = 0;
       for (std::size_t i = 0; i < with.size(); i += 4) {
-        // Its shadow may show, darker; the storm itself stands before the sky.
+        // The storm's darker shadow may be visible. The storm itself would be brighter, because it
+        // stands in front of the sky.
         different += with[i] > without[i] + 1e-4F ? 1 : 0;
       }
       return different;
@@ -477,14 +480,14 @@ TEST_F(SceneRendererTest, ACameraInsideTheCloudSeesCloudEverywhere) {
     darkest = std::min(darkest, pixels[i]);
     brightest = std::max(brightest, pixels[i]);
   }
-  // Deep inside it looks alike to all sides, sky and ground of the bare scene do not.
+  // Deep inside the cloud all directions look alike, unlike the sky and ground of the bare scene.
   EXPECT_GT(darkest, 0.0F);
   EXPECT_LT(brightest, 2.0F * darkest);
 }
 
 TEST_F(SceneRendererTest, APictureDoesNotDependOnTheStormBefore) {
-  // A block, then two blobs at opposite corners of its box: a volume of the same size, but for
-  // light in fewer cells.
+  // Draws a block, then two blobs at opposite corners of its box. The volume has the same size, but
+  // fewer cells have light.
   const auto block = [](bool corners_alone) {
     auto fields = std::make_shared<volume::HydrometeorFields>(
         *support::MakeSlab(8000.0, 4000.0, 0.01, {32, 32, 16}));
@@ -524,7 +527,7 @@ TEST_F(SceneRendererTest, APictureDoesNotDependOnTheStormBefore) {
 }
 
 TEST_F(SceneRendererTest, MoreBlocksThanOneRowOfWorkGroupsHolds) {
-  // 48 x 48 x 48 blocks of two cells a side, against a coarse grid of the same cloud.
+  // Compares 48 x 48 x 48 blocks of two cells a side with a coarse grid of the same cloud.
   const auto brightness = [&](const glm::ivec3& cells) {
     fields_ = support::MakeSlab(4000.0, 2000.0, 0.01, cells);
     const std::vector<float> pixels = Pixels(renderer_.get());
@@ -561,7 +564,7 @@ class ToneMapTest : public ::testing::Test {
     return Map(frame::TextureOf(picture));
   }
 
-  // A grey storm below a bright sky; the left tenth of its rows is of another radiance.
+  // Returns a grey storm below a bright sky. The left tenth of its rows has another radiance.
   static picture::LinearPicture StormBelowSky(float storm, float left_tenth, float sky) {
     picture::LinearPicture picture;
     picture.size_px = glm::ivec2(kSide_px);
@@ -606,10 +609,10 @@ TEST_F(ToneMapTest, FilmHasContrastAToeAndAShoulder) {
     const double coded = Map(grey).rgb[1] / 255.0;
     return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
   };
-  // The curve itself has a slope of 1 here: what is left is contrast.
+  // The curve itself has a slope of 1 here, so the rest is contrast.
   EXPECT_NEAR(std::log2(shown(0.62F) / shown(0.4F)) / std::log2(0.62 / 0.4), 1.25, 0.03);
   EXPECT_NEAR(shown(frame::kJustBelowWhite), 0.9, 0.01);
-  // The shoulder: above just below white, and not clipped at once.
+  // On the shoulder, values above "just below white" are brighter but not clipped at once.
   EXPECT_GT(shown(1.5F), shown(1.0F));
   EXPECT_LT(shown(1.5F), 0.999);
   EXPECT_LT(shown(0.04F), 0.5 * shown(0.08F) * std::exp2(-0.35));  // the toe is steeper still
@@ -619,12 +622,12 @@ TEST_F(ToneMapTest, FilmHasContrastAToeAndAShoulder) {
 TEST_F(ToneMapTest, TheStormsBrightestHundredthIsJustBelowWhite) {
   scene_.display.tone_map = scene::ToneMap::kFilmic;
   for (const float scale : {0.7F, 4.0F}) {
-    // The sky, however bright, does not count.
+    // The sky does not count, however bright it is.
     for (const float sky : {0.01F, 3.0F}) {
       const frame::ToneMapped mapped = Map(StormBelowSky(0.05F * scale, 0.3F * scale, sky * scale));
       const double exposed = std::exp2(mapped.exposure_ev) * frame::kExposureAtZeroEv * 0.3 * scale;
       EXPECT_NEAR(exposed, frame::kJustBelowWhite, 0.025 * frame::kJustBelowWhite);
-      // The film's contrast and its shoulder, which begins at 0.805.
+      // The result has the film's contrast and its shoulder, which begins at 0.805.
       const double contrasty =
           frame::kJustBelowWhite * std::pow(exposed / frame::kJustBelowWhite, 1.25);
       const double shown = 1.0 - 0.195 * std::exp((0.805 - contrasty) / 0.195);

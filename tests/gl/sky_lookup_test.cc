@@ -1,4 +1,4 @@
-// The sky as the GPU looks it up, pixel by pixel, against the same table on the CPU.
+// Tests of the sky as the GPU looks it up, pixel by pixel, compared with the same table on the CPU.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -30,7 +30,7 @@ class SkyLookup : public testing::Test {
     context_ = *std::move(context);
     renderer_ = std::make_unique<SceneRenderer>();
     for (scene::FieldParameters& field : scene_.fields) field.visible = false;
-    // Black ground: below the horizon there is the air before it alone.
+    // The ground is black, so below the horizon only the air in front of it is visible.
     scene_.sky = {.brightness = 1.0, .ground_albedo = 0.0, .turbidity = 1.5};
     scene_.output = {kWidth_px, kHeight_px, 90};
   }
@@ -39,7 +39,8 @@ class SkyLookup : public testing::Test {
     context_.reset();
   }
 
-  // From above the middle of the world, where up is up; 112 degrees wide, 90 high.
+  // Looks from above the middle of the world, where the vertical is the z axis. The view is 112
+  // degrees wide and 90 high.
   void LookTo(double eye_m, double azimuth_deg, double elevation_deg) {
     scene_.camera = scene::SpotterCamera{.place_m = {0.0, 0.0},
                                          .eye_height_m = eye_m,
@@ -48,8 +49,8 @@ class SkyLookup : public testing::Test {
                                          .focal_length_mm = 12.0};
   }
 
-  // For each pixel and colour, what the GPU shows over what the CPU finds; 0 next to the horizon,
-  // which is an edge.
+  // Returns, for each pixel and colour, the ratio of the GPU's value to the CPU's. It is 0 next to
+  // the horizon, which is an edge.
   std::vector<glm::dvec3> GpuOverCpu() {
     const auto frame =
         renderer_->Draw(scene_, fields_, {.single_precision = true, .sun_seen = false});
@@ -90,8 +91,8 @@ class SkyLookup : public testing::Test {
 };
 
 struct Worst {
-  double off = 0.0;   // from what the CPU finds
-  double jump = 0.0;  // of that from a pixel to its neighbours
+  double off = 0.0;   // largest difference from the CPU's value
+  double jump = 0.0;  // largest change of that difference between neighbouring pixels
   int compared = 0;
 };
 
@@ -127,15 +128,16 @@ TEST_P(SkyLookupFrom, IsWhatTheCpuFindsWithoutSeams) {
       LookTo(eye_m, scene_.sun.azimuth_deg + turn_deg, eye_m < 10.0 ? 46.0 : 10.0);
       const Worst worst = WorstOf(GpuOverCpu());
       EXPECT_GT(worst.compared, kWidth_px * kHeight_px);
-      // Tables of two heights have their horizons, and twilight above them, in different places.
+      // Tables of two heights have their horizons, and the twilight above them, in different
+      // places.
       EXPECT_LT(worst.off, mixed ? 0.03 : 1e-3) << "sun " << sun_deg << ", turned " << turn_deg;
       EXPECT_LT(worst.jump, mixed ? 0.01 : 1e-3) << "sun " << sun_deg << ", turned " << turn_deg;
     }
   }
 }
 
-// Of heights for which there is a table (2500 m (exp(k / 16) - 1)), and of others, for which two
-// are mixed.
+// The heights include those with a table (2500 m (exp(k / 16) - 1)) and others, for which two
+// tables are mixed.
 INSTANTIATE_TEST_SUITE_P(Heights, SkyLookupFrom,
                          testing::Values(std::pair(710.0635, false), std::pair(11886.5067, false),
                                          std::pair(2.0, true), std::pair(600.0, true),

@@ -1,5 +1,5 @@
-// A technique that this file alone knows, registered as docs/extending.md says: chosen by its name
-// and drawn like any other.
+// Tests of a technique that only this file defines, registered as docs/extending.md describes: it
+// is chosen by its name and drawn like any other.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Fills the picture with one grey in front of everything.
+// A technique that fills the picture with one grey in front of everything.
 class Toy : public Technique {
  public:
   explicit Toy(Workspace& workspace) : workspace_(workspace) {}
@@ -70,7 +70,7 @@ class Toy : public Technique {
   gl::Texture2D eye_;
 };
 
-// The same in front of the storm's medium, whose shadow falls on the ground.
+// The same technique in front of the storm's medium, whose shadow falls on the ground.
 class ToyOfMedium final : public Toy {
  public:
   using Toy::Toy;
@@ -116,7 +116,7 @@ class ToyTechniqueTest : public testing::Test {
         std::make_unique<SceneRenderer>(std::make_shared<gl::ProgramCache>(), std::move(registry));
     scene_.output.width_px = 16;
     scene_.output.height_px = 8;
-    // No air in front of the toy.
+    // There is no air in front of the toy.
     scene_.camera = scene::OrbitCamera{.elevation_deg = 30.0, .distance_m = 2e3};
   }
 
@@ -150,7 +150,7 @@ TEST_F(ToyTechniqueTest, IsChosenByItsNameAndDrawn) {
   EXPECT_NEAR(MiddleRed(), 0.5F, 0.05F);
   Choose("toy", {{"level", 0.25}});
   EXPECT_NEAR(MiddleRed(), 0.25F, 0.05F);
-  // And back to one of the program's own, which shows the lit cloud.
+  // Switches back to one of the program's own techniques, which shows the lit cloud.
   scene_.rendering.technique = scene::LightVolume{};
   const float cloud = MiddleRed();
   Choose("toy", {{"level", 2.0}});
@@ -162,7 +162,7 @@ TEST_F(ToyTechniqueTest, MayDrawTheStormsMedium) {
   const auto frame = renderer_->Draw(scene_, fields_, {});
   ASSERT_TRUE(frame.ok()) << frame.status();
   EXPECT_THAT(frame->content.fields, testing::ElementsAre(physics::Hydrometeor::kCloud));
-  // Its shadow is that of the medium, which nobody else computes.
+  // The toy's shadow is that of the medium, which no other technique computes.
   EXPECT_EQ(std::count_if(frame->stages.begin(), frame->stages.end(),
                           [](const scene::StageTime& time) {
                             return time.stage == scene::FrameStage::kGround;

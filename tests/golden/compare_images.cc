@@ -1,5 +1,5 @@
-// compare_images EXPECTED ACTUAL DIFFERENCE: exits 0 when two PNG pictures are the same to the eye,
-// else says how they differ, writes the difference times eight, and exits 1.
+// compare_images EXPECTED ACTUAL DIFFERENCE: exits 0 when two PNG pictures look the same to the
+// eye. Otherwise it reports how they differ, writes the difference times eight, and exits 1.
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>

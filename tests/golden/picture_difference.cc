@@ -7,19 +7,19 @@
 namespace thunderhead::golden {
 namespace {
 
-// Mesa's versions differ in the last bits of a texture fetch: a step of two in 255 anywhere, more
-// only in pixels where a slice's edge falls to the other side.
+// Mesa's versions differ in the last bits of a texture fetch. That causes a step of two in 255
+// anywhere, and more only in pixels where a slice's edge falls to the other side.
 constexpr double kMaxMeanStep = 0.5;
 constexpr int kLargeStep = 8;
 constexpr double kMaxShareOfLargeSteps = 0.002;
 
-// Blocks are small against a storm, and large against what a single edge may shift: there a step
-// counts as one of kMaxStepInShift.
+// Blocks are small compared with a storm, and large compared with the shift that a single edge may
+// cause. A large step counts as kMaxStepInShift.
 constexpr int kBlock_px = 20;
 constexpr int kMaxStepInShift = 2;
 constexpr double kMaxShift = 0.25;
 
-// The mean shift of one colour in a block.
+// Returns the mean shift of one colour in a block.
 double ShiftOf(const frame::RgbImage& expected, const frame::RgbImage& actual, int low_x, int low_y,
                std::size_t color) {
   const int high_x = std::min(low_x + kBlock_px, expected.width_px);

@@ -1,4 +1,4 @@
-// That the comparison of golden pictures lets rounding pass and nothing more.
+// Tests that the comparison of golden pictures tolerates rounding and nothing else.
 #include "picture_difference.h"
 
 #include "gtest/gtest.h"
@@ -9,7 +9,8 @@ namespace {
 constexpr int kWidth_px = 320;
 constexpr int kHeight_px = 200;
 
-// A grey picture; `Change` adds to each value of the middle third of its width, where a storm is.
+// A fixture with a grey picture. `Change` adds to each value of the middle third of its width,
+// where a storm would be.
 class PictureDifferenceTest : public testing::Test {
  protected:
   static frame::RgbImage Grey() {

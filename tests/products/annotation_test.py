@@ -13,7 +13,7 @@ import numpy
 from PIL import Image
 
 SIZE = ("--size", "480x270")
-# No error is measured: within a time limit it would differ from run to run.
+# No error is measured, because within a time limit it would differ from run to run.
 FAST = ("--quality", "fast", "--error-seconds", "0")
 LAMBERT = ({"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
            "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0))
@@ -39,7 +39,7 @@ class AnnotationTest(ProductTest):
         self.assertGreater(differs[240:, :160].sum(), 200)
         self.assertEqual(differs[45:235].sum(), 0)
         self.assertEqual(differs[:, 300:].sum(), 0)
-        # The scene in the PNG's text is the same.
+        # The PNG text contains the same scene.
         with Image.open(annotated) as a, Image.open(plain) as b:
             self.assertEqual(a.text, b.text)
         titled = self.folder / "titled.png"
@@ -56,7 +56,7 @@ class AnnotationTest(ProductTest):
         with_legend = pixels(output)[150:, 380:]
         self.render(SAMPLE, output, *SIZE, "--annotate", "--scene", without)
         without_legend = pixels(output)[150:, 380:]
-        # Of cloud, rain and ice.
+        # The colours are those of cloud, rain and ice.
         for colour in ((0xE6, 0x9F, 0x00), (0x56, 0xB4, 0xE9), (0xCC, 0x79, 0xA7)):
             self.assertGreater((numpy.abs(with_legend - colour) < 10).all(axis=2).sum(), 15, colour)
             self.assertEqual((numpy.abs(without_legend - colour) < 10).all(axis=2).sum(), 0, colour)

@@ -11,7 +11,8 @@ import netCDF4
 import numpy
 from PIL import Image
 
-# By WRF's MAP_PROJ: the attributes, the same as PROJ writes it, the domain's middle, and CF's name of it.
+# For each WRF MAP_PROJ: the attributes, the same projection in PROJ's notation, the domain's middle, and the name in
+# CF.
 PROJECTIONS = {
     "lambert": (
         {"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
@@ -23,8 +24,8 @@ PROJECTIONS = {
         {"MAP_PROJ": 3, "TRUELAT1": 15.0, "STAND_LON": 120.0},
         "+proj=merc +lat_ts=15 +lon_0=120 +R=6370000 +no_defs", (122.0, 14.0), "mercator"),
 }
-# Not centred on the domain, not as wide as it, and not square, so that no mistake cancels another. Lit from above and without turbulent
-# detail, so that clouds are brightest in their middles.
+# The view is neither centred on the domain, nor as wide, nor square, so that no two mistakes cancel. It is lit from
+# above and has no turbulent detail, so that clouds are brightest in their middles.
 VIEW = """{"camera": {"topDown": {"xM": 3000, "yM": -2000, "widthM": 150000}}, "sun": {"elevationDeg": 90},
            "ground": {"cover": "COVER_PLAIN"}, "rendering": {"lightVolume": {"detail": false}}}"""
 SIZE_PX = (300, 260)
@@ -71,7 +72,7 @@ class MapTest(ProductTest):
         for x, y in CLOUDS:
             lon, lat = coordinates["lon"][y, x], coordinates["lat"][y, x]
             nearest_m = min(numpy.hypot((a - lon) * numpy.cos(numpy.radians(lat)), b - lat) for a, b in found) * 111_177.0
-            # A cloud of one cell of 3 km has soft edges; its middle is known to half a pixel.
+            # A cloud of one 3 km cell has soft edges, so its middle is known to half a pixel.
             self.assertLess(nearest_m, 0.5 * PIXEL_M, f"cell {x}, {y}")
 
     def test_clouds_are_at_their_places(self) -> None:
@@ -91,11 +92,11 @@ class MapTest(ProductTest):
         self.assertIn("6370000", info["coordinateSystem"]["wkt"])
         scene = json.loads(info["metadata"][""]["thunderhead.scene"])
         self.assertEqual(scene["camera"]["topDown"]["widthM"], 150000)
-        # The corner by a way of its own: the domain's middle projected, plus the view.
+        # Computes the corner independently: the domain's middle projected, plus the view.
         x_m, y_m = transform([middle], "-s_srs", DEGREES, "-t_srs", projection)[0]
         expected = [x_m + 3000 - 75000, PIXEL_M, 0.0, y_m - 2000 + 0.5 * 260 * PIXEL_M, 0.0, -PIXEL_M]
         for found, wanted in zip(info["geoTransform"], expected):
-            # XLAT and XLONG are floats: a metre.
+            # XLAT and XLONG are floats, accurate to a metre.
             self.assertAlmostEqual(found, wanted, delta=2.0)
         pixels = brightness(tiff)
         self.expect_clouds(transform(blobs(pixels - numpy.median(pixels)), tiff, "-t_srs", DEGREES), coordinates)
@@ -117,7 +118,8 @@ class MapTest(ProductTest):
             values = depth[:].filled(numpy.nan)
             middles = blobs(values)
             self.expect_clouds([tuple(between(file[axis][:], *at) for axis in ("lon", "lat")) for at in middles], coordinates)
-            # The clouds' middles are at 4.5 km, their tops at 6 and so soft to 7; where it is clear, there is no such height.
+            # The clouds' middles are at 4.5 km. Their tops are at 6 km and, softened, reach 7 km. Clear columns have no
+            # such height.
             heights = file["depth_one_height"][:]
             at = [(int(column), int(row)) for column, row in middles]
             for column, row in at:
@@ -132,7 +134,7 @@ class MapTest(ProductTest):
             self.assertGreater(file["estimated_error"][...], 0.0)
             self.assertLess(file["estimated_error"][...], 1.0)
             self.assertIn("Thunderhead", file.source)
-        # GDAL reads the same map out of it.
+        # GDAL reads the same map from the file.
         geotransform = json.loads(run("gdalinfo", "-json", f'NETCDF:"{light}":storm_optical_depth').stdout)["geoTransform"]
         for found, wanted in zip(geotransform, json.loads(run("gdalinfo", "-json", tiff).stdout)["geoTransform"]):
             self.assertAlmostEqual(found, wanted, places=2)

@@ -55,15 +55,15 @@ class MetadataTest(ProductTest):
         self.assertEqual(scene["sun"]["azimuthDeg"], 120)
         self.assertEqual(scene["camera"]["orbit"]["distanceM"], 90000)
         self.assertGreater(float(texts["thunderhead.estimated_error"]), 0.0)
-        # The pose, from the orbit: west of the target, 10 degrees above it, looking back at it.
+        # The pose follows from the orbit: west of the target, 10 degrees above it, looking back at it.
         view = json.loads(texts["thunderhead.view"])
         distance_m, up = 90000 * math.cos(math.radians(10)), 90000 * math.sin(math.radians(10))
         for axis, expected in {"xM": 1000 - distance_m, "yM": 2000, "zM": 4000 + up}.items():
-            # The Earth's curvature tilts it by as much as the eye is away: 90 km in 8500.
+            # The Earth's curvature tilts the pose by the angle of the eye's distance: 90 km in 8500.
             self.assertAlmostEqual(view["eye"][axis], expected, delta=1000)
         forward = [view["forward"].get(axis, 0.0) for axis in "xyz"]
         self.assertAlmostEqual(math.dist(forward, [math.cos(math.radians(10)), 0, -math.sin(math.radians(10))]), 0.0, delta=0.02)
-        # 40 degrees high, 100 pixels.
+        # The view is 40 degrees and 100 pixels high.
         self.assertAlmostEqual(float(texts["thunderhead.focal_length_px"]), 50 / math.tan(math.radians(20)), delta=0.1)
         latitude, longitude = (float(part) for part in str(texts["thunderhead.middle_deg"]).split())
         self.assertAlmostEqual(latitude, self.places["lat"][19:21, 19:21].mean(), places=3)
@@ -105,7 +105,7 @@ class MetadataTest(ProductTest):
             self.assertEqual(told["view"], "west")
             self.assertEqual(told["scene"]["sun"]["azimuthDeg"], 120)
             self.assertLess(told["pose"]["eye"]["xM"], -80000)
-            # The largest of its pictures, as in the manifest.
+            # The error is the largest of its pictures, as in the manifest.
             lines = [json.loads(line) for line in (self.folder / "manifest.jsonl").read_text().splitlines()]
             errors = [line["estimated_error"] for line in lines if line["file"].endswith(".png")]
             self.assertGreater(min(errors), 0.0)

@@ -11,7 +11,7 @@ import time
 import unittest
 from collections.abc import Callable
 
-# ctest counts a test that ends with this as skipped.
+# The exit code that ctest counts as skipped.
 SKIPPED = 77
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("THUNDERHEAD_BINARY", str(ROOT / "build/release/bin/thunderhead"))
@@ -28,15 +28,16 @@ if shutil.which("gdaltransform") is None:
 import netCDF4  # noqa: E402
 import numpy  # noqa: E402
 
-# WRF's sphere, in degrees and as its grids are.
+# WRF's sphere, in degrees, and the projections of its grids.
 DEGREES = "+proj=longlat +R=6370000 +no_defs"
-# Longest wait before a test counts as hung. It is no requirement on speed.
+# The longest wait before a test counts as hung. It is not a requirement on speed.
 HANG_LIMIT_S = 600.0
 CELLS = 40
 SPACING_M = 3000.0
 LEVELS = 10
 TOP_M = 10000.0
-# Columns of thick cloud: west-east and south-north, counted from 0. Far from the middle and from each other's mirror image.
+# Columns of thick cloud: (west-east, south-north), counted from 0. They are far from the middle and from each other's
+# mirror image.
 CLOUDS = [(31, 9), (8, 13), (12, 33)]
 TIMES = ["2013-05-20_20:00:00", "2013-05-20_20:10:00"]
 

@@ -12,14 +12,14 @@ import unittest
 
 from product_test import HANG_LIMIT_S, PROGRAM, ROOT, ProductTest, run, wait_for
 
-# Twelve files of one run, beside the repository.
+# Twelve files of one model run, next to the repository.
 SERIES = ROOT.parent / "shared/data/supercell-series"
-# So many products are there when it is killed.
+# The program is killed when so many products exist.
 KILLED_AT = (1, 8, 17)
 PIECES = 5
-# This file comes cut short at first.
+# The index of the file that is first copied truncated.
 CUT = 4
-# After this one the third is copied once more.
+# After this file the third is copied once more.
 AGAIN_AFTER = 6
 
 
@@ -67,7 +67,7 @@ class WatchSeriesTest(ProductTest):
             if number == AGAIN_AFTER:
                 wait_for("pictures of the third file", lambda: len(list(self.products.glob("run42_0030_*.png"))) == 2)
                 self.copy(self.files[2])
-        # Whole only after all others are drawn, and the program has been killed for the last time.
+        # The complete file comes only after all others are drawn and the program has been killed for the last time.
         wait_for("pictures of the other files", lambda: self.pictures() == 2 * len(self.files) - 2 and self.killed.is_set())
         self.copy(cut)
 
@@ -93,7 +93,7 @@ class WatchSeriesTest(ProductTest):
         program = self.watch()
         self.assertEqual(program.wait(HANG_LIMIT_S), 0, (self.folder / "errors").read_text())
         self.check()
-        # The same again draws nothing.
+        # Another run draws nothing.
         before = self.log.read_text().count('"event":"drawn"')
         program = self.watch()
         self.assertEqual(program.wait(HANG_LIMIT_S), 0)
@@ -106,7 +106,7 @@ class WatchSeriesTest(ProductTest):
         self.assertEqual(there, sorted([*stills, "manifest.jsonl", "run42.webm"]))
         entries = [json.loads(line) for line in (self.products / "manifest.jsonl").read_text().splitlines()]
         self.assertEqual(sorted(entry["file"] for entry in entries), sorted([*stills, "run42.webm"]))
-        # As docs/pipelines.md tells an auditor to.
+        # Checks the hashes as docs/pipelines.md tells an auditor to.
         sums = "".join(f'{entry["sha256"]}  {entry["file"]}\n' for entry in entries)
         run("sha256sum", "--check", "--quiet", text=sums, cwd=self.products)
         made_of = {file.name: sha256(file) for file in self.files}
@@ -115,7 +115,8 @@ class WatchSeriesTest(ProductTest):
                 self.assertEqual(entry["input"]["sha256"], made_of[pathlib.Path(entry["input"]["file"]).name], entry["file"])
         events = [json.loads(line) for line in self.log.read_text().splitlines() if line.endswith("}")]
         drawn = collections.Counter(pathlib.Path(event["file"]).name for event in events if event["event"] == "drawn")
-        # Whoever is killed after a product and before its line says nothing of it; nothing else is drawn twice.
+        # A run that is killed between a product and its log line does not log the product. No other product is drawn
+        # twice.
         self.assertEqual({name: drawn[name] for name in stills if drawn[name] > 1}, {})
         self.assertGreaterEqual(sum(drawn[name] for name in stills), len(stills) - len(KILLED_AT) * 2)
         if shutil.which("ffprobe") is not None:

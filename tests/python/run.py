@@ -21,12 +21,12 @@ def main() -> int:
         print(f"SKIPPED: not installed: {', '.join(missing) or 'protobuf-compiler-grpc'}; ./dev install python does that")
         return SKIPPED
     with tempfile.TemporaryDirectory(prefix="thunderhead-python-") as folder:
-        # A copy, as setuptools leaves its own files beside the sources.
+        # Works on a copy, because setuptools leaves its own files next to the sources.
         source = pathlib.Path(folder) / "repository"
         for name in ("client-python", "proto"):
             shutil.copytree(ROOT / name, source / name)
         installed = pathlib.Path(folder) / "installed"
-        # No isolation: what the build needs is Debian's.
+        # Without isolation, because Debian's packages provide the build requirements.
         install = [sys.executable, "-m", "pip", "install", "--quiet", "--no-build-isolation", "--no-deps", "--no-index", "--target",
                    str(installed), str(source / "client-python")]
         subprocess.run(install, check=True)
@@ -34,7 +34,8 @@ def main() -> int:
         mypy = [sys.executable, "-m", "mypy", "--config-file", str(source / "client-python/pyproject.toml"), "--cache-dir",
                 f"{folder}/mypy"]
         steps = [
-            # The package as installed, with what protoc generated, and then the examples as its users.
+            # Checks the installed package, including the code that protoc generated, and then the examples, as their
+            # users would.
             [*mypy, "-p", "thunderhead"],
             [*mypy, *map(str, sorted((ROOT / "client-python/examples").glob("*.py")))],
             [sys.executable, str(ROOT / "client-python/tests/test_client.py"), *sys.argv[1:]],

@@ -1,6 +1,6 @@
 // Comparisons of Monte Carlo estimates with known answers, and media to compare on. Seeds are
-// fixed, so a test's outcome is too; the limit is chosen so that a correct program with fresh seeds
-// would fail any one of all the folder's comparisons once in 100 runs.
+// fixed, so a test's outcome is too. The limit is chosen so that a correct program with fresh seeds
+// would fail one or more of the folder's comparisons once in 100 runs.
 #pragma once
 
 #include <cmath>
@@ -13,11 +13,13 @@
 
 namespace thunderhead::reference {
 
-// At least as many as this folder makes; Bonferroni's correction divides by it.
+// An upper bound on the number of comparisons in this folder. Bonferroni's correction divides by
+// it.
 inline constexpr int kComparisons = 200;
 inline constexpr double kFamilyErrorRate = 0.01;
 
-// The number of standard errors that a correct estimate exceeds with kFamilyErrorRate in all: 4.06.
+// Returns the number of standard errors that a correct estimate exceeds with kFamilyErrorRate in
+// all: 4.06.
 inline double LargestZ() {
   const double tail = kFamilyErrorRate / kComparisons;
   double low = 0.0;
@@ -29,8 +31,9 @@ inline double LargestZ() {
   return low;
 }
 
-// `slack` is what `expected` itself may be off by (rounding of a printed figure, say). An estimate
-// that is less precise than `largest_error` proves nothing and fails.
+// Expects that the estimate agrees with `expected`. `slack` is the possible error of `expected`
+// itself, such as the rounding of a printed figure. An estimate less precise than `largest_error`
+// proves nothing and fails.
 inline void ExpectAgrees(const FluxShare& estimate, double expected, double slack,
                          double largest_error) {
   EXPECT_LE(estimate.standard_error, largest_error) << "too noisy to compare";
@@ -44,7 +47,7 @@ inline void ExpectAgree(const FluxShare& a, const FluxShare& b, double largest_e
   ExpectAgrees(difference, 0.0, 0.0, largest_error);
 }
 
-// Mean and standard error of repeated draws.
+// The mean and standard error of repeated draws.
 class SampleMean {
  public:
   void Add(double value) {
@@ -61,7 +64,7 @@ class SampleMean {
   double squares_ = 0.0;
 };
 
-// Towards a sun at an angle from the zenith, in the east.
+// Returns the direction towards a sun in the east at an angle from the zenith.
 inline glm::dvec3 SunAt(double zenith_deg) {
   const double zenith = zenith_deg * std::numbers::pi / 180.0;
   return {std::sin(zenith), 0.0, std::cos(zenith)};
@@ -75,7 +78,7 @@ inline std::shared_ptr<const Medium> Slab(double optical_depth, double g, double
   return *SlabMedium(optical_depth, SampledPhase::HenyeyGreenstein(g), albedo);
 }
 
-// A grid with cells of the given size and its lower corner somewhere, its box the grid's.
+// Returns a medium whose box is a grid with cells of the given size and an arbitrary lower corner.
 inline MediumDescription EmptyDescription(const glm::ivec3& cells, const glm::dvec3& spacing_m) {
   MediumDescription description;
   description.grid = {cells, spacing_m, {-300.0, 120.0, 40.0}};
@@ -84,7 +87,7 @@ inline MediumDescription EmptyDescription(const glm::ivec3& cells, const glm::dv
   return description;
 }
 
-// A lumpy cloud of 9 x 7 x 6 cells with gaps, up to `densest_per_m`.
+// Returns a lumpy cloud of 9 x 7 x 6 cells with gaps, with extinction up to `densest_per_m`.
 inline MediumDescription LumpyCloud(double densest_per_m, double albedo, double g) {
   MediumDescription cloud = EmptyDescription({9, 7, 6}, {100.0, 130.0, 70.0});
   ScatteringGroup group{{}, glm::dvec3(albedo), HenyeyGreensteinPhase(g)};
@@ -98,8 +101,8 @@ inline MediumDescription LumpyCloud(double densest_per_m, double albedo, double 
   return cloud;
 }
 
-// Columns of extinction `low_per_m` and `high_per_m` in turn, like a chessboard, with vertical
-// walls; 8 x 8 columns of 500 m, 250 m tall.
+// Returns columns with vertical walls that alternate between the extinctions `low_per_m` and
+// `high_per_m` like a chessboard. There are 8 x 8 columns of 500 m, 250 m tall.
 inline MediumDescription Chessboard(double low_per_m, double high_per_m, double albedo, double g) {
   MediumDescription board = EmptyDescription({8, 8, 1}, {500.0, 500.0, 250.0});
   board.interpolation = Interpolation::kConstant;

@@ -1,5 +1,6 @@
-// Slabs with published answers: test 3 of the DISORT package, and van de Hulst's tables (Multiple
-// light scattering, 1980) for albedo 0.9. Then laws that must hold in any medium.
+// Tests of slabs with published answers: test 3 of the DISORT package, and van de Hulst's tables
+// (Multiple light scattering, 1980) for albedo 0.9. They are followed by laws that must hold in any
+// medium.
 #include "reference/flux.h"
 
 #include <array>
@@ -63,8 +64,8 @@ TEST(FluxSlab, VanDeHulst) {
   ExpectBalance(result);
 }
 
-// Chandrasekhar's H function for isotropic scattering of the given albedo, by iterating
-// 1 / H = sqrt(1 - w) + (w / 2) integral of H(m) m / (mu + m).
+// Returns Chandrasekhar's H function for isotropic scattering of the given albedo. It iterates 1 /
+// H = sqrt(1 - w) + (w / 2) integral of H(m) m / (mu + m).
 double ChandrasekharH(double albedo, double at_mu) {
   constexpr int kNodes = 2000;
   std::vector<double> h(kNodes, 1.0);
@@ -84,8 +85,9 @@ double ChandrasekharH(double albedo, double at_mu) {
   return value(at_mu);
 }
 
-// The plane albedo of a semi-infinite isotropic atmosphere is 1 - sqrt(1 - w) H(mu0): exact, for a
-// sun at 60 and at 80 degrees. Beyond optical depth 40 nothing comes back (exp(-0.53 * 2 * 40)).
+// The plane albedo of a semi-infinite isotropic atmosphere is exactly 1 - sqrt(1 - w) H(mu0), here
+// for a sun at 60 and at 80 degrees. Nothing returns from beyond optical depth 40 (exp(-0.53 * 2 *
+// 40)).
 TEST(FluxSlab, DeepIsotropicAtmosphereUnderLowSun) {
   constexpr double kAlbedo = 0.9;
   const auto medium = Slab(40.0, 0.0, kAlbedo);
@@ -98,7 +100,7 @@ TEST(FluxSlab, DeepIsotropicAtmosphereUnderLowSun) {
   }
 }
 
-// In the thin limit a slab reflects single scattering alone: w tau / mu0 times the share of the
+// In the thin limit a slab reflects only single scattering: w tau / mu0 times the share of the
 // phase function that points up. Twice scattered light is of relative order tau / mu0 = 2e-3.
 TEST(FluxSlab, ThinLimitIsSingleScattering) {
   constexpr double kOpticalDepth = 1e-3;
@@ -109,7 +111,7 @@ TEST(FluxSlab, ThinLimitIsSingleScattering) {
   ExpectAgrees(result.absorptance, 0.2 * kOpticalDepth / 0.5, 5e-3 * once, 1.5e-5);
 }
 
-// 2 E3(tau): the transmittance of an absorbing slab for diffuse light.
+// Returns 2 E3(tau), the transmittance of an absorbing slab for diffuse light.
 double DiffuseTransmittance(double optical_depth) {
   constexpr int kSteps = 100000;
   double sum = 0.0;
@@ -150,8 +152,8 @@ TEST(FluxGround, EmptySkyShowsTheGround) {
   EXPECT_EQ(result.transmittance_diffuse.value, 0.0);
 }
 
-// A black box 1 km tall and 4 km wide under a sun at 60 degrees: the beam leaves through the side
-// where it enters less than tan 60 km from it.
+// A black box 1 km tall and 4 km wide under a sun at 60 degrees. The beam leaves through a side
+// where it enters less than tan 60 km from that side.
 TEST(FluxOpenSides, AbsorbingBoxUnderLowSun) {
   MediumDescription box = EmptyDescription({4, 3, 2}, {1000.0, 1000.0, 500.0});
   constexpr double kExtinction_per_km = 0.7;
@@ -178,13 +180,13 @@ TEST(FluxOpenSides, DomainLargerThanTheMedium) {
   problem.domain_low_m -= glm::dvec3(3000.0, 1000.0, 0.0);
   problem.domain_high_m += glm::dvec3(3000.0, 1000.0, 500.0);
   const FluxResult result = Flux(problem, 400'000);
-  // The box (optical depth 100) stops what falls on its top and on its sunlit wall, 2 km wide in
-  // all as seen from the top's plane, of 7 x 3 km.
+  // The box (optical depth 100) stops the light that falls on its top and on its sunlit wall. Seen
+  // from the plane of the top, they are 2 km wide together, of an area of 7 x 3 km.
   ExpectAgrees(result.absorptance, 2.0 * 1.0 / 21.0, 1e-4, 1e-3);
   ExpectBalance(result);
 }
 
-// Optical depth from x = 0 eastwards along a row of the chessboard, of unit path per metre.
+// Returns the optical depth from x = 0 eastwards along a row of the chessboard, per metre of path.
 double DepthUpTo(double x_m, double low_per_m, double high_per_m) {
   const double columns = std::floor(x_m / 500.0);
   const double pairs = std::floor(columns / 2.0);
@@ -194,8 +196,8 @@ double DepthUpTo(double x_m, double low_per_m, double high_per_m) {
          (first > 0.0 ? 500.0 * low_per_m + rest_m * high_per_m : rest_m * low_per_m);
 }
 
-// Steep walls, periodic, low sun: the direct beam against exact optical paths through the walls.
-// For a sun at 60 degrees the beam drifts 433 m in the 250 m of height.
+// Compares the direct beam with exact optical paths through steep walls, in a periodic domain under
+// a low sun. For a sun at 60 degrees the beam drifts 433 m in the 250 m of height.
 TEST(FluxSteepWalls, DirectBeamAt60Degrees) {
   const double low_per_m = 2.0 / 250.0 / 4.0;
   const double high_per_m = 18.0 / 250.0 / 4.0;
@@ -216,7 +218,8 @@ TEST(FluxSteepWalls, DirectBeamAt60Degrees) {
   ExpectBalance(result);
 }
 
-// Irradiance through a horizontal plane by paths traced backwards, over the sunlight on the top.
+// Returns the irradiance through a horizontal plane, by paths traced backwards, over the sunlight
+// on the top.
 FluxShare BackwardShare(const Medium& medium, const glm::dvec3& towards_sun, bool at_top) {
   Surroundings around;
   around.towards_sun = towards_sun;
@@ -235,7 +238,7 @@ FluxShare BackwardShare(const Medium& medium, const glm::dvec3& towards_sun, boo
   return mean.Share();
 }
 
-// Photons from the sun and paths from the detector share no estimator; they must agree on a step
+// Photons from the sun and paths from the detector share no estimator. They must agree on a step
 // cloud (optical depth 2 and 18) under a sun at 60 degrees, with and without absorption.
 TEST(FluxSteepWalls, ForwardAgreesWithBackward) {
   for (const double albedo : {1.0, 0.95}) {
@@ -249,7 +252,7 @@ TEST(FluxSteepWalls, ForwardAgreesWithBackward) {
   }
 }
 
-// The same for a lumpy cloud that varies linearly between cells.
+// Makes the same comparison for a lumpy cloud that varies linearly between cells.
 TEST(FluxPeriodic, ForwardAgreesWithBackward) {
   MediumDescription cloud = LumpyCloud(0.04, 1.0, 0.7);
   cloud.sides = Sides::kPeriodic;
@@ -259,7 +262,7 @@ TEST(FluxPeriodic, ForwardAgreesWithBackward) {
   ExpectAgree(forward.transmittance_diffuse, BackwardShare(*medium, SunAt(60.0), false), 6e-3);
 }
 
-// Two groups against one with the mixed phase function and albedo.
+// Compares two groups with one group of the mixed phase function and albedo.
 TEST(FluxGroups, MixtureIsTheWeightedMean) {
   MediumDescription two = Chessboard(0.002, 0.018, 1.0, 0.8);
   two.groups.push_back(two.groups[0]);
@@ -298,9 +301,9 @@ TEST(Flux, SameForAnyNumberOfThreads) {
   }
 }
 
-// The standard deviation of 400 runs with different seeds is the standard error that they report:
-// the sum of squared deviations over squared errors is chi-squared, within 4 of its standard
-// deviations.
+// The standard deviation of 400 runs with different seeds must match the standard error that they
+// report. The sum of squared deviations over squared errors is chi-squared, so it must lie within 4
+// of its standard deviations.
 TEST(Flux, StandardErrorsAreHonest) {
   FluxProblem problem = FluxProblem::Of(Slab(2.0, 0.75, 0.9), SunAt(60.0));
   problem.ground_albedo = 0.5;

@@ -67,7 +67,8 @@ TEST(Medium, RefusesWhatIsNoExtinction) {
   EXPECT_FALSE(Medium::Create(bright).ok());
 }
 
-// Each group's expected scattering, and its phase function's share, are those of the mixture.
+// Each group's expected scattering and its share of the phase function must be those of the
+// mixture.
 TEST(Medium, GroupsAreChosenByTheirScattering) {
   MediumDescription mixed = EmptyDescription({1, 1, 1}, {10.0, 10.0, 10.0});
   const auto forward = HenyeyGreensteinPhase(0.8);
@@ -89,7 +90,7 @@ TEST(Medium, GroupsAreChosenByTheirScattering) {
   }
 }
 
-// The similar medium turns light as much by scattering it less often, and absorbs as much.
+// The similar medium scatters light less often, but deflects and absorbs it as much.
 TEST(Medium, TheSimilarOneTurnsAndAbsorbsAsMuch) {
   MediumDescription mixed = EmptyDescription({1, 1, 1}, {10.0, 10.0, 10.0});
   mixed.groups.push_back({{2.0F}, glm::dvec3(0.9), HenyeyGreensteinPhase(0.8)});
@@ -97,7 +98,7 @@ TEST(Medium, TheSimilarOneTurnsAndAbsorbsAsMuch) {
   mixed.similar = true;
   const auto medium = Made(mixed);
   const glm::dvec3 middle_m = medium->Low_m() + 5.0;
-  // Light that is turned backwards is scattered as often.
+  // Light in a group that scatters backwards is scattered as often as before.
   const double forward_per_m = 2.0 * (1.0 - 0.9 * 0.64);
   EXPECT_NEAR(medium->Extinction_per_m(middle_m, Optics::kSimilar), forward_per_m + 6.0, 1e-6);
   EXPECT_NEAR(medium->Majorant_per_m({0, 0, 0}, Optics::kSimilar), forward_per_m + 6.0, 1e-4);
@@ -116,7 +117,7 @@ TEST(Medium, TheSimilarOneTurnsAndAbsorbsAsMuch) {
   EXPECT_NEAR((forward_per_m + 6.0) * turned, turned_per_m, 1e-4);
 }
 
-// The similar medium has one extinction for all colours: the brightest keeps its albedo.
+// The similar medium has one extinction for all colours: the brightest colour keeps its albedo.
 TEST(Medium, AColoredOneStaysAsBright) {
   MediumDescription red = EmptyDescription({1, 1, 1}, {10.0, 10.0, 10.0});
   red.groups.push_back({{2.0F}, {1.0, 0.5, 0.0}, HenyeyGreensteinPhase(0.8)});
@@ -133,7 +134,7 @@ Ray RandomRay(const Medium& medium, RandomStream* random) {
   const glm::dvec3 place(random->Uniform(), random->Uniform(), random->Uniform());
   const double mu = 2.0 * random->Uniform() - 1.0;
   const glm::dvec3 direction = Deflect({0.0, 0.0, 1.0}, mu, 6.3 * random->Uniform());
-  // From inside or from outside.
+  // The ray starts inside or outside the box.
   return {medium.Low_m() + (2.0 * place - 0.5) * size, direction};
 }
 
@@ -142,7 +143,7 @@ struct Case {
   MediumDescription description;
 };
 
-// Linear and constant cells; a box that cuts cells; a periodic one.
+// Returns media of linear and of constant cells, one whose box cuts cells, and a periodic one.
 std::vector<Case> Cases() {
   std::vector<Case> cases;
   cases.push_back({"linear", LumpyCloud(0.02, 1.0, 0.5)});
@@ -154,7 +155,7 @@ std::vector<Case> Cases() {
   cases.push_back({"periodic", LumpyCloud(0.02, 1.0, 0.5)});
   cases.back().description.sides = Sides::kPeriodic;
   cases.push_back({"chessboard", Chessboard(0.0, 0.02, 1.0, 0.5)});
-  // Condensate at all sides of a domain one cell thick; two groups.
+  // The domain is one cell thick, with condensate at all sides and two groups.
   cases.push_back({"thin", EmptyDescription({5, 1, 4}, {100.0, 200.0, 70.0})});
   ScatteringGroup thick{std::vector<float>(20, 0.008F), glm::dvec3(1.0),
                         HenyeyGreensteinPhase(0.5)};
@@ -171,10 +172,10 @@ INSTANTIATE_TEST_SUITE_P(Optics, MediumWith, testing::Values(Optics::kExact, Opt
                            return with.param == Optics::kExact ? "Exact" : "Similar";
                          });
 
-// Along random rays, segments do not overlap, extinction is at most the segment's majorant, and it
-// is zero outside of segments.
+// Along random rays, segments must not overlap. Extinction must be at most the segment's majorant,
+// and zero outside of segments.
 TEST_P(MediumWith, StretchesBoundExtinction) {
-  // No cell has more: a larger majorant would be none.
+  // No cell has a larger extinction, so a larger majorant would not be tight.
   const double largest_per_m = GetParam() == Optics::kExact ? 0.02 : 0.75 * 0.02;
   for (const Case& test : Cases()) {
     SCOPED_TRACE(test.name);
@@ -219,9 +220,9 @@ double DepthWithin(const Medium& medium, const Ray& ray, double limit_m, Optics 
   return sum * step_m;
 }
 
-// Transmittances, exact while they are large, and the share of flights without collision, against
-// quadrature along 6 rays that meet each of 6 media. Midpoints across walls of constant cells miss
-// up to 4 steps of 200000.
+// Compares transmittances (exact while they are large) and the share of flights without collision
+// with quadrature, along 6 rays that meet each of 6 media. Midpoints across walls of constant cells
+// miss up to 4 steps of 200000.
 TEST_P(MediumWith, TransmittanceIsThatOfQuadrature) {
   constexpr double kLimit_m = 1500.0;
   for (const Case& test : Cases()) {
@@ -255,7 +256,7 @@ TEST_P(MediumWith, TransmittanceIsThatOfQuadrature) {
   }
 }
 
-// With roulette the mean is right in thick media too.
+// With Russian roulette the mean is correct in thick media too.
 TEST(Tracking, SmallTransmittance) {
   const auto slab = Slab(6.0, 0.0, 1.0);
   const Ray down{{0.0, 0.0, slab->High_m().z}, {0.0, 0.0, -1.0}};

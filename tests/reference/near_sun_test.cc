@@ -10,7 +10,7 @@
 namespace thunderhead::reference {
 namespace {
 
-// 20 degrees across and up.
+// Returns a camera whose view is 20 degrees wide and high.
 Camera LooksAlong(const glm::dvec3& forward) {
   const double half = std::tan(glm::radians(10.0));
   Camera camera;
@@ -42,7 +42,7 @@ TEST(NearSun, RowsBeginAtTheTop) {
 TEST(NearSun, WithoutACutItIsTheDiscAlone) {
   const glm::dvec3 sun = glm::normalize(glm::dvec3(0.3, 0.8, 0.2));
   const std::vector<bool> near = NearSun(LooksAlong(sun), sun, {401, 401}, 0.0);
-  // 0.27 degrees and half a pixel's diagonal: 5.3 + 0.7 pixels.
+  // The radius is 0.27 degrees and half a pixel's diagonal: 5.3 + 0.7 pixels.
   EXPECT_NEAR(static_cast<double>(std::ranges::count(near, true)), std::numbers::pi * 6.0 * 6.0,
               20.0);
 }

@@ -17,7 +17,7 @@ using picture::LinearPicture;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Parallel rays in `direction` through the whole top face.
+// Returns a camera with parallel rays in `direction` through the whole top face.
 Camera OverTheTop(const Medium& medium, const glm::dvec3& direction) {
   const glm::dvec3 half = 0.5 * (medium.High_m() - medium.Low_m());
   const glm::dvec3 middle_m = medium.Low_m() + half * glm::dvec3(1.0, 1.0, 2.0);
@@ -31,7 +31,7 @@ Surroundings SunOnly(const glm::dvec3& towards_sun) {
   return around;
 }
 
-// The mean of one colour over an image whose pixels all estimate parts of the same mean.
+// Returns the mean of one colour over an image whose pixels all estimate parts of the same mean.
 FluxShare MeanOf(const LinearPicture& image, int color) {
   double sum = 0.0;
   double squares = 0.0;
@@ -52,7 +52,8 @@ LinearPicture Trace(std::shared_ptr<const Medium> medium, const Surroundings& ar
   return tracer.Snapshot();
 }
 
-// Upward radiance at the top of DISORT's test 3 (optical depth 8), where the sun's flux is pi.
+// Compares the upward radiance at the top of DISORT's test 3 (optical depth 8), where the sun's
+// flux is pi.
 TEST(PathTracer, UpwardRadianceOfDisortTest3) {
   struct Published {
     double mu;
@@ -73,7 +74,7 @@ TEST(PathTracer, UpwardRadianceOfDisortTest3) {
 }
 
 // Furnace test: under uniform light from all directions a medium that does not absorb is invisible.
-// Where paths are too short for Russian roulette, every single one returns exactly that light.
+// If paths are too short for Russian roulette, every path returns exactly that light.
 TEST(PathTracer, WhiteFurnace) {
   constexpr glm::dvec3 kLight(0.7, 1.0, 3.0);
   Surroundings furnace;
@@ -93,8 +94,8 @@ TEST(PathTracer, WhiteFurnace) {
   }
 }
 
-// Colours whose phase functions differ share their paths: each must come out as if it were alone,
-// after hundreds of scatterings too.
+// Colours whose phase functions differ share their paths. Each must have the result it would have
+// alone, even after hundreds of scatterings.
 TEST(PathTracer, ColorsOfDifferentPhaseFunctions) {
   constexpr std::array<double, 3> kAsymmetries = {0.85, 0.75, 0.2};
   const auto formula = [](double g) {
@@ -120,8 +121,8 @@ TEST(PathTracer, ColorsOfDifferentPhaseFunctions) {
   for (int color = 0; color < 3; ++color) ExpectAgrees(MeanOf(white, color), 1.0, 0.0, 0.006);
 }
 
-// Two lights together give the sum of each alone, in its own colour; a light in the sun's place
-// acts as the sun, except that it does not light the ground.
+// Two lights together give the sum of each alone, each in its own colour. A light in the sun's
+// place acts as the sun, except that it does not light the ground.
 TEST(PathTracer, LightsAddUp) {
   const auto cloud = Made(LumpyCloud(0.02, 1.0, 0.5));
   const auto look = [&](const std::vector<DirectionalLight>& lights, const Surroundings& around) {
@@ -144,7 +145,7 @@ TEST(PathTracer, LightsAddUp) {
   EXPECT_GT(other.value, 0.02);
 }
 
-// The same with a white Lambertian ground below.
+// Runs the furnace test with a white Lambertian ground below.
 TEST(PathTracer, WhiteFurnaceWithGround) {
   Surroundings furnace;
   furnace.sky = [](const glm::dvec3&) { return glm::dvec3(1.0); };
@@ -177,9 +178,9 @@ double OpticalDepth(const Medium& medium, const Ray& ray) {
   return sum * step_m;
 }
 
-// A lumpy cloud of optical depth up to 1 that absorbs nearly all light: single scattering is left,
-// here computed by quadrature along the ray. Double scattering adds at most the albedo, 1 %, times
-// the ratio of phase functions, below 3.
+// A lumpy cloud of optical depth up to 1 absorbs nearly all light. Only single scattering remains,
+// which is computed here by quadrature along the ray. Double scattering adds at most the albedo, 1
+// %, times the ratio of phase functions, below 3.
 TEST(PathTracer, SingleScatteringByQuadrature) {
   constexpr double kAlbedo = 0.01;
   const auto cloud = Made(LumpyCloud(0.003, kAlbedo, 0.3));
@@ -209,9 +210,9 @@ TEST(PathTracer, SingleScatteringByQuadrature) {
   ExpectAgrees(MeanOf(image, 0), expected, 0.03 * expected, 0.02 * expected);
 }
 
-// The thin limit with albedo 1: twice scattered light is of relative order of the optical depth,
-// 0.004 along the slanted paths.
-// With one scattering allowed: the integral over a slab, F0 = 1.
+// Tests the thin limit with albedo 1: twice scattered light is of relative order of the optical
+// depth, 0.004 along the slanted paths. With one scattering allowed, the result is the integral
+// over a slab, F0 = 1.
 TEST(PathTracer, LightScatteredOnceIsTheClosedForm) {
   constexpr double kDepth = 2.0;
   constexpr double kAsymmetry = 0.5;
@@ -245,8 +246,8 @@ TEST(PathTracer, ThinLimit) {
   ExpectAgrees(MeanOf(image, 1), expected, 0.01 * expected, 0.02 * expected);
 }
 
-// Helmholtz reciprocity: the domain's mean radiance over the sunlight on its top is the same when
-// sun and eye are exchanged. On a steep-walled, periodic chessboard.
+// Helmholtz reciprocity: the domain's mean radiance over the sunlight on its top stays the same
+// when sun and eye are exchanged. The medium is a steep-walled, periodic chessboard.
 TEST(PathTracer, Reciprocity) {
   const auto board = Made(Chessboard(2.0 / 250.0, 18.0 / 250.0, 0.99, 0.7));
   const glm::dvec3 a = SunAt(60.0);
@@ -300,7 +301,7 @@ TEST(PathTracer, StandardErrorsAreHonest) {
   for (std::size_t i = 0; i < image.radiance.size(); ++i) {
     chi_squared += std::pow((image.radiance[i].x - mean) / image.standard_error[i].x, 2);
   }
-  // Errors are estimated from 100 samples of a skewed quantity: the ratio is known to about 5 %.
+  // Errors are estimated from 100 samples of a skewed quantity, so the ratio is known to about 5 %.
   EXPECT_NEAR(chi_squared / static_cast<double>(image.radiance.size()), 1.0,
               4.0 * std::sqrt(2.0 / 1024.0) + 0.05);
 }
@@ -317,7 +318,7 @@ TEST(PathTracer, StopsAtRelativeError) {
   const RefineResult result = tracer.Refine(limits, {}, {});
   EXPECT_EQ(result.end, RefineEnd::kRelativeError);
   EXPECT_LE(result.progress.relative_error, 0.05);
-  EXPECT_GE(result.progress.relative_error, 0.04);  // no more work than asked for
+  EXPECT_GE(result.progress.relative_error, 0.04);  // it stops once the request is met
 }
 
 TEST(PathTracer, StopsAfterTheTimeGivenButNotBeforeOneSample) {
@@ -359,7 +360,7 @@ TEST(PathTracer, Extremes) {
       for (const glm::vec3& radiance : image.radiance) {
         EXPECT_TRUE(std::isfinite(radiance.x) && radiance.x >= 0.0F) << optical_depth;
       }
-      // Of the even sky hardly anything is absorbed.
+      // Hardly any of the even sky's light is absorbed.
       EXPECT_GT(MeanOf(image, 0).value, 0.3) << optical_depth << ' ' << zenith_deg;
     }
   }

@@ -14,7 +14,7 @@ namespace {
 using physics::PhaseFunction;
 using physics::PhaseKind;
 
-// The mean of f over samples at evenly spread u: a midpoint rule, no noise.
+// Returns the mean of f over samples at evenly spread u. This is a midpoint rule without noise.
 template <typename F>
 double MeanOverSamples(const SampledPhase& phase, const F& f, std::size_t color = 0) {
   constexpr int kSamples = 200000;
@@ -26,7 +26,7 @@ double MeanOverSamples(const SampledPhase& phase, const F& f, std::size_t color 
 class FormulaTest : public testing::TestWithParam<PhaseFunction> {};
 
 // Linear interpolation between 8193 nodes is off by at most 2e-5 of the value, for the sharpest of
-// these.
+// these functions.
 TEST_P(FormulaTest, ValueIsTheFormula) {
   const SampledPhase phase = SampledPhase::Of(GetParam());
   for (double angle_deg = 0.0; angle_deg <= 180.0; angle_deg += 0.37) {
@@ -65,8 +65,8 @@ INSTANTIATE_TEST_SUITE_P(Formulas, FormulaTest,
                                          PhaseFunction{PhaseKind::kCornetteShanks, 0.979F},
                                          PhaseFunction{PhaseKind::kRayleigh, 0.0F}));
 
-// Samples are linear between values of the table at most 0.04 degrees away, which cuts the corners
-// off its halos and bows.
+// Samples are linear between table values at most 0.04 degrees apart, which cuts the corners off
+// the table's halos and bows.
 class TableTest : public testing::TestWithParam<PhaseFunction> {};
 
 TEST_P(TableTest, ValuesAndSamplesAreTheTables) {
@@ -98,8 +98,8 @@ INSTANTIATE_TEST_SUITE_P(Tables, TableTest,
                                          PhaseFunction{PhaseKind::kIceColumns},
                                          PhaseFunction{PhaseKind::kIceRough}));
 
-// A diffraction peak 0.02 degrees wide on a constant: its share of the light is known. The
-// trapezoid between nodes misses 1.2e-4 of a peak this sharp.
+// A diffraction peak 0.02 degrees wide is added to a constant, so its share of the light is known.
+// The trapezoidal rule between nodes misses 1.2e-4 of a peak this sharp.
 TEST(TabulatedPhase, ResolvesADiffractionPeak) {
   constexpr double kWidth_rad = 3.5e-4;
   const double height = 4.0 / (kWidth_rad * kWidth_rad);
@@ -126,7 +126,8 @@ TEST(TabulatedPhase, EachColorHasItsOwnSamples) {
                     phase, [](const PhaseSample& s) { return s.mu; }, index),
                 kMeanCosines[color], 1e-5);
     EXPECT_NEAR(phase.Value(0.3)[color], of(static_cast<float>(kMeanCosines[color]))(0.3), 1e-5);
-    // Weights say how much likelier each colour's own samples would be there.
+    // A weight is the ratio between the colour's own probability density there and that of the
+    // sample.
     const PhaseSample sample = phase.Sample(0.4, index);
     const glm::dvec3 value = phase.Value(sample.mu);
     for (int other = 0; other < 3; ++other) {

@@ -24,7 +24,8 @@ using picture::LinearPicture;
 
 using physics::Hydrometeor;
 
-// Cloud water in cells 2..4 of each axis and rain in the lowest layer under it, of 8 x 7 x 6 cells.
+// Returns a storm of 8 x 7 x 6 cells, with cloud water in cells 2..4 of each axis and rain in the
+// lowest layer under it.
 volume::HydrometeorFields SmallStorm() {
   volume::HydrometeorFields fields;
   fields.grid = {{8, 7, 6}, {500.0, 400.0, 300.0}, {-2000.0, -1400.0, 100.0}};
@@ -55,7 +56,7 @@ TEST(MediumOf, HasTheDetailThatIsDrawn) {
   const auto detailed = scene::DetailedMedium::Of(scene, fields);
   bool differs = false;
   for (int z = 0; z < 8; ++z) {
-    // Middles of voxels.
+    // Compares at the middles of voxels.
     const glm::dvec3 at_m(-875.0, -300.0, 100.0 + 75.0 + 150.0 * z);
     double expected = 0.0;
     for (const float value : detailed->At_per_m(at_m)) expected += static_cast<double>(value);
@@ -89,7 +90,8 @@ TEST(MediumOf, HasTheBoxAndExtinctionThatTheRenderersDraw) {
             drawn.grid.low_corner_m + (glm::dvec3(x, y, z) + 0.5) * drawn.grid.spacing_m;
         const float here = static_cast<float>(medium->Extinction_per_m(centre_m));
         const std::uint16_t texel = drawn.planes[0].texels[drawn.grid.Offset(x, y, z)];
-        // Half floats round to 2^-11; double interpolation may land on the other side.
+        // Half floats round to 2^-11, and interpolation in double precision may round to the
+        // neighbouring value.
         EXPECT_NEAR(base::HalfFromFloat(here / drawn.extinction_per_m), texel, 1);
       }
     }
@@ -181,10 +183,10 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
   EXPECT_EQ(medium->ScatteringAt(cloud_m, 0.5).weight, glm::dvec3(cloud.false_color));
 }
 
-// Without a medium, the shaded ground is as bright as the uniform one, which the renderers draw.
-// Both see it through the same air. The uniform one's sky is a sum over 2048 directions: 0.3 %.
-// Light scattered by less than 3 degrees is nearly unscattered: away from the sun the picture stays
-// the same, while extinction falls by the share cut off.
+// Without a medium, the shaded ground is as bright as the uniform ground that the renderers draw.
+// Both are seen through the same air. The sky of the uniform ground is a sum over 2048 directions:
+// 0.3 %. Light scattered by less than 3 degrees is nearly unscattered. Away from the sun the
+// picture therefore stays the same, while extinction falls by the share cut off.
 TEST(MediumOf, ACutPeakLeavesThePicture) {
   const volume::HydrometeorFields fields = SmallStorm();
   scene::Scene scene = test_support::PlainScene();
@@ -237,7 +239,7 @@ TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
   scene::Scene scene = test_support::PlainScene();
   scene.sky.brightness = 1.7;
   scene.sun.irradiance = 2.0;
-  // As high as the camera below, which takes the place of this one.
+  // The spotter camera below replaces this camera and is as high.
   scene.camera = scene::OrbitCamera{{0.0, 0.0, 0.0}, 200.0, 30.0, 4e4, 35.0};
   const auto medium = *MediumOf(scene, fields, Sides::kOpen);
   const Camera camera =
@@ -273,8 +275,8 @@ TEST(SurroundingsOf, SunBelowTheHorizonGivesNoSunlight) {
   EXPECT_TRUE(glm::all(glm::greaterThan(sky, glm::dvec3(0.0))));
 }
 
-// The sample storm under sunlight alone: all values are finite, and the middle of its sunlit side,
-// optically thick, is brighter than that of the other.
+// In the sample storm under sunlight alone, all values must be finite. The middle of its optically
+// thick sunlit side must be brighter than that of the other side.
 TEST(Scene, SampleStorm) {
   const auto store =
       storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});

@@ -1,4 +1,4 @@
-// A picture traced after changes of the scene is the same as one traced from scratch.
+// Tests that a picture traced after changes of the scene equals one traced from scratch.
 #include "reference/scene_tracer.h"
 
 #include <atomic>
@@ -96,7 +96,7 @@ TEST_F(SceneTracerTest, SizesOfAPictureShowTheSameView) {
   EXPECT_NEAR(mean({6, 4}) / mean({24, 16}), 1.0, 0.05);
 }
 
-// A clock that moves by a millisecond each time that somebody looks at it.
+// A clock that moves by a millisecond at each look.
 class CountedLooks final : public base::TimeSource {
  public:
   Clock::time_point Now() const override {
@@ -108,7 +108,7 @@ class CountedLooks final : public base::TimeSource {
   mutable std::atomic<int> looks_ = 0;
 };
 
-// A pause may fall anywhere, before every pixel has had its first sample too.
+// A pause may come at any time, even before every pixel has had its first sample.
 TEST_F(SceneTracerTest, PausesChangeNothing) {
   const auto storm = TracedStorm();
   scene::Scene scene = SceneFrom(200.0);

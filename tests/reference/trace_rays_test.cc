@@ -47,7 +47,8 @@ TEST_F(TraceRaysTest, TheNumberOfThreadsChangesNothing) {
 }
 
 TEST_F(TraceRaysTest, MeansAreThoseOfThePicture) {
-  // A picture of one pixel so narrow that it is one ray; 5 standard errors of both.
+  // Compares with a picture of one pixel so narrow that it is one ray. The tolerance is 5 standard
+  // errors of both.
   scene::Scene narrow = scene_;
   auto& camera = std::get<scene::OrbitCamera>(narrow.camera);
   camera.field_of_view_deg = 0.01;
@@ -64,7 +65,7 @@ TEST_F(TraceRaysTest, MeansAreThoseOfThePicture) {
   EXPECT_GT(traced.front().x, 0.0);
 }
 
-// The radiance that a slab reflects straight up, of sunlight that comes from 37 degrees off the
+// Returns the radiance that a slab reflects straight up, under sunlight from 37 degrees off the
 // zenith.
 FluxShare Reflected(double optical_depth, double asymmetry, double albedo, int similar_after) {
   constexpr int kRays = 64;
@@ -87,13 +88,14 @@ FluxShare Reflected(double optical_depth, double asymmetry, double albedo, int s
   return mean.Share();
 }
 
-// Light that is scattered evenly is in its similar medium already.
+// For isotropic scattering the similar medium is the medium itself.
 TEST(SimilarPaths, AreThemselvesWhereLightIsScatteredEvenly) {
   EXPECT_EQ(Reflected(10.0, 0.0, 0.95, 3).value, Reflected(10.0, 0.0, 0.95, 0).value);
 }
 
-// Deep clouds of cloud water's asymmetry, white and absorbing. What is expected is the mean of 4
-// million exact paths, of a standard error of 0.2 %; similar ones reflect 1.5 to 1.7 % less.
+// Tests deep clouds with cloud water's asymmetry, white and absorbing. Each expected value is the
+// mean of 4 million exact paths, with a standard error of 0.2 %. Similar paths reflect 1.5 to 1.7 %
+// less.
 TEST(SimilarPaths, ReflectNearlyAsMuchAsExactOnes) {
   struct Exact {
     double optical_depth;
@@ -108,7 +110,7 @@ TEST(SimilarPaths, ReflectNearlyAsMuchAsExactOnes) {
   }
 }
 
-// The reason for them: exact paths leave more noise.
+// The purpose of similar paths: exact paths leave more noise.
 TEST(SimilarPaths, AreLessNoisy) {
   EXPECT_LT(Reflected(20.0, 0.86, 1.0, kSimilarAfter).standard_error,
             0.7 * Reflected(20.0, 0.86, 1.0, 0).standard_error);

@@ -1,4 +1,4 @@
-// Parts of the light that can be left out of a reference picture.
+// Tests of the parts of the light that can be left out of a reference picture.
 #include "reference/trace_scene.h"
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace thunderhead::reference {
 namespace {
 
-// A thin cube of cloud in the middle of the picture.
+// Returns a thin cube of cloud in the middle of the picture.
 volume::HydrometeorFields ThinCloud() {
   volume::HydrometeorFields fields;
   fields.grid = {{5, 5, 5}, {200.0, 200.0, 200.0}, {-500.0, -500.0, 1000.0}};
@@ -35,7 +35,7 @@ scene::Scene SceneOfCloud() {
   scene.output = {16, 16, 88};
   scene.sky.ground_albedo = 0.0;
   scene.sun.elevation_deg = 20.0;
-  // Without the droplets' diffraction peak, which is noisy.
+  // Replaces the droplets' phase function, whose diffraction peak is noisy.
   scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics.phase = {
       physics::PhaseKind::kHenyeyGreenstein, 0.5F};
   return scene;
@@ -62,7 +62,7 @@ TEST(TraceSceneTest, WithoutAirTheSunIsThatAboveTheAtmosphere) {
   scene.sky.turbidity = 8.0;
   scene.sun.irradiance = 2.0;
   const FluxShare traced = SceneMeanOf(scene, {.peak_cut_deg = 0.0, .air = false});
-  // A light of the scene's own shines through no air.
+  // Light from the scene's own lights does not pass through air.
   scene.lights = {{.azimuth_deg = scene.sun.azimuth_deg,
                    .elevation_deg = scene.sun.elevation_deg,
                    .irradiance = scene.sun.irradiance}};
@@ -71,7 +71,7 @@ TEST(TraceSceneTest, WithoutAirTheSunIsThatAboveTheAtmosphere) {
   EXPECT_GT(expected.value, 0.0);
   FluxShare difference = traced;
   difference.standard_error = std::hypot(traced.standard_error, expected.standard_error);
-  // Air of this turbidity leaves a fifth of a low sun's blue.
+  // Air of this turbidity transmits a fifth of a low sun's blue.
   ExpectAgrees(difference, expected.value, 0.0, 0.05 * expected.value);
 }
 

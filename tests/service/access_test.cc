@@ -1,5 +1,5 @@
-// Who may call what, and how much of it: every role with every rpc of the descriptor, the limits,
-// and what the audit says.
+// Tests of access control: every role with every rpc of the descriptor, the limits, and the audit
+// log.
 #include <grpcpp/generic/generic_stub.h>
 #include <openssl/sha.h>
 
@@ -41,8 +41,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Stub = v1::ThunderheadService::Stub;
 
-// The roles that may call each rpc, beside operators, who may call all. An rpc that is missing here
-// fails the test.
+// The roles that may call each rpc, in addition to operators, who may call all. An rpc that is
+// missing here fails the test.
 const std::map<std::string, std::set<std::string>> kMayCall = {
     {"GetServerInfo", {"viewer", "presenter", "pipeline"}},
     {"ListStorms", {"viewer", "presenter", "pipeline"}},
@@ -139,7 +139,7 @@ TEST(AccessTest, RefusalsAndPrivilegedActsAreAudited) {
   }
 }
 
-// Each refusal has its line, whichever call it ends.
+// Each refusal is audited, whichever call it ends.
 TEST(AccessTest, RefusalsOfAnyCallAreAudited) {
   service::ServerOptions options = Patient();
   options.limits.max_viewers_per_session = 0;
@@ -182,7 +182,7 @@ TEST(AccessTest, RefusalsOfAnyCallAreAudited) {
   has("AcknowledgeFrame verdict=refused reason=\"SESSION_NOT_FOUND\"");
 }
 
-// Requests that one viewer has waiting neither fill the queue nor take all threads.
+// The pending requests of one viewer neither fill the queue nor take all threads.
 TEST(AccessTest, AViewerWhoAsksWithoutAPauseHoldsUpOnlyItself) {
   service::ServerOptions options = Patient();
   options.executor.max_waiting_each = 4;
@@ -202,7 +202,7 @@ TEST(AccessTest, AViewerWhoAsksWithoutAPauseHoldsUpOnlyItself) {
     const grpc::Status status = guarded.Call("viewer", &Stub::GetStormMap, request, &response);
     if (status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) ++refused;
   };
-  // They take three threads of four, then four wait.
+  // The requests take three of the four threads; the next four have to wait.
   for (int i = 0; i < 3; ++i) viewers.emplace_back(ask);
   EXPECT_TRUE(guarded.service().store->reading.AwaitWaiting(3));
   for (int i = 0; i < 9; ++i) viewers.emplace_back(ask);
@@ -217,7 +217,7 @@ TEST(AccessTest, AViewerWhoAsksWithoutAPauseHoldsUpOnlyItself) {
                                                   "reason=\"REQUEST_QUEUE_FULL\"")));
 }
 
-// An Interact call by hand.
+// An Interact call whose messages the test sends one by one.
 class HandCall {
  public:
   HandCall(Stub& stub, const std::string& role) {
@@ -233,7 +233,8 @@ class HandCall {
     return Send(request, v1::InteractResponse::kJoined);
   }
   void Write(const v1::InteractRequest& request) { call_->Write(request); }
-  // Sends the request and returns the next message of that kind; empty if the call ends before.
+  // Sends the request and returns the next message of that kind, or an empty message if the call
+  // ends before.
   v1::InteractResponse Send(const v1::InteractRequest& request,
                             v1::InteractResponse::MessageCase kind) {
     call_->Write(request);
@@ -276,13 +277,14 @@ TEST(AccessTest, WhoNeverJoinsIsCutOff) {
   service::ServerOptions options = Patient(time);
   options.limits.join_timeout = std::chrono::hours(1);
   GuardedService guarded(options);
-  // A joined viewer stays, also when later connections that do not join are cut off.
+  // A joined viewer stays connected, even when later connections that do not join are cut off.
   const auto created = guarded.Create();
   HandCall joined(guarded.stub(), "presenter");
   joined.Join(created.session_id());
   HandCall silent(guarded.stub(), "viewer");
   std::future<grpc::Status> end = std::async(std::launch::async, [&] { return silent.End(); });
-  // The server may learn of the call after the time was moved.
+  // The server may learn of the call only after the time was advanced, so the test advances it
+  // repeatedly.
   ASSERT_TRUE(WaitFor([&] {
     time.Advance(options.limits.join_timeout);
     return end.wait_for(milliseconds(0)) == std::future_status::ready;
@@ -330,7 +332,7 @@ TEST(AccessTest, RequestsAreLimited) {
   EXPECT_EQ(taken, 10) << "of two seconds";
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_TRUE(RetryOf(status).has_value());
-  // Another identity has limits of its own.
+  // Another identity has its own limits.
   EXPECT_TRUE(guarded.Call("operator", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
   time.Advance(*RetryOf(status));
   EXPECT_TRUE(guarded.Call("viewer", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
@@ -367,7 +369,7 @@ TEST(AccessTest, ViewersOfASessionAreLimitedAndPresentersComeIn) {
   EXPECT_TRUE(presenter.Join(created.session_id()).has_joined());
 }
 
-// By either call, whether or not they get pictures.
+// Viewers count whichever of the two calls they use, and whether or not they receive pictures.
 TEST(AccessTest, ViewersByOldAndNewCallsAreCountedTogether) {
   service::ServerOptions options = Patient();
   options.limits.max_viewers_per_session = 2;
@@ -395,7 +397,7 @@ TEST(AccessTest, ViewersByOldAndNewCallsAreCountedTogether) {
             grpc::StatusCode::RESOURCE_EXHAUSTED);
   HandCall third(guarded.stub(), "viewer");
   EXPECT_FALSE(third.Join(created.viewer_key()).has_joined());
-  // Who leaves makes room.
+  // A viewer who leaves frees a place.
   watching->TryCancel();
   watch->Finish();
   EXPECT_TRUE(WaitFor(
@@ -416,7 +418,7 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
     return guarded.Call("pipeline", &Stub::RenderImage, request, &response);
   };
   EXPECT_TRUE(render().ok());
-  // Waiting for another does not count.
+  // Time spent waiting for another picture does not count against the limit.
   FakeMachine& machine = *guarded.service().machine;
   machine.drawing.Close();
   std::thread first([&] {
@@ -432,7 +434,7 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
   first.join();
   second.join();
   EXPECT_TRUE(status.ok()) << status.error_message();
-  // Several pieces, of which the first takes too long.
+  // The picture is drawn in several pieces, of which the first takes too long.
   machine.ms_per_mega_sample = 1'000.0;
   machine.drawing.Close();
   std::thread slow([&] { status = render(); });
@@ -451,7 +453,7 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
   *request.mutable_scene() = SmallScene();
   request.mutable_scene()->mutable_output()->set_width_px(65);
   EXPECT_THAT(render().error_message(), HasSubstr("2340 pixels; this server allows 2304"));
-  // A session's pictures too.
+  // The limit also applies to a session's pictures.
   v1::CreateSessionRequest create;
   *create.mutable_scene() = request.scene();
   v1::CreateSessionResponse created;
@@ -459,7 +461,8 @@ TEST(AccessTest, PicturesAreLimitedInPixelsSamplesAndTime) {
             grpc::StatusCode::RESOURCE_EXHAUSTED);
 }
 
-// A request a second each: by the address that a trusted proxy names, or else by its own.
+// Allows each client one request a second. Clients are told apart by the address that a trusted
+// proxy names, or otherwise by their own address.
 TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
   for (const bool trusted : {true, false}) {
     SCOPED_TRACE(trusted);
@@ -486,7 +489,7 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
       context.AddMetadata("x-forwarded-for", forwarded_for);
       return stub->ListStorms(&context, request, &response).error_code();
     };
-    // The client's own entry stands before the one that the proxy adds.
+    // The client's own entry comes before the one that the proxy adds.
     bool refused = false;
     for (int i = 0; i < 100 && !refused; ++i) {
       refused = ask(absl::StrCat("203.0.113.", i, ", 192.0.2.7")) != grpc::StatusCode::OK;
@@ -525,10 +528,10 @@ TEST(AccessTest, ATokenThatIsTakenAwayEndsStreamsAndTheAuditSaysSo) {
   v1::WatchFramesResponse event;
   ASSERT_TRUE(frames->Read(&event));
   guarded.TakeAwayToken("viewer");
-  // It is looked at once a second.
+  // The server checks tokens once a second.
   time.Advance(std::chrono::seconds(2));
 
-  // Frames come only while something changes, and somebody takes them.
+  // Frames are sent only while something changes and a viewer takes them.
   v1::UpdateSceneRequest update;
   update.set_session_id(session.session_id());
   *update.mutable_scene() = SmallScene();
@@ -558,7 +561,7 @@ TEST(AccessTest, ATokenThatIsTakenAwayEndsStreamsAndTheAuditSaysSo) {
   }
 }
 
-// Each such call holds a thread of the server while it is open, and needs no token.
+// Each reflection call holds a server thread while it is open, and needs no token.
 TEST(AccessTest, AFloodOfReflectionTakesFewThreadsAndOthersGoOn) {
   GuardedService guarded;
   const auto threads = [] {
@@ -586,7 +589,7 @@ TEST(AccessTest, AFloodOfReflectionTakesFewThreadsAndOthersGoOn) {
     calls.back()->Finish(&ends[i], nullptr);
   }
   int refused = 0;
-  // Those that have a thread stay open.
+  // The calls that have a thread stay open.
   while (refused < kCalls - 16 && await(kPatience)) ++refused;
   EXPECT_GE(refused, kCalls - 16);
   EXPECT_LE(threads(), before + 32);
@@ -608,7 +611,7 @@ TEST(AccessTest, HealthNeedsNoTokenAndNoCallThatStaysOpen) {
   EXPECT_EQ(ask("Watch"), grpc::StatusCode::UNIMPLEMENTED);
 }
 
-// Opens calls until one is refused, and gives them back.
+// Opens calls until one is refused, then closes them.
 TEST(AccessTest, AFloodOfStreamsIsRefusedAndOthersGoOn) {
   GuardedService guarded(Patient(), {.max_streams_per_identity = 100, .requests_per_second = 0});
   const auto created = guarded.Create();
@@ -626,7 +629,7 @@ TEST(AccessTest, AFloodOfStreamsIsRefusedAndOthersGoOn) {
   HandCall presenter(guarded.stub(), "presenter");
   EXPECT_TRUE(presenter.Join(created.session_id()).has_joined());
   calls.clear();
-  // The server learns of it a little later.
+  // The server notices a little later that the calls have ended.
   EXPECT_TRUE(WaitFor(
       [&] { return HandCall(guarded.stub(), "viewer").Join(created.viewer_key()).has_joined(); }));
 }

@@ -1,4 +1,5 @@
-// Sessions and pictures that ask for an accuracy or a speed, on a made-up table and machine.
+// Tests of sessions and pictures that ask for an accuracy or a speed, on a made-up table and
+// machine.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -18,7 +19,7 @@ using ::testing::HasSubstr;
 using Messages = std::vector<v1::WatchFramesResponse>;
 using Stub = v1::ThunderheadService::Stub;
 
-// 64 x 36 pixels and 100 slices are 0.23 million samples.
+// 64 x 36 pixels with 100 slices are 0.23 million samples.
 constexpr double kMegaSamplesAt100Slices = 64 * 36 * 100 * 1e-6;
 
 accuracy::OfferTables Tables() {
@@ -36,8 +37,8 @@ accuracy::OfferTables Tables() {
   return tables;
 }
 
-// On a machine that takes as long as the table says. Time moves as it draws, and where a test moves
-// it.
+// A fixture with a machine that takes as long as the table says. Time advances as the machine
+// draws, and where a test advances it.
 class AccuracyTest : public ::testing::Test {
  protected:
   AccuracyTest() {
@@ -51,7 +52,7 @@ class AccuracyTest : public ::testing::Test {
     return options;
   }
 
-  // Lets a scene that is shown come to rest and settle.
+  // Waits until a shown scene has come to rest and settled.
   bool Settle(Watcher& watcher, std::uint64_t revision) {
     if (!watcher.AwaitFrame(revision, false)) return false;
     time_.Advance(std::chrono::seconds(1));
@@ -69,7 +70,7 @@ class AccuracyTest : public ::testing::Test {
     return scene;
   }
 
-  // A frame at rest with that many slices.
+  // Waits for a frame at rest with that many slices.
   bool AwaitChecked(Watcher& watcher, std::uint64_t revision, std::uint32_t slices) {
     return Settle(watcher, revision) && watcher.Await([=](const Messages& messages) {
       return std::any_of(messages.begin(), messages.end(), [=](const auto& message) {
@@ -93,7 +94,7 @@ TEST_F(AccuracyTest, EveryFrameSaysItsSettingAndError) {
     const v1::LightVolume& light_volume = report.rendering().light_volume();
     EXPECT_EQ(light_volume.transport(), v1::TRANSPORT_CONSISTENT);
     EXPECT_TRUE(light_volume.per_field_phase());
-    EXPECT_TRUE(light_volume.detail());  // as the scene asks
+    EXPECT_TRUE(light_volume.detail());  // as the scene requests
     EXPECT_GT(report.estimated_error(), 0.0F);
     EXPECT_TRUE(report.has_expected_milliseconds());
     EXPECT_FALSE(report.has_unmet());
@@ -101,7 +102,7 @@ TEST_F(AccuracyTest, EveryFrameSaysItsSettingAndError) {
   const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
   EXPECT_EQ(report.slices(), 50U);
   EXPECT_EQ(report.model_error(), 0.3F);
-  // The fake's frames differ by one over their slices.
+  // The fake's frames differ by one divided by their number of slices.
   EXPECT_FLOAT_EQ(report.discretisation_error(), 0.02F);
   EXPECT_FLOAT_EQ(report.estimated_error(), std::hypot(0.3F, 0.02F));
   EXPECT_EQ(watcher.NewestFrame().modelled().slices(), 50U);
@@ -119,7 +120,8 @@ TEST_F(AccuracyTest, UnreachableErrorsGetTheNearestAndSaySo) {
 }
 
 TEST_F(AccuracyTest, TimesAreCorrectedByWhatThisMachineTakes) {
-  // Four times as long as the table says, which is learnt while the view rests.
+  // Drawing takes four times as long as the table says. The server learns this while the view
+  // rests.
   service_.machine->ms_per_mega_sample = 80.0 / kMegaSamplesAt100Slices;
   const std::string id = service_.Open(WithMaxMilliseconds(22.0F));
   Watcher watcher(service_.stub(), id);
@@ -147,7 +149,7 @@ TEST_F(AccuracyTest, ChangesKeepTheSettingAndAnotherRequestChangesIt) {
   ASSERT_TRUE(Settle(watcher, revision));
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   EXPECT_EQ(watcher.NewestFrame().accuracy().slices(), 100U);
-  // Without a request the scene's own setting is drawn and the table's estimates are reported.
+  // Without a request, the scene's own setting is drawn and the table's estimates are reported.
   v1::Scene own = SmallScene();
   own.mutable_rendering()->mutable_light_volume()->set_transport(v1::TRANSPORT_CONSISTENT);
   revision = service_.Update(id, own);
@@ -164,7 +166,7 @@ TEST_F(AccuracyTest, AViewWithoutATableIsAProblemOnce) {
   Watcher watcher(service_.stub(), id);
   ASSERT_TRUE(watcher.Await([](const Messages& messages) { return !messages.empty(); }));
   EXPECT_THAT(watcher.Messages().front().problem().message(), HasSubstr("spotter views"));
-  // The render loop looks at the session again, as another is drawn.
+  // The render loop checks the session again when another session is drawn.
   time_.Advance(std::chrono::seconds(60));
   Watcher other(service_.stub(), service_.Open(SmallScene()));
   ASSERT_TRUE(other.AwaitFrame(1, false));
@@ -200,7 +202,7 @@ TEST_F(AccuracyTest, TheErrorIsMeasuredAtRestAndReplacesTheTables) {
   }
   EXPECT_FALSE(watcher.Messages().front().frame().accuracy().measured()) << "nobody waits for it";
   EXPECT_EQ(watcher.NewestFrame().accuracy().model_error(), 0.3F);
-  // Another camera, another picture.
+  // Another camera makes another picture.
   v1::Scene turned = WithMaxError(0.35F);
   turned.mutable_camera()->mutable_orbit()->set_azimuth_deg(10.0F);
   const std::uint64_t revision = service_.Update(id, turned);
@@ -230,7 +232,7 @@ TEST_F(AccuracyTest, APicturesErrorIsMeasuredForAsLongAsItAsks) {
   ASSERT_TRUE(Call(service_.stub(), &Stub::RenderImage, request, &response).ok());
   EXPECT_FALSE(response.accuracy().measured());
   EXPECT_EQ(service_.machine->measured_steps, 0);
-  request.set_error_seconds(0.5F);  // a fake step takes a tenth
+  request.set_error_seconds(0.5F);  // a fake step takes 0.1 s
   ASSERT_TRUE(Call(service_.stub(), &Stub::RenderImage, request, &response).ok());
   EXPECT_TRUE(response.accuracy().measured());
   EXPECT_EQ(response.accuracy().estimated_error(), 0.25F);
@@ -252,7 +254,7 @@ TEST_F(AccuracyTest, ASettingThatIsMeasuredToMissTheLimitIsReplaced) {
   }));
   EXPECT_EQ(watcher.NewestFrame().accuracy().estimated_error(), 0.25F);
   EXPECT_FALSE(watcher.NewestFrame().accuracy().has_unmet());
-  // What was measured counts for the next view of the same storm, from its first full frame on.
+  // The measurement applies to the next view of the same storm, from its first full frame.
   v1::Scene turned = WithMaxError(0.35F);
   turned.mutable_camera()->mutable_orbit()->set_azimuth_deg(77.0F);
   const std::uint64_t revision = service_.Update(id, turned);

@@ -1,5 +1,5 @@
-// Sessions while the catalogue changes: who shows the newest time follows, others keep theirs, and
-// everybody is told.
+// Tests of sessions while the catalogue changes: sessions that show the newest time follow it, the
+// others keep theirs, and all viewers are notified.
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "service/catalogue_follower.h"
@@ -92,7 +92,7 @@ TEST_F(ChangingCatalogue, MovesSessionsAndTellsThem) {
   EXPECT_TRUE(newest.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
   EXPECT_TRUE(chosen.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
   EXPECT_EQ(TimeOf(chosen), 1U);
-  // An earlier one moves every index.
+  // Adding an earlier time moves every index.
   AddTime("0001-01-01T00:00:00Z");
   EXPECT_TRUE(AwaitTime(newest, 5));
   EXPECT_TRUE(AwaitTime(chosen, 2));
@@ -120,8 +120,8 @@ TEST_F(ChangingCatalogue, ATimeWhoseFileIsReplacedIsDrawnAgainWhereItIsShown) {
     });
   }));
   EXPECT_EQ(TimeOf(there), 1U);
-  // People are told after all scenes were changed that had to be, and this one was not: the next
-  // change has the next revision.
+  // Viewers are notified after all affected scenes were changed. This scene was not changed, so its
+  // next change has the next revision.
   EXPECT_TRUE(elsewhere.AwaitNewest(Response::kCatalogueChanged).has_catalogue_changed());
   EXPECT_EQ(elsewhere.AwaitNewest(Response::kScene).scene().scene_revision(), kept);
   EXPECT_EQ(service_.Update(key, SmallScene()), kept + 1);

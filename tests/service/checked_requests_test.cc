@@ -1,4 +1,4 @@
-// Every rpc checks its request by the limits of the schema.
+// Tests that every rpc checks its request against the limits of the schema.
 #include <string>
 
 #include "gtest/gtest.h"

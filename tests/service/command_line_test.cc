@@ -1,4 +1,4 @@
-// The program as a user runs it, on the sample storm: its output, files and exit codes.
+// Tests of the program as a user runs it, on the sample storm: its output, files and exit codes.
 #include <grpcpp/grpcpp.h>
 #include <sys/wait.h>
 
@@ -52,7 +52,7 @@ struct Outcome {
 
 class CommandLineTest : public ::testing::Test {
  protected:
-  // Runs the program in the shell, with ARGUMENTS as typed on a command line.
+  // Runs the program in the shell, with `arguments` as typed on a command line.
   Outcome Run(const std::string& arguments) const { return Shell(PROGRAM + (" " + arguments)); }
 
   Outcome Shell(const std::string& command) const {
@@ -67,7 +67,7 @@ class CommandLineTest : public ::testing::Test {
     EXPECT_EQ(outcome.code, code) << arguments;
     EXPECT_THAT(outcome.err, StartsWith("thunderhead: ")) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr(text)) << arguments;
-    // One line on standard error, and nothing on standard output.
+    // The error is one line on standard error, and standard output is empty.
     EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
     EXPECT_THAT(outcome.out, IsEmpty()) << arguments;
   }
@@ -250,7 +250,8 @@ TEST_F(CommandLineTest, RenderMeasuresThePicturesError) {
   const v1::AccuracyReport& report = said.accuracy();
   EXPECT_LE(report.error_low(), report.estimated_error());
   EXPECT_LT(report.estimated_error(), report.error_high());
-  // Diffusion on the sample storm: 0.1 to 0.2, and not black or of one colour.
+  // Diffusion on the sample storm has an error of 0.1 to 0.2. The picture must not be black or of
+  // one colour.
   EXPECT_GT(report.error_high(), 0.05F);
   EXPECT_LT(report.error_low(), 0.4F);
   EXPECT_THAT(Contents(picture_), HasSubstr("thunderhead.error_low"));
@@ -300,7 +301,7 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
 }
 
 TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
-  // An error that takes a tenth of the paths that `--quality true` alone waits for, which takes
+  // This error takes a tenth of the paths that `--quality true` alone waits for, which would take
   // minutes.
   const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --quality true --max-error 0.09");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -341,15 +342,15 @@ TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
                          {"render", kSample, "--device", "software", "--error-seconds", "0", "-o",
                           picture_, "--time", "1", "--size", "48x27", "--quality", "true"},
                          out, terminal.Name());
-  // The bar tells of traced light: it is being waited for.
+  // The progress bar reports the paths traced, because the command waits for them.
   WaitFor([&] {
     return terminal.Shown().find(" million paths") != std::string::npos || !program.Runs();
   });
   program.Signal(SIGTERM);
   EXPECT_EQ(program.Wait().code, 75);
   EXPECT_THAT(terminal.Shown(), HasSubstr("thunderhead: interrupted: no picture was written\r\n"));
-  // A million paths are some 300 pictures to draw and trace, whatever the machine.
-  // The bar of reading, which comes before, may reach its end.
+  // A million paths take some 300 pictures to draw and trace on any machine, so this bar cannot
+  // reach its end. The earlier bar, for reading, may reach its end.
   const std::string shown = terminal.Shown();
   EXPECT_THAT(shown.substr(std::min(shown.find("rendering ["), shown.size())),
               Not(HasSubstr("100 %")))
@@ -384,7 +385,7 @@ TEST_F(CommandLineTest, MeasureFramesHasARowForEachNamedSetting) {
   std::set<std::string> rows;
   for (const google::protobuf::Value& row : json.fields().at("rows").list_value().values()) {
     const auto& fields = row.struct_value().fields();
-    // Rows of what completes moving frames also say how far those are from the plain ones.
+    // Rows with sparse frames also report how far moving frames are from frames drawn in full.
     const bool sparse = fields.contains("camera_flip");
     EXPECT_EQ(fields.contains("sun_flip"), sparse);
     EXPECT_EQ(fields.size(), sparse ? 7U : 5U);
@@ -500,7 +501,7 @@ TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
   const std::string partial = vdb + ".partial";
   const std::string out = folder_.File("out");
   const std::string err = folder_.File("err");
-  // Held when it begins to write, until it has taken the signal.
+  // Hangs when it begins to write, until it has received the signal.
   HangAt(partial);
   const HangingStorage hanging;
   RunningProgram program(PROGRAM, {"export", kSample, "--detail", "-o", vdb}, out, err);
@@ -514,7 +515,7 @@ TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
   EXPECT_FALSE(std::filesystem::exists(vdb + ".partial"));
 }
 
-// On a small cloud: it draws some ninety settings.
+// Uses a small cloud, because the command draws some ninety settings.
 TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
   const std::string cloud = folder_.File("cloud.nc");
   ASSERT_EQ(Run("generate --spacing 200 --cells 24x24x16 --ellipsoid 0,0,1600,1800,1800,1200 "
@@ -531,7 +532,8 @@ TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
   EXPECT_THAT(first.out, HasSubstr("half_angle    uniform_phase_low_albedo"));
   EXPECT_THAT(Contents(trade + ".svg"), HasSubstr("<polyline"));
   EXPECT_THAT(Contents(trade + ".json"), HasSubstr("\"pareto\": true"));
-  // With a row and a half lost, the others are not measured again, so their times are the same.
+  // Removes one and a half rows. The other rows are not measured again, so their times stay the
+  // same.
   const std::string whole = Contents(trade + ".csv");
   const std::string kept = whole.substr(0, whole.size() - 150);
   std::ofstream(trade + ".csv") << kept;
@@ -540,7 +542,7 @@ TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
   EXPECT_THAT(again, StartsWith(kept.substr(0, kept.rfind('\n') + 1)));
   EXPECT_EQ(std::count(again.begin(), again.end(), '\n'),
             std::count(whole.begin(), whole.end(), '\n'));
-  // Another picture's file is not touched.
+  // A file made for another picture is not changed.
   const Outcome other =
       Run("measure trade " + cloud + " --device software --size 30x16 --spp 16 -o " + trade);
   EXPECT_EQ(other.code, 64);

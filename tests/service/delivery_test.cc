@@ -1,4 +1,4 @@
-// Clients that ask for something and do not take it.
+// Tests of clients that request something and do not read the response.
 #include <grpcpp/create_channel.h>
 
 #include <chrono>
@@ -23,7 +23,7 @@
 namespace thunderhead::testing {
 namespace {
 
-// The time that a client has to take what it asked for.
+// The time that a client has to read a response.
 constexpr std::chrono::minutes kDelivery{2};
 
 service::ServerOptions Deliver(const base::TimeSource& time) {
@@ -33,8 +33,8 @@ service::ServerOptions Deliver(const base::TimeSource& time) {
   return options;
 }
 
-// Moves the time until the server has reset the client's call, whose answer may become ready after
-// the time was first moved.
+// Advances the time until the server has reset the client's call. The response may become ready
+// only after the first advance.
 bool AwaitReset(UntakingClient& client, RunningTime& time) {
   return WaitFor([&] {
     time.Advance(kDelivery);
@@ -61,7 +61,7 @@ TEST_P(PictureDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
   UntakingClient client(fake.server().Port());
   client.Call(GetParam(), Asking());
   ASSERT_TRUE(AwaitPictures(fake, 1));
-  // Drawing goes by the same time.
+  // Drawing uses the same time.
   ASSERT_TRUE(WaitFor([&] { return fake.machine->Log().size() == 1; }));
   ASSERT_TRUE(WaitFor([&] { return fake.server().Load().turn_s == 0.0; }));
   EXPECT_TRUE(AwaitReset(client, time));
@@ -76,7 +76,7 @@ TEST_P(PictureDelivery, ItHasItsTime) {
   ASSERT_TRUE(AwaitPictures(fake, 1));
   ASSERT_TRUE(WaitFor([&] { return fake.machine->Log().size() == 1; }));
   time.Advance(kDelivery - std::chrono::seconds(1));
-  // Deadlines are looked at all the time meanwhile.
+  // Deadlines are checked throughout this period.
   v1::ListStormsResponse storms;
   for (int i = 0; i < 50; ++i) {
     ASSERT_TRUE(Call(fake.stub(), &v1::ThunderheadService::Stub::ListStorms,
@@ -167,7 +167,8 @@ TEST_F(ViewerDelivery, WhoTakesFramesStaysForLongerThanOneHasTime) {
   Watcher viewer(fake_.stub(), session.viewer_key());
   ASSERT_TRUE(viewer.AwaitFrame(1, false));
   for (int i = 0; i < 10; ++i) {
-    // The next frame is written once this one is known to be taken, so no frame sees two moves.
+    // The next frame is written once this one is known to be taken, so no frame has to wait through
+    // two advances.
     time_.Advance(kDelivery / 2);
     v1::Scene scene = SmallScene();
     scene.mutable_sun()->set_azimuth_deg(static_cast<float>(i));
@@ -188,7 +189,7 @@ TEST_P(AnswerDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
   EXPECT_TRUE(AwaitReset(client, time));
 }
 
-// The first has an executor's turn between its request and its answer, as a map and a probe have.
+// DescribeStorm runs on the executor between its request and its response, as maps and probes do.
 INSTANTIATE_TEST_SUITE_P(Calls, AnswerDelivery, ::testing::Values("DescribeStorm", "ListStorms"));
 
 TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
@@ -205,7 +206,7 @@ TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
   UntakingClient other(fake.server().Port());
   other.Call("ThunderheadService/ListStorms", "");
   EXPECT_TRUE(WaitFor([&] { return other.Refused() >= 1; })) << "of one identity, however it calls";
-  // Those that are given up leave room.
+  // Calls that are given up free their places.
   client.Leave();
   const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
       absl::StrCat("127.0.0.1:", fake.server().Port()), grpc::InsecureChannelCredentials()));

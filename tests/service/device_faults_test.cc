@@ -1,4 +1,4 @@
-// Pictures when the device runs out of memory or is lost, on a real context.
+// Tests of pictures when the device runs out of memory or is lost, on a real context.
 #include "gl/device_memory.h"
 
 #include <deque>
@@ -137,7 +137,7 @@ TEST_F(FaultySource, GivesBackWhatItKeepsAndWhatItCouldNotFinish) {
   source_->FreeUnused(0.0);
   const std::size_t kept = budget->Used();
   EXPECT_LT(kept, drawn / 2);
-  // Leaves so little memory that another picture has no room.
+  // Leaves too little memory for another picture.
   const auto others =
       budget->Reserve(MemoryUse::kDrawing, budget->Bytes() - budget->Used() - drawn / 4, "it");
   ASSERT_TRUE(others.ok());
@@ -151,7 +151,7 @@ TEST(WatchDeviceTest, SeesNoFaultInAContextThatIsWell) {
   const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok()) << context.status();
   EXPECT_EQ(WatchDevice()->Look(), Fault::kNone);
-  // An invalid call of ours is not a fault of the device.
+  // An invalid GL call of our own is not a device fault.
   glEnable(GL_RGBA8);
   EXPECT_EQ(WatchDevice()->Look(), Fault::kNone);
 }

@@ -1,4 +1,5 @@
-// A server that ends: what was begun is delivered, what comes is refused, people are told.
+// Tests of a server that shuts down: work in progress is delivered, new requests are refused, and
+// viewers are notified.
 #include <chrono>
 #include <thread>
 
@@ -34,7 +35,8 @@ class DrainTest : public ::testing::Test {
     return status;
   }
 
-  // gRPC lets go of a call some time after its client has the answer.
+  // Waits until the server has so many pictures. gRPC releases a call some time after its client
+  // has the response.
   bool AwaitPictures(int count) {
     return WaitFor([&] { return service_.server().Load().pictures == count; });
   }
@@ -83,7 +85,7 @@ TEST_F(DrainTest, TellsPeopleWhenToComeBack) {
   EXPECT_GT(end.retry_after_ms(), 0U);
 }
 
-// Who has been told may stay until the server ends, and goes on meanwhile.
+// Viewers who were notified may stay until the server ends, and can continue to work meanwhile.
 TEST_F(DrainTest, SessionsGoOnForThoseWhoStay) {
   std::string key;
   ASSERT_TRUE(CreateSession(&key).ok());
@@ -99,7 +101,7 @@ TEST_F(DrainTest, SessionsGoOnForThoseWhoStay) {
   person.AwaitFrame(revision);
   EXPECT_TRUE(program.AwaitFrame(revision, false));
   EXPECT_EQ(service_.server().Load().viewers, 2);
-  // Nobody joins any more.
+  // No new viewer can join.
   Watcher late(service_.stub(), key);
   EXPECT_EQ(late.End().error_code(), grpc::StatusCode::UNAVAILABLE);
   service_.server().Shutdown();

@@ -1,5 +1,5 @@
-// Machine-readable errors: google.rpc's details in grpc-status-details-bin, for each class of
-// error.
+// Tests of machine-readable errors: google.rpc's details in grpc-status-details-bin, for each class
+// of error.
 #include <grpcpp/support/error_details.h>
 
 #include <map>
@@ -34,7 +34,7 @@ struct Decoded {
   std::string field;
   std::string description;
   bool bad_request = false;
-  double retry_s = -1.0;  // below zero: none
+  double retry_s = -1.0;  // negative: none
 };
 
 Decoded Decode(const grpc::Status& refusal) {
@@ -66,7 +66,7 @@ Decoded Decode(const grpc::Status& refusal) {
   return decoded;
 }
 
-// An error that names no field.
+// Expects an error that names no field.
 void ExpectRefusal(const grpc::Status& refusal, grpc::StatusCode code, const std::string& reason) {
   EXPECT_EQ(refusal.error_code(), code) << refusal.error_message();
   const Decoded decoded = Decode(refusal);
@@ -296,7 +296,7 @@ TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
   EXPECT_EQ(Decode(busy).retry_s, 3.0);
 }
 
-// Made quickly.
+// A cloud that is generated quickly.
 clouds::CloudShape CoarseCloud() {
   auto shape = clouds::PresetNamed("fair-weather-cumulus", 1);
   EXPECT_TRUE(shape.ok());
@@ -349,7 +349,7 @@ TEST(StatusTableTest, WhatWouldBeRefusedAgainHasNoTimeToTryAgain) {
       base::WithDetails(refused, {.reason = "STORM_UNREADABLE", .permanent = true})));
   EXPECT_LT(permanent.retry_s, 0.0);
   EXPECT_EQ(permanent.reason, "STORM_UNREADABLE");
-  // A picture that does not fit in the whole budget.
+  // This picture does not fit even in the whole budget.
   const auto budget = base::MemoryBudget::Make({.bytes = 1000});
   const absl::Status too_large =
       budget->Reserve(base::MemoryUse::kDrawing, 2000, "a picture").status();
@@ -378,7 +378,7 @@ TEST(StatusTableTest, ADelayKeepsItsFraction) {
 
 TEST(StatusTableTest, ALongMessageIsCutShortInsteadOfLosingTheStatus) {
   FakeService service;
-  // "ü" takes two bytes, and six in grpc-message.
+  // "ü" takes two bytes, but six bytes in grpc-message.
   std::string umlauts;
   for (int i = 0; i < 6000; ++i) umlauts += "ü";
   for (const std::string& log : {std::string(12'000, 'x'), umlauts}) {

@@ -1,5 +1,5 @@
-// An exception that a handler throws ends its own call with INTERNAL, and nothing else: what the
-// call held is free again, and the server answers the next one.
+// Tests that an exception thrown by a handler ends only its own call, with INTERNAL. The resources
+// of the call are released, and the server answers the next call.
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,7 +21,7 @@ using Stub = v1::ThunderheadService::Stub;
 
 constexpr int kMaxStreams = 2;
 
-// Without pauses or limits of a second, as these tests fail many calls at once.
+// Limits without a limit per second, because these tests fail many calls at once.
 access::QuotaLimits FewStreams() {
   return {.max_streams_per_identity = kMaxStreams, .requests_per_second = 0};
 }
@@ -52,7 +52,7 @@ grpc::Status RenderImageWithProgress(GuardedService& guarded) {
   return reader->Finish();
 }
 
-// A stream of that session's frames, from its first message until it is destroyed.
+// A stream of the session's frames, open from its first message until the object is destroyed.
 class OpenStream {
  public:
   OpenStream(GuardedService& guarded, const std::string& key) {
@@ -74,7 +74,7 @@ class OpenStream {
 
   bool IsOpen() const { return is_open_; }
 
-  // Of one that is not open.
+  // Returns the status code of a stream that did not open.
   StatusCode WhyNot() { return reader_->Finish().error_code(); }
 
  private:
@@ -101,7 +101,8 @@ TEST_P(ExceptionsTest, AreInternalErrorsOfTheirOwnCall) {
   EXPECT_TRUE(GetParam()(guarded).ok());
 }
 
-// More of them than the caller may have streams at a time, and then exactly as many streams.
+// Fails more calls than the caller may have streams at a time, then opens exactly as many streams
+// as allowed.
 TEST_P(ExceptionsTest, LeaveTheCallersStreamsFree) {
   GuardedService guarded(Patient(), FewStreams());
   const std::string key = guarded.Create().session_id();

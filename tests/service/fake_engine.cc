@@ -54,7 +54,7 @@ std::shared_ptr<const volume::HydrometeorFields> Fields(bool empty) {
   return fields;
 }
 
-// The default number for techniques without slices.
+// Returns the number of slices, or the default for techniques without slices.
 int SlicesOf(const scene::Scene& scene) {
   return scene::SlicesOf(scene.rendering.technique).value_or(scene::LightVolume().slices);
 }
@@ -63,12 +63,12 @@ bool Traces(const scene::Scene& scene) {
   return scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kOff;
 }
 
-// The number of balls, and the time.
+// Returns the number of balls and the time.
 std::pair<int, int> KeyOf(const scene::Scene& scene) {
   return {std::get<scene::Metaballs>(scene.rendering.technique).count, scene.time_index};
 }
 
-// True if there was one.
+// Decrements the counter; returns true if it was above 0.
 bool TakeOne(std::atomic<int>& left) {
   int count = left;
   while (count > 0 && !left.compare_exchange_weak(count, count - 1)) {
@@ -132,7 +132,7 @@ class FakeFrameSource final : public drawing::FrameSource {
     do {
       if (turn_ != nullptr) THUNDERHEAD_RETURN_IF_ERROR(turn_->Take());
       if (left_ms == ms) {
-        // Of the calling thread.
+        // The niceness of the calling thread.
         const int niceness = ::getpriority(PRIO_PROCESS, 0);
         machine_->Add({scene, quality, niceness});
         machine_->drawing.Pass();
@@ -249,7 +249,7 @@ class FakeFrameSource final : public drawing::FrameSource {
   }
 
   const std::shared_ptr<FakeMachine> machine_;
-  base::DeviceTurn* const turn_;  // null: draws whole
+  base::DeviceTurn* const turn_;  // null: draws the picture whole
   const drawing::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
 };
 
@@ -461,7 +461,7 @@ std::vector<FakeMachine::Drawn> FakeMachine::Log() {
 int FakeMachine::PiecesUntil(const std::function<bool(const Drawn&)>& is) {
   int passed = 0;
   const bool drawn = WaitFor([&] {
-    // In this order: what was drawn before a piece waited is in the log.
+    // The order of these checks matters: whatever was drawn before a piece waited is in the log.
     const bool waits = next_piece.Waiting() > 0;
     if (std::ranges::any_of(Log(), is)) return true;
     if (!waits) return false;

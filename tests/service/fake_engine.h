@@ -1,5 +1,6 @@
-// Fakes for the render loop instead of files and GL: storms in memory, and a frame source that
-// paints scene values as colours and takes a given time, by the real clock or by a ManualTime.
+// Fakes for the render loop that replace files and GL: storms in memory, and a frame source. The
+// frame source paints scene values as colours and takes a given time, by the real clock or by a
+// ManualTime.
 #pragma once
 
 #include <atomic>
@@ -24,19 +25,19 @@ namespace thunderhead::testing {
 
 inline constexpr std::chrono::seconds kPatience{600};
 
-// A gate that blocks a fake's thread while it is closed; it starts open.
+// A gate that blocks a fake's thread while it is closed. It starts open.
 class Gate {
  public:
   void Close();
   void Open();
-  // Lets so many threads pass the closed gate: those that wait, and the next.
+  // Lets so many threads pass the closed gate: those that wait, and the next to arrive.
   void LetPass(int count);
   void LetOnePass() { LetPass(1); }
-  // Called by the fake: waits until the gate is open.
+  // Waits until the gate is open. The fake calls it.
   void Pass();
-  // Called by the test: waits until `count` threads wait at the closed gate.
+  // Waits until `count` threads wait at the closed gate. The test calls it.
   bool AwaitWaiting(int count);
-  // The number of threads that wait at the closed gate.
+  // Returns the number of threads that wait at the closed gate.
   int Waiting();
 
  private:
@@ -49,8 +50,8 @@ class Gate {
 
 inline constexpr char kThrownByStore[] = "/storms/anvil is not what it seemed";
 
-// "anvil" has four times with cloud and rain in part of the domain; "clear" has one time without
-// condensate.
+// A store with two storms. "anvil" has four times with cloud and rain in part of the domain;
+// "clear" has one time without condensate.
 class FakeStormStore final : public storm_store::StormStore {
  public:
   FakeStormStore();
@@ -72,9 +73,9 @@ class FakeStormStore final : public storm_store::StormStore {
   void Become(const std::string& id, const std::function<void(storm_store::StormInfo&)>& change);
 
   std::atomic<bool> without_memory{false};  // reads throw bad_alloc
-  std::atomic<bool> throws{false};          // looking for a storm throws kThrownByStore
+  std::atomic<bool> throws{false};          // finding a storm throws kThrownByStore
 
-  // Reads of that time fail with `status` from now on.
+  // Makes reads of that time fail with `status` from now on.
   void FailAt(int time_index, const absl::Status& status);
   int Reads();
   // Waits until that many reads have ended.
@@ -96,7 +97,7 @@ class FakeStormStore final : public storm_store::StormStore {
   int reads_ = 0;
 };
 
-// The machine that fake frame sources draw on; shared with the test, since the source lives on the
+// The machine that fake frame sources draw on. The test shares it, because the source lives on the
 // loop's thread.
 struct FakeMachine {
   struct Drawn {
@@ -106,47 +107,48 @@ struct FakeMachine {
   };
 
   Gate drawing;
-  Gate next_piece;  // of what is drawn in turns
-  // Drawing moves this time instead of sleeping, if it is set; it is set before anything is drawn.
+  Gate next_piece;  // passed before each piece of a picture drawn in turns
+  // If it is set, drawing advances this time instead of sleeping. It must be set before anything is
+  // drawn.
   ManualTime* time = nullptr;
   std::atomic<double> ms_per_mega_sample{0.0};
   std::atomic<double> fails_above_exposure_ev{1e9};
-  std::atomic<int> losses{0};  // of the device, with the next pictures drawn
+  std::atomic<int> losses{0};  // device losses, with the next pictures drawn
   std::atomic<double> loses_above_exposure_ev{1e9};
-  std::atomic<int> cannot_open{0};  // the next sources
-  std::atomic<int> opened{0};       // sources
-  Gate opening;                     // of each source
-  Gate preparing;                   // of scenes of metaballs; each number of them once a time
+  std::atomic<int> cannot_open{0};  // how many of the next sources fail to open
+  std::atomic<int> opened{0};       // number of sources
+  Gate opening;                     // passed when a source opens
+  Gate preparing;                   // passed once for each number of balls and time, to prepare it
   std::atomic<int> cannot_prepare{-1};
   std::atomic<int> pieces{0};   // drawn in turns
   std::atomic<int> checked{0};  // frames also drawn with half the slices
   std::atomic<std::int64_t> paths_per_step{100'000};
   std::atomic<std::int64_t> traced_paths{0};
   std::atomic<std::int64_t> traced_steps{0};
-  std::atomic<int> trace_refusals{0};  // as it traces enough, or others have their turn
+  std::atomic<int> trace_refusals{0};  // because it has traced enough, or must yield to others
   std::atomic<int> trace_failures{0};
   std::atomic<double> cannot_trace_azimuth_deg{-1.0};
-  std::atomic<bool> traces_enough{false};                // for others
-  std::atomic<double> waits_to_trace_azimuth_deg{-1.0};  // as others have their turn
+  std::atomic<bool> traces_enough{false};                // reported to others
+  std::atomic<double> waits_to_trace_azimuth_deg{-1.0};  // because it must yield to others
   const accuracy::LightClaim light = std::make_shared<int>();
-  // Of pictures, from the second step on; each step takes a tenth of a second of tracing. 0: none
-  // can be measured.
+  // The measured error of pictures, from the second step on. Each step takes 0.1 s of tracing. 0:
+  // none can be measured.
   std::atomic<double> measured_error{0.0};
-  // Pictures with at least so many slices have half of it, if that is set.
+  // If it is set, pictures with at least so many slices have half the error.
   std::atomic<int> slices_of_half_error{0};
   std::atomic<int> measured_steps{0};
   Gate tracing;
 
   std::vector<Drawn> Log();
   void Add(Drawn drawn);
-  // Lets pieces pass the closed gate, one after another, until a frame is drawn that `is`. Returns
-  // their number; -1 if there is none for kPatience.
+  // Lets pieces pass the closed gate, one after another, until a frame for which `is` holds is
+  // drawn. Returns the number of pieces; -1 if there is no such frame within kPatience.
   int PiecesUntil(const std::function<bool(const Drawn&)>& is);
-  // The scenes whose light was traced, one for each step.
+  // Returns the scenes whose light was traced, one for each step.
   std::vector<scene::Scene> Traced();
   void AddTraced(const scene::Scene& scene);
   bool IsPrepared(const scene::Scene& scene);
-  // Waits until it is, for at most kPatience.
+  // Waits until the scene is prepared, for at most kPatience.
   bool AwaitPrepared(const scene::Scene& scene);
   void Prepared(const scene::Scene& scene);
 
@@ -155,10 +157,10 @@ struct FakeMachine {
   std::condition_variable changed_;
   std::vector<Drawn> log_;
   std::vector<scene::Scene> traced_;
-  std::set<std::pair<int, int>> prepared_;  // numbers of balls, times
+  std::set<std::pair<int, int>> prepared_;  // (number of balls, time)
 };
 
-// In turns, their pictures are cut into pieces of so long.
+// The duration of a piece of a picture that is drawn in turns.
 inline constexpr double kFakePiece_ms = 10.0;
 
 drawing::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine);
@@ -169,14 +171,14 @@ struct FakeTruth {
   struct Begun {
     scene::Scene scene;
     glm::ivec2 size_px{0};
-    int samples_before = 0;  // of all pictures
+    int samples_before = 0;  // over all pictures
   };
 
   Gate sampling;
   std::atomic<double> ms_per_sample{0.5};
   std::atomic<double> fails_above_exposure_ev{1e9};
-  std::atomic<int> samples{0};  // of all pictures
-  std::atomic<int> sources{0};  // that exist
+  std::atomic<int> samples{0};  // over all pictures
+  std::atomic<int> sources{0};  // that exist now
 
   std::vector<Begun> Log();
   void Add(Begun begun);
@@ -188,7 +190,7 @@ struct FakeTruth {
 
 drawing::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth);
 
-// The colour that the fake source paints a scene in: red from the time, green from the sun's
+// The colours in which the fake source paints a scene: red encodes the time, green the sun's
 // azimuth.
 std::uint8_t RedOf(int time_index);
 std::uint8_t GreenOf(double sun_azimuth_deg);

@@ -1,5 +1,5 @@
-// A whole server on the fakes: no files, no GL, pictures in no time. What clients are measured
-// against.
+// A whole server on the fakes, for measuring clients: it needs no files and no GL, and draws
+// instantly.
 //   fake_server PORT
 #include <csignal>
 #include <cstdio>

@@ -66,7 +66,7 @@ v1::Scene SmallScene() {
   v1::Scene scene;
   scene.mutable_output()->set_width_px(64);
   scene.mutable_output()->set_height_px(36);
-  // Traced light only in the tests of it, so that a view at rest stays unchanged.
+  // Path tracing is on only in its own tests, so that a view at rest stays unchanged in the others.
   v1::LightVolume& light_volume = *scene.mutable_rendering()->mutable_light_volume();
   light_volume.set_slices(16);
   light_volume.set_traced_light(v1::TRACED_LIGHT_OFF);
@@ -136,7 +136,7 @@ void Watcher::Acknowledge(std::uint64_t sequence) {
   request.set_viewer_id(Messages().front().viewer_id());
   request.set_sequence(sequence);
   v1::AcknowledgeFrameResponse response;
-  // The session may have ended meanwhile, which is not an error of the viewer.
+  // The session may have ended meanwhile, which is not the viewer's error.
   Call(stub_, &Stub::AcknowledgeFrame, request, &response);
 }
 

@@ -19,11 +19,11 @@
 
 namespace thunderhead::testing {
 
-// Longer than any test moves its time.
+// A duration longer than any test advances its time.
 inline constexpr std::chrono::hours kYears{24 * 365 * 20};
 
-// Options of a server that goes by `time`, which must outlive it. No timeout ends anything, however
-// slow the machine is and however far a test moves the time, except those that the test sets.
+// Returns options of a server that uses `time`, which must outlive it. No timeout expires, however
+// slow the machine is and however far a test advances the time, except those that the test sets.
 service::ServerOptions Patient(const base::TimeSource& time = base::SteadyTime());
 
 // A server on fakes and a stub to it.
@@ -35,7 +35,7 @@ class FakeService {
   service::Server& server() { return *server_; }
   v1::ThunderheadService::Stub& stub() { return *stub_; }
 
-  // Opens a session of a small picture and returns its id.
+  // Opens a session with a small picture and returns its id.
   std::string Open(const v1::Scene& scene);
   std::uint64_t Update(const std::string& session_id, const v1::Scene& scene);
 
@@ -47,16 +47,17 @@ class FakeService {
   std::unique_ptr<v1::ThunderheadService::Stub> stub_;
 };
 
-// A scene of 64 x 36 pixels and 16 slices.
+// Returns a scene of 64 x 36 pixels and 16 slices.
 v1::Scene SmallScene();
 
-// Watches a session on a thread of its own; acknowledges every frame at once unless told otherwise.
+// A viewer that watches a session on its own thread. It acknowledges every frame at once unless
+// configured otherwise.
 class Watcher {
  public:
   Watcher(v1::ThunderheadService::Stub& stub, std::string session_id, bool acknowledges = true);
   ~Watcher();
 
-  // Waits until `wanted` is true for the messages so far, for at most so long.
+  // Waits until `wanted` is true for the messages so far, for at most `patience`.
   bool Await(const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted,
              std::chrono::seconds patience = kPatience);
   // Waits for a frame of at least that revision, at full quality if `refined`.

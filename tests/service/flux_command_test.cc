@@ -1,7 +1,7 @@
-// `thunderhead flux` as a user runs it, on files written here: shares of sunlight against closed
-// forms and against rays traced through the same cells. Sampled shares must lie within 4 standard
-// errors of the expected value: of the 60 or so comparisons, one would fail by chance in 250 runs
-// if the seed were not fixed.
+// Tests of `thunderhead flux` as a user runs it, on files written here. Shares of sunlight are
+// compared with closed forms and with rays traced through the same cells. Sampled shares must lie
+// within 4 standard errors of the expected value. There are 60 or so comparisons. One of them would
+// fail by chance in 250 runs if the seed were not fixed.
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
 #include <sys/wait.h>
@@ -44,11 +44,11 @@ class FluxCommand : public ::testing::Test {
     return WEXITSTATUS(status);
   }
 
-  // Runs with --json and keeps the shares.
+  // Runs with --json and parses the shares.
   void Flux(const std::string& arguments) {
     ASSERT_EQ(Run(arguments + " --json"), 0) << err_;
     ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(out_, &json_).ok()) << out_;
-    // Every photon ends in one place.
+    // Every photon ends in exactly one place.
     EXPECT_NEAR(Of("reflectance").value + Of("absorptance").value + Of("sides").value +
                     Of("ground_absorptance").value,
                 1.0, 1e-8);
@@ -86,8 +86,9 @@ class FluxCommand : public ::testing::Test {
   google::protobuf::Struct json_;
 };
 
-// The direct beam's transmittance through constant cells, by rays from a fine lattice on the top,
-// in steps of a fiftieth of a cell's height. The sun's azimuth is clockwise from north.
+// Returns the direct beam's transmittance through constant cells. It traces rays from a fine
+// lattice on the top, in steps of a fiftieth of a cell's height. The sun's azimuth is clockwise
+// from north.
 double TracedDirect(const std::function<double(double x_m, double y_m, double z_m)>& extinction,
                     double width_m, double depth_m, double height_m, double elevation_deg,
                     double azimuth_deg, double* through_sides = nullptr) {
@@ -122,7 +123,7 @@ double TracedDirect(const std::function<double(double x_m, double y_m, double z_
   return sum / (kRays * kRays);
 }
 
-// Steep towers of several heights and densities on 10 x 8 x 6 cells.
+// The extinction of steep towers of several heights and densities on 10 x 8 x 6 cells.
 double Towers(Cell x, Cell y, Cell z) {
   const Cell height = (7 * x + 3 * y) % 7;
   return z < height ? 0.002 * static_cast<double>(1 + (5 * x + 2 * y) % 9) : 0.0;
@@ -135,7 +136,7 @@ double TowersAt(double x_m, double y_m, double z_m) {
 
 SyntheticCf TowersFile() { return ExtinctionFile(10, 8, 6, 100.0, 80.0, 50.0, Towers); }
 
-// The lattice of rays is fine to 3e-3 across steep walls.
+// The lattice of rays is accurate to 3e-3 across steep walls.
 constexpr double kTraced = 3e-3;
 
 TEST_F(FluxCommand, SlabAgreesWithPublishedNumbers) {
@@ -177,7 +178,8 @@ TEST_F(FluxCommand, DirectBeamThroughOpenTowersLeavesByTheSides) {
   }
 }
 
-// A cloud turned by 90 degrees under a sun turned with it; and one mirrored under a mirrored sun.
+// Compares a cloud turned by 90 degrees under a sun turned with it, and a mirrored cloud under a
+// mirrored sun.
 TEST_F(FluxCommand, TurnedAndMirroredCloudsGiveTheSame) {
   const std::string common = " --periodic --photons 200000 --phase hg:0.85 --sun-elevation 30";
   Flux(Write(TowersFile()) + common + " --sun-azimuth 300");
@@ -187,7 +189,7 @@ TEST_F(FluxCommand, TurnedAndMirroredCloudsGiveTheSame) {
     ExpectShare("reflectance", reflected.value, 4.0 * reflected.standard_error);
     ExpectShare("transmittance_direct", direct.value, 4.0 * direct.standard_error);
   };
-  // North to east: what was at (x, y) is at (y, -x).
+  // Turns north to east: what was at (x, y) is at (y, -x).
   Flux(Write(ExtinctionFile(8, 10, 6, 80.0, 100.0, 50.0,
                             [](Cell x, Cell y, Cell z) { return Towers(9 - y, x, z); })) +
        common + " --sun-azimuth 30");
@@ -198,7 +200,7 @@ TEST_F(FluxCommand, TurnedAndMirroredCloudsGiveTheSame) {
   expect_same();
 }
 
-// The same file with its dimensions in another order and its heights downwards.
+// Writes the same file with its dimensions in another order and its heights downwards.
 TEST_F(FluxCommand, LayoutOfTheFileDoesNotMatter) {
   const std::string common = " --photons 20000 --phase hg:0.85 --sun-elevation 30";
   Flux(Write(TowersFile()) + common);
@@ -213,8 +215,8 @@ TEST_F(FluxCommand, LayoutOfTheFileDoesNotMatter) {
   EXPECT_NEAR(Of("reflectance").value, expected, 1e-12);
 }
 
-// A black, opaque tower absorbs the light on its top and its sunlit wall. The domain is the file's,
-// not the tower's.
+// A black, opaque tower absorbs the light on its top and its sunlit wall. The domain must be the
+// file's, not the tower's.
 TEST_F(FluxCommand, TallBlackBoxStopsItsShadow) {
   const std::string path =
       Write(ExtinctionFile(40, 10, 10, 100.0, 100.0, 100.0, [](Cell x, Cell y, Cell z) {
@@ -222,14 +224,14 @@ TEST_F(FluxCommand, TallBlackBoxStopsItsShadow) {
       }));
   const double area = 4000.0 * 1000.0;
   const double shadow = 200.0 * (500.0 + 800.0 * std::sqrt(3.0));
-  // Rays that graze an edge pass less than 2 m of it: optical depth 1.
+  // Rays that graze an edge pass through less than 2 m of the tower: optical depth 1.
   const double edges = 2.0 * (200.0 + 800.0) / area;
   for (const std::string sides : {"", " --periodic"}) {
     Flux(path + sides + " --photons 200000 --albedo 0 --sun-elevation 30 --sun-azimuth 270");
     ExpectShare("absorptance", shadow / area, edges);
   }
   Flux(path + " --photons 200000 --albedo 0 --sun-elevation 30 --sun-azimuth 270");
-  // Light that falls within tan 60 times the height of the east side leaves there.
+  // Light that enters within tan 60 times the height of the east side leaves there.
   ExpectShare("sides", 1000.0 * std::sqrt(3.0) / 4000.0);
 }
 
@@ -246,11 +248,12 @@ TEST_F(FluxCommand, WideDomainAgreesWithPeriodic) {
   const Share absorbed = Of("absorptance");
   const Share sides = Of("sides");
   Flux(common + " --periodic");
-  // Light that left may be absorbed elsewhere, at most the cloud's share of the area seen sideways.
+  // Light that left may be absorbed elsewhere, at most by the cloud's share of the area seen
+  // sideways.
   ExpectShare("absorptance", absorbed.value, 4.0 * absorbed.standard_error + 0.05 * sides.value);
 }
 
-// Without a medium all light arrives.
+// Without a medium all light arrives at the ground.
 TEST_F(FluxCommand, EmptyFileLetsAllThrough) {
   Flux(Write(ExtinctionFile(3, 3, 3, 10.0, 10.0, 10.0, [](Cell, Cell, Cell) { return 0.0; })) +
        " --photons 1000");
@@ -298,10 +301,11 @@ TEST_F(FluxCommand, InterruptedRunsReportWhatTheyHave) {
   RunningProgram program(
       PROGRAM, {"flux", "--slab", "1", "--phase", "hg:0.5", "--photons", "1000000000000", "--json"},
       out, terminal.Name());
-  // The bar has a share once photons have been traced.
+  // The bar shows a percentage once photons have been traced.
   WaitFor([&] { return terminal.Shown().find(" %") != std::string::npos || !program.Runs(); });
-  // Several signals at once are one request, because coreutils' timeout sends its signal twice, and
-  // terminals signal a whole process group. The program is stopped until all have arrived.
+  // Several signals at once count as one request, because coreutils' timeout sends its signal
+  // twice, and terminals signal a whole process group. The program is stopped until all have
+  // arrived.
   for (const int signal : {SIGSTOP, SIGINT, SIGTERM, SIGINT, SIGCONT}) program.Signal(signal);
   EXPECT_EQ(program.Wait().code, 0) << terminal.Shown();
   std::ostringstream text;

@@ -1,6 +1,6 @@
-// `thunderhead sequence` and `watch` where their products cannot go: a disk that is full, or
-// becomes full, and a folder that may not be written to. Small file systems of the test's own, in
-// namespaces of its own; where the machine refuses those it is skipped.
+// Tests of `thunderhead sequence` and `watch` when their products cannot be written: a disk that is
+// full or becomes full, and a folder without write permission. The test mounts small file systems
+// in its own namespaces. It is skipped if the machine refuses those.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -33,9 +33,9 @@ class FullDisk : public ::testing::Test {
     for (int time = 0; time < kDiskTimes; ++time) WriteRunFile(storms_, time);
   }
 
-  // Runs a script in a mount namespace of its own, with the functions `draw` and `watch` for the
-  // program with products in $OUT, `fill` for what takes the rest of $OUT's room, and `say`. Its
-  // output line by line.
+  // Runs a script in its own mount namespace and returns its output line by line. The script has
+  // the functions `draw` and `watch` for the program with products in $OUT, `fill` to take the rest
+  // of $OUT's space, and `say`.
   std::vector<std::string> Run(const std::string& script) const {
     const std::string file = folder_.File("script");
     std::ofstream(file)
@@ -71,13 +71,13 @@ class FullDisk : public ::testing::Test {
   const TemporaryFolder folder_;
   const std::string storms_ = folder_.File("run");
   const std::string out_ = folder_.File("out");
-  const std::string kept_ = folder_.File("kept");  // what was in `out_` at last
+  const std::string kept_ = folder_.File("kept");  // the last contents of `out_`
   const std::string log_ = folder_.File("log");
   const std::string all_ = folder_.File("all");
 };
 
 TEST_F(FullDisk, WhatItCannotHoldComesWhenThereIsRoom) {
-  // Room for the manifest and one picture or two.
+  // The disk has space for the manifest and one or two pictures.
   const std::vector<std::string> lines = Run(R"(
     mount -t tmpfs -o size=256k none "$OUT"
     head -c $((256 * 1024 - 3 * 4096)) /dev/zero > "$OUT/fill"
@@ -129,7 +129,7 @@ TEST_F(FullDisk, NeitherAManifestNorAMovieIsHalfWritten) {
 }
 
 TEST_F(FullDisk, AFolderThatHasNoRoomForAnotherComesLater) {
-  // The root, and one folder more.
+  // There are inodes for the root and one more folder.
   const std::vector<std::string> lines = Run(R"(
     mount -t tmpfs -o size=1m,nr_inodes=2 none "$OUT"
     IN_FOLDER=a/deep/

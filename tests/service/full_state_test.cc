@@ -1,5 +1,5 @@
-// `thunderhead serve` whose state folder is on a disk that becomes full: a small file system of the
-// test's own, in a namespace of its own. Where the machine refuses that it is skipped.
+// Tests of `thunderhead serve` whose state folder is on a disk that becomes full. The test mounts a
+// small file system in its own namespace. It is skipped if the machine refuses that.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using Stub = v1::ThunderheadService::Stub;
 
-// More than there is room for in what SQLite has already of the disk.
+// More sessions than fit in the space that SQLite already has on the disk.
 constexpr int kMaxSessions = 40;
 
 constexpr char kStorm[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
@@ -38,8 +38,8 @@ class SmallStateDisk : public ::testing::Test {
     fs::create_directory(state_);
   }
 
-  // Returns the path of a script that starts the program with the script's arguments, after a
-  // small disk was mounted as the state folder and `then` was run.
+  // Returns the path of a script that mounts a small disk as the state folder, runs `then`, and
+  // starts the program with the script's arguments.
   std::string Starter(const std::string& then) const {
     const std::string starter = folder_.File("start");
     std::ofstream(starter) << "#!/bin/sh\nexec unshare -rm sh -c 'mount -t tmpfs -o size=8m none "
@@ -78,7 +78,7 @@ class FullStateTest : public SmallStateDisk {
     ASSERT_NE(program_->stub(), nullptr);
   }
 
-  // The file that takes the room that is left, as the program's namespace has it.
+  // The path, seen from the program's namespace, of the file that fills the remaining space.
   std::string FillerPath() const {
     return absl::StrCat("/proc/", program_->process(), "/root", state_, "/filler");
   }
@@ -120,7 +120,7 @@ TEST_F(FullStateTest, SessionsThatAreNotSavedSaySoUntilThereIsRoom) {
   }
   ASSERT_TRUE(last.has_durable());
   ASSERT_FALSE(last.durable()) << "the disk never was full";
-  // It is a session like any other.
+  // The session works like any other.
   {
     Interacting presenter(*program_->stub(), last.session_id());
     EXPECT_TRUE(presenter.AwaitFrame(last.scene_revision()));

@@ -1,4 +1,5 @@
-// Clouds generated on request: files in the server's folder, and storms like any other.
+// Tests of clouds generated on request: they are files in the server's folder, and storms like any
+// other.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

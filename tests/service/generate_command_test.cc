@@ -1,4 +1,4 @@
-// `thunderhead generate` as a user runs it: every other command accepts its output.
+// Tests of `thunderhead generate` as a user runs it: every other command accepts its output.
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -157,8 +157,8 @@ TEST_F(GenerateCommand, CloudsAreFittedByMetaballs) {
   EXPECT_THAT(Contents("cloud.balls"), HasSubstr("quantity cloud kg/m3"));
 }
 
-// With only zeros, missing values and negatives there is no cloud to fit, and every renderer draws
-// the sky.
+// With only zeros, missing values and negative values there is no cloud to fit, and every renderer
+// draws the sky.
 TEST_F(GenerateCommand, EmptyVolumesAreNamedByFitAndDrawnAsSky) {
   for (const double value : {0.0, -1e-3, std::numeric_limits<double>::quiet_NaN(), 1e31}) {
     WriteCf(

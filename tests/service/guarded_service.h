@@ -1,4 +1,4 @@
-// A service that asks who calls, for tests of who may.
+// A service with access control, for tests of who may call what.
 #pragma once
 
 #include <grpcpp/generic/generic_stub.h>
@@ -32,7 +32,7 @@ inline std::string Sha256OfToken(const std::string& text) {
   return absl::BytesToHexString(digest);
 }
 
-// A service that knows a token of each role.
+// A service that knows one token for each role.
 class GuardedService {
  public:
   explicit GuardedService(service::ServerOptions options = Patient(),
@@ -54,7 +54,7 @@ class GuardedService {
     service_.emplace(options);
   }
 
-  // From now on nobody knows that role's token.
+  // Revokes that role's token.
   void TakeAwayToken(const std::string& role) {
     const std::string next = folder_.File("next");
     {
@@ -76,7 +76,7 @@ class GuardedService {
     return lines_;
   }
 
-  // Calls any rpc with an empty request and returns how it ended.
+  // Calls any rpc with an empty request and returns the status code.
   grpc::StatusCode Ask(const std::string& method, const std::string& token,
                        const std::string& service = v1::ThunderheadService::service_full_name()) {
     grpc::GenericStub stub(service_->server().LocalChannel());

@@ -1,12 +1,13 @@
 // A library for LD_PRELOAD that makes a storage hang. Opening FILE blocks while a file FILE.hangs
 // exists. FOLDER.hangs blocks every operation on what is in the folder, also on open files. A
-// blocked call creates FILE.hung or FOLDER.hung, so that a test knows of it, and continues once
-// that is removed. The contents of a folder are on another device if FOLDER.mounted exists.
+// blocked call creates FILE.hung or FOLDER.hung, so that a test can detect it. The call continues
+// once that file is removed. The contents of a folder are on another device if FOLDER.mounted
+// exists.
 //
 // The library also controls the program's monotonic clock if THUNDERHEAD_TEST_CLOCK names a file,
 // so that a slow machine is never mistaken for a storage that hangs. The clock then runs at a tenth
 // of the real speed, and is ahead by the file's number of nanoseconds (int64_t). A test may raise
-// that.
+// that number.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <linux/futex.h>
@@ -32,7 +33,7 @@
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-// How long a wait may take to notice that the test has moved the clock.
+// The longest time before a wait notices that the test has advanced the clock.
 constexpr std::int64_t kLookAgain_ns = 10'000'000;
 constexpr std::int64_t kSlowness = 10;  // of a clock that a test controls
 
@@ -100,7 +101,7 @@ class Clock {
     return start_ns_ + (Real_ns() - start_ns_) / kSlowness + ahead_ns_->load();
   }
 
-  // How long a wait until `deadline_ns` may block before it must read the clock again.
+  // Returns how long a wait until `deadline_ns` may block before it must read the clock again.
   std::int64_t Slice_ns(std::int64_t deadline_ns) const {
     return std::clamp<std::int64_t>(deadline_ns - Now_ns(), 0, kLookAgain_ns);
   }
@@ -120,8 +121,8 @@ class Clock {
   const std::atomic<std::int64_t>* ahead_ns_ = nullptr;
 };
 
-// Returns whether the code at `address` is gRPC's. That keeps the real clock: it would take every
-// client for gone that does not answer within a few seconds of a clock that is moved.
+// Returns whether the code at `address` belongs to gRPC, which keeps the real clock. With an
+// advanced clock, gRPC would take clients that do not answer within a few seconds for disconnected.
 bool IsInGrpc(const void* address) {
   static void* const a_function = dlsym(RTLD_DEFAULT, "gpr_now");
   Dl_info grpc{};
@@ -135,7 +136,8 @@ bool IsInGrpc(const void* address) {
 // NOLINTBEGIN: the names of libstdc++, which waits for futures by this function
 namespace std {
 
-// Returns false if the time has come. A true may be spurious; its caller looks again.
+// Returns false if the deadline has passed. A return of true may be spurious, so the caller checks
+// again.
 bool __atomic_futex_unsigned_base::_M_futex_wait_until_steady(unsigned* address, unsigned value,
                                                               bool has_timeout,
                                                               chrono::seconds seconds,
@@ -247,7 +249,7 @@ int unlink(const char* path) noexcept {
 
 int statx(int folder, const char* path, int flags, unsigned int mask,
           struct statx* status) noexcept {
-  // Of a file that is marked itself the status still comes.
+  // The status of a file that is itself marked is still returned.
   if (const char* const name = path == nullptr ? nullptr : strrchr(path, '/'); name != nullptr) {
     HangIfTold(std::string(path, name).c_str());
   }

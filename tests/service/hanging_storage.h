@@ -1,4 +1,4 @@
-// How tests use hanging_storage.cc, a library that makes a program's storage hang.
+// Functions with which tests use hanging_storage.cc, a library that makes a program's storage hang.
 #pragma once
 
 #include <cstdlib>
@@ -8,17 +8,19 @@
 
 namespace thunderhead::testing {
 
-// A sanitizer's library must be the first of a program.
+// A sanitizer's library must be the first library of a program, so these builds cannot preload
+// another.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kHasHangingStorage = false;
 #else
 inline constexpr bool kHasHangingStorage = true;
 #endif
 
-// While it lives, programs that are started load the library.
+// An object during whose life every program that is started loads the library.
 class HangingStorage {
  public:
-  // `clock` names the file of the program's clock; by default the program has the machine's.
+  // Sets up the preload. `clock` names the file of the program's clock; by default the program uses
+  // the machine's clock.
   explicit HangingStorage(const std::string& clock = "") {
     setenv("LD_PRELOAD", HANGING_STORAGE, 1);
     if (!clock.empty()) setenv("THUNDERHEAD_TEST_CLOCK", clock.c_str(), 1);
@@ -31,13 +33,13 @@ class HangingStorage {
   HangingStorage& operator=(const HangingStorage&) = delete;
 };
 
-// Makes calls hang that open the file, or that use what is in the folder.
+// Makes calls hang that open the file, or that use the contents of the folder.
 inline void HangAt(const std::string& path) { std::ofstream(path + ".hangs"); }
 
-// Returns whether a call hangs there.
+// Returns whether a call hangs at `path`.
 inline bool Hangs(const std::string& path) { return std::filesystem::exists(path + ".hung"); }
 
-// Lets the calls continue that hang there now. Later ones hang.
+// Lets the calls continue that hang at `path` now. Later calls hang again.
 inline void Release(const std::string& path) { std::filesystem::remove(path + ".hung"); }
 
 // Lets all calls continue.

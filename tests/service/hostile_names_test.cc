@@ -1,4 +1,4 @@
-// The program on data folders whose names, titles and links come from an attacker.
+// Tests of the program on data folders whose names, titles and links come from an attacker.
 #include <google/protobuf/reflection.h>
 
 #include <algorithm>
@@ -28,7 +28,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Stub = v1::ThunderheadService::Stub;
 
-// A second line that looks like one of the audit, and what changes a terminal's title.
+// A second line that imitates an audit line, and an escape sequence that changes a terminal's
+// title.
 constexpr char kForged[] =
     "z\naudit time=2026-01-02T03:04:05.678Z identity=\"anna\" role=operator act=CloseSession\nx"
     "\x1b]0;owned\x07";
@@ -61,7 +62,7 @@ class HostileNamesTest : public ::testing::Test {
  protected:
   HostileNamesTest() { fs::create_directories(data_ / "sub"); }
 
-  // Writes a storm, with that title where one is given.
+  // Writes a storm, with the title if it is not empty.
   static void WriteStorm(const fs::path& path, const std::string& title = "") {
     SyntheticCf storm =
         ExtinctionFile(6, 6, 6, 500.0, 500.0, 500.0, [](auto, auto, auto) { return 1e-3; });

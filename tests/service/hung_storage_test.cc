@@ -1,5 +1,6 @@
-// The program on a storage that hangs. hanging_storage.cc blocks the calls that a test chooses and
-// moves the program's clock, so that no test waits for a timeout or takes a slow read for a hang.
+// Tests of the program on a storage that hangs. hanging_storage.cc blocks the calls that a test
+// chooses and advances the program's clock. No test therefore waits for a timeout or takes a slow
+// read for a hang.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -47,10 +48,10 @@ void WriteStorm(const std::string& path) {
   WriteWrf(storm, path);
 }
 
-// From now on what is in the folder is on a device of its own.
+// Makes the contents of the folder appear on a separate device from now on.
 void Mount(const std::string& folder) { std::ofstream(folder + ".mounted"); }
 
-// The monotonic clock of a program that has hanging_storage.cc.
+// The monotonic clock of a program that has loaded hanging_storage.cc.
 class ProgramClock {
  public:
   explicit ProgramClock(const std::string& path)
@@ -61,7 +62,7 @@ class ProgramClock {
   ProgramClock(const ProgramClock&) = delete;
   ProgramClock& operator=(const ProgramClock&) = delete;
 
-  // Moves the clock forward. From one thread at a time.
+  // Advances the clock. Call it from one thread at a time.
   void Advance(std::chrono::nanoseconds by) {
     ahead_ns_ += by.count();
     EXPECT_EQ(pwrite(file_, &ahead_ns_, sizeof(ahead_ns_), 0), sizeof(ahead_ns_));
@@ -117,7 +118,7 @@ class HungStorageTest : public ::testing::Test {
     return has_come() ? found[1] : std::string();
   }
 
-  // Makes a call that comes to hang at `path`, and lets the program's time pass until it returns.
+  // Makes a call that will hang at `path`, and advances the program's time until the call returns.
   template <typename MakeCall>
   auto AnswerWhereHangs(const std::string& path, MakeCall call) {
     const std::jthread passing([&](const std::stop_token& answered) {
@@ -129,8 +130,8 @@ class HungStorageTest : public ::testing::Test {
     return call();
   }
 
-  // Waits until the program says of `path`, at which it hangs, that this does not answer. Returns
-  // for how many seconds it has not, and 0 if the program ends before.
+  // Waits until the program warns that `path`, at which it hangs, does not answer. Returns for how
+  // many seconds it has not answered, and 0 if the program ends before.
   double AwaitWarningOf(const std::string& path) {
     const std::string said = AnswerWhereHangs(path, [&] {
       return Await(err_, fs::path(path).filename().string() +
@@ -147,7 +148,7 @@ class HungStorageTest : public ::testing::Test {
     stub_ = v1::ThunderheadService::NewStub(channel);
     jobs_stub_ = v1::RenderJobService::NewStub(channel);
   }
-  // With a storm, and a folder for clouds.
+  // Starts the program with a storm and a folder for clouds.
   void StartWithClouds() {
     fs::create_directory(folder_.File("clouds"));
     WriteStorm(folder_.File("anvil.nc"));
@@ -170,7 +171,7 @@ class HungStorageTest : public ::testing::Test {
   }
 
   // Waits until the operators' port answers 200. A frame that was being drawn while the program's
-  // clock moved counts as stuck until it is drawn.
+  // clock was advanced counts as stuck until it is drawn.
   bool BecomesHealthy(const std::string& path) const {
     return WaitFor([&] { return CodeOf(operators_port_, path) == 200; });
   }
@@ -182,8 +183,8 @@ class HungStorageTest : public ::testing::Test {
     return Call(*stub_, &Stub::RenderImage, request, &response);
   }
 
-  // Returns the exit code after SIGTERM. Lets the program's time pass, by which it leaves behind
-  // what hangs.
+  // Returns the exit code after SIGTERM. Advances the program's time so that it abandons the calls
+  // that hang.
   int CodeAfterSigterm() {
     program_->Signal(SIGTERM);
     WaitFor([&] {
@@ -210,10 +211,10 @@ TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   Mount(folder_.File("data"));
   fs::create_directory(folder_.File("other"));
   const std::string far = folder_.File("data/tower.nc");
-  // The first of them is drawn, and so read, as the program starts.
+  // The program draws, and so reads, the first storm as it starts.
   WriteStorm(folder_.File("data/anvil.nc"));
   WriteStorm(far);
-  // Two of the same time, which are no series.
+  // The two files have the same time, so they form no series.
   WriteStorm(folder_.File("other/plume.nc"));
   WriteStorm(folder_.File("other/wall.nc"));
   Start({folder_.File("data"), folder_.File("other")});
@@ -226,7 +227,7 @@ TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = SceneOf("tower");
   v1::CreateSessionResponse created;
-  // The call must be answered, whether a session opens or not.
+  // The call must be answered, whether or not a session opens.
   AnswerWhereHangs(far, [&] { return Call(*stub_, &Stub::CreateSession, request, &created); });
   const grpc::Status late = AnswerWhereHangs(far, [&] { return Draw("tower"); });
   EXPECT_EQ(late.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << late.error_message();
@@ -237,7 +238,7 @@ TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   EXPECT_TRUE(BecomesHealthy("/healthz"));
   EXPECT_TRUE(BecomesHealthy("/readyz"));
   EXPECT_TRUE(Draw("anvil").ok());
-  // Another device is read by another process.
+  // Another process reads the other device.
   const grpc::Status beside = Draw("plume");
   EXPECT_TRUE(beside.ok()) << beside.error_message();
   *request.mutable_scene() = SceneOf("anvil");
@@ -285,7 +286,7 @@ TEST_F(HungStorageTest, AStateFolderThatHangsHoldsUpNothingElse) {
   v1::CreateSessionResponse third;
   refused(
       AnswerWhereHangs(state, [&] { return Call(*stub_, &Stub::CreateSession, request, &third); }));
-  // It is known by now that the folder hangs, so that the next calls do not wait.
+  // The program knows by now that the folder hangs, so the next calls do not wait.
   v1::CloseSessionRequest close;
   close.set_session_id(other.session_id());
   v1::CloseSessionResponse closed;
@@ -343,7 +344,7 @@ TEST_F(HungStorageTest, AFileOfTokensThatHangsLocksNobodyOutAndHoldsUpNobody) {
   const std::string etc = folder_.File("etc");
   HangAt(etc);
   EXPECT_EQ(AnswerWhereHangs(etc, [&] { return list(kToken); }), grpc::StatusCode::OK);
-  // It is known by now that the folder hangs, so that the next calls do not wait.
+  // The program knows by now that the folder hangs, so the next calls do not wait.
   for (int i = 1; i < 10; ++i) EXPECT_EQ(list(kToken), grpc::StatusCode::OK);
   EXPECT_EQ(list("another"), grpc::StatusCode::UNAUTHENTICATED);
   EXPECT_EQ(CodeOf(http_port_, "/healthz"), 200);

@@ -1,4 +1,5 @@
-// Progress of single pictures, on a fake machine that traces a hundred thousand paths at a time.
+// Tests of the progress of single pictures, on a fake machine that traces a hundred thousand paths
+// at a time.
 #include <algorithm>
 #include <chrono>
 #include <mutex>
@@ -30,7 +31,7 @@ v1::RenderImageRequest RequestWith(v1::TracedLight traced_light) {
   return request;
 }
 
-// Collects the events of a picture on a thread of its own.
+// A call that collects the events of a picture on its own thread.
 class PictureCall {
  public:
   PictureCall(FakeService& service, const v1::RenderImageRequest& request)
@@ -40,7 +41,7 @@ class PictureCall {
     if (thread_.joinable()) thread_.join();
   }
 
-  // Waits until there are as many events, for at most kPatience.
+  // Waits until there are at least `count` events, for at most kPatience.
   bool Await(std::size_t count) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kPatience, [&] { return events_.size() >= count; });
@@ -50,7 +51,7 @@ class PictureCall {
     thread_.join();
     return end_;
   }
-  // Once it has ended.
+  // Returns all events. Call it only after the call has ended.
   const Events& AllEvents() const { return events_; }
 
  private:
@@ -75,7 +76,8 @@ class PictureCall {
   std::thread thread_;
 };
 
-// With a machine that traces a step when the test lets it. Time moves only where a test moves it.
+// A fixture with a machine that traces a step when the test lets it. Time advances only where a
+// test advances it.
 class ImageProgressTest : public ::testing::Test {
  protected:
   ImageProgressTest() { service_.machine->tracing.Close(); }
@@ -129,12 +131,12 @@ TEST_F(ImageProgressTest, ACancelledPictureIsTracedNoFurtherAndWaitsNoMore) {
   ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1)) << "the second step";
   call.Cancel();
   EXPECT_EQ(call.End().error_code(), grpc::StatusCode::CANCELLED);
-  // The server notices a moment later, during that step.
+  // The server notices the cancellation a moment later, during that step.
   ASSERT_TRUE(WaitFor([&] { return service_.server().Load().pictures == 0; }));
   service_.machine->tracing.Open();
   ASSERT_TRUE(WaitFor([&] { return service_.machine->traced_steps == 2; }));
   EXPECT_TRUE(service_.machine->Log().empty()) << "it was drawn";
-  // The one place is free.
+  // The only place is free again.
   PictureCall next(service_, RequestWith(v1::TRACED_LIGHT_AWAITED));
   const grpc::Status end = next.End();
   EXPECT_TRUE(end.ok()) << end.error_message();
@@ -160,7 +162,7 @@ TEST_F(ImageProgressTest, ThePictureIsThatOfTheCallWithoutProgress) {
   v1::RenderImageResponse told = call.AllEvents().back().image();
   EXPECT_EQ(told.image(), plain.image());
   EXPECT_EQ(told.stages_size(), plain.stages_size());
-  // The rest is the same except for the times.
+  // Everything else is the same except the times.
   told.clear_stages();
   plain.clear_stages();
   told.clear_accuracy();

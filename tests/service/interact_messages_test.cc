@@ -1,4 +1,5 @@
-// Messages that share their largest part: the same bytes for every viewer, not a copy for each.
+// Tests that messages share their largest part: all viewers get the same bytes instead of a copy
+// each.
 #include "service/interact_messages.h"
 
 #include <grpcpp/support/proto_buffer_reader.h>
@@ -12,7 +13,7 @@
 namespace thunderhead::service {
 namespace {
 
-// A client's view of the message.
+// Parses the message as a client does.
 v1::InteractResponse Parsed(grpc::ByteBuffer message) {
   grpc::ProtoBufferReader reader(&message);
   v1::InteractResponse response;
@@ -20,7 +21,7 @@ v1::InteractResponse Parsed(grpc::ByteBuffer message) {
   return response;
 }
 
-// Where the message's largest part lies in memory.
+// Returns where the message's largest part lies in memory.
 const void* LargestPartOf(const grpc::ByteBuffer& message) {
   std::vector<grpc::Slice> slices;
   EXPECT_TRUE(message.Dump(&slices).ok());
@@ -33,7 +34,7 @@ TEST(InteractMessagesTest, FramesOfAllViewersAreTheSameBytes) {
   frame->jpeg.assign(50'000, 'x');
   frame->width_px = 640;
   frame->serialized = SerializedFrame(*frame);
-  frame->sequence = 7;  // set by the hub, later
+  frame->sequence = 7;  // the hub sets it later
   for (int viewer = 0; viewer < 3; ++viewer) {
     const grpc::ByteBuffer message = FrameResponse(frame, /*own_view=*/false);
     EXPECT_EQ(LargestPartOf(message), frame->serialized.data());

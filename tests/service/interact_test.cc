@@ -1,4 +1,4 @@
-// Interact: one call for the whole of a session. Each rule is enforced by the server.
+// Tests of Interact, the one call that serves a whole session. The server enforces each rule.
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -38,7 +38,7 @@ v1::InteractRequest SunTo(float azimuth_deg) {
   return request;
 }
 
-// The storm must be read to place its camera.
+// A scene whose update is slow, because the storm must be read to place its camera.
 v1::InteractRequest SlowSunTo(float azimuth_deg) {
   v1::InteractRequest request = SunTo(azimuth_deg);
   v1::Scene& scene = *request.mutable_update_scene()->mutable_scene();
@@ -83,7 +83,7 @@ v1::InteractRequest Locks(bool following) {
   return request;
 }
 
-// Straight down through the middle of the fake storm's cloud.
+// Returns a ray straight down through the middle of the fake storm's cloud.
 v1::Ray RayDown() {
   v1::Ray ray;
   ray.mutable_origin()->set_x_m(-5500.0F);
@@ -130,7 +130,8 @@ v1::SessionRules ViewersMayMark() {
 
 using Timeouts = session::RosterTimeouts;
 
-// Of the roster's timeouts that a test is about. They end nothing before the test moves the time.
+// The value of those roster timeouts that a test is about. They do not expire before the test
+// advances the time.
 constexpr std::chrono::milliseconds kTimeout = std::chrono::hours(1);
 
 service::ServerOptions With(const std::vector<std::chrono::milliseconds Timeouts::*>& timeouts,
@@ -140,7 +141,7 @@ service::ServerOptions With(const std::vector<std::chrono::milliseconds Timeouts
   return options;
 }
 
-// A session with its presenter, Ana and Ben.
+// A session with its presenter and two viewers, Ana and Ben.
 struct Class {
   explicit Class(const v1::SessionRules& rules = {},
                  const service::ServerOptions& options = Patient())
@@ -163,8 +164,8 @@ struct Class {
     });
   }
 
-  // Moves the time, and waits until the roster has ended what runs out by then. Ben asks for
-  // control before, and nobody answers him: the timeout of answers is kTimeout.
+  // Advances the time, and waits until the roster has ended what expires by then. Ben asks for
+  // control first and gets no answer, because the timeout of answers is kTimeout.
   bool RosterSees(RunningTime& time, std::chrono::milliseconds moved) {
     ben->Send(Asks());
     if (!AsksFor(*ana, ben->viewer_id(), true)) return false;
@@ -214,7 +215,7 @@ TEST(InteractTest, AJoinerIsToldEverythingAtOnce) {
   EXPECT_TRUE(presence.rules().has_viewers_may_steer());
 }
 
-// Presence is told at most once in 0.2 s, and not as it was before somebody joined.
+// Presence is sent at most once in 0.2 s. A joiner must not get a presence from before the join.
 TEST(InteractTest, TheFirstPresenceOfAJoinerHasTheJoiner) {
   Class group;
   std::vector<std::unique_ptr<Interacting>> people;
@@ -248,7 +249,7 @@ TEST(InteractTest, FramesAreThoseOfWatchFrames) {
   EXPECT_TRUE(watched.has_view());
 }
 
-// The fake source draws in 8 bits only, so no stills follow: at rest JPEG replaces video.
+// The fake source draws in 8 bits only, so no still images follow: at rest JPEG replaces video.
 TEST(InteractTest, VideoComesToWhoDecodesItOnly) {
   RunningTime time;
   Class group({}, Patient(time));
@@ -258,7 +259,7 @@ TEST(InteractTest, VideoComesToWhoDecodesItOnly) {
   Watcher old(group.service.stub(), group.created.session_id());
   ASSERT_TRUE(video.AwaitFrame(1));
   ASSERT_TRUE(jpeg.AwaitFrame(1));
-  // So that no scene rests, and no link seems slow.
+  // Keeps every scene from resting and every link from seeming slow.
   time.Stop();
   std::uint64_t revision = 1;
   for (int i = 0; i < 20; ++i) {
@@ -349,7 +350,7 @@ TEST(InteractTest, WhoAsksTooOftenIsToldWhenToAskAgain) {
   const std::chrono::milliseconds wait = RetryAfterOf(refused.status());
   EXPECT_GT(wait, std::chrono::milliseconds(0));
   EXPECT_LE(wait, kTimeout);
-  // Another person may.
+  // Another viewer may ask.
   group.ben->Send(Asks());
   EXPECT_TRUE(Class::AsksFor(*group.presenter, group.ben->viewer_id(), true));
   group.presenter->Send(Refuses(group.ana->viewer_id()));
@@ -380,7 +381,7 @@ TEST(InteractTest, ARequestThatNobodyAnswersEnds) {
   Class group({}, With({&Timeouts::answer}, time));
   group.ana->Send(Asks());
   ASSERT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), true));
-  // Nobody does anything meanwhile.
+  // No viewer does anything meanwhile.
   time.Advance(kTimeout);
   EXPECT_TRUE(Class::AsksFor(*group.presenter, group.ana->viewer_id(), false));
   EXPECT_TRUE(Class::AsksFor(*group.ana, group.ana->viewer_id(), false));
@@ -397,7 +398,7 @@ TEST(InteractTest, FreeControlGoesToWhoAsksFirst) {
   group.ben->Send(Asks());
   ASSERT_TRUE(Class::SteersFor(*group.ana, group.ben->viewer_id()));
   EXPECT_EQ(group.ben->AnswerCode(group.ben->Send(SunTo(120.0F))), grpc::StatusCode::OK);
-  // The next has to wait for Ben's answer.
+  // The next request has to wait for Ben's answer.
   group.ana->Send(Asks());
   ASSERT_TRUE(Class::AsksFor(*group.ben, group.ana->viewer_id(), true));
   EXPECT_TRUE(Class::SteersFor(*group.ben, group.ben->viewer_id()));
@@ -429,7 +430,7 @@ TEST(InteractTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
   group.presenter->Cancel();
   ASSERT_TRUE(group.ana->AwaitPresence(
       [](const v1::Presence& presence) { return presence.presenter_away(); }));
-  // Nobody does anything meanwhile.
+  // No viewer does anything meanwhile.
   time.Advance(kTimeout);
   ASSERT_TRUE(group.ana->AwaitPresence([](const v1::Presence& presence) {
     return !presence.presenter_away() && presence.steering_viewer_id() == 0;
@@ -439,7 +440,7 @@ TEST(InteractTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
     return presence.steering_viewer_id() == group.ana->viewer_id();
   };
   ASSERT_TRUE(group.ben->AwaitPresence(ana_steers));
-  // A presenter who comes back takes it, but not by coming.
+  // A presenter who comes back can take control, but does not get it merely by returning.
   Interacting back(group.service.stub(), group.created.session_id(), {.name = "Teacher"});
   ASSERT_TRUE(group.ben->AwaitPresence([&](const v1::Presence& presence) {
     return presence.people_size() == 3 && ana_steers(presence);
@@ -479,7 +480,7 @@ TEST(InteractTest, EverybodyIsToldWhichTimesAreInMemory) {
   RunningTime time;
   Class group({}, Patient(time));
   const auto told = [&](Interacting& person, const std::vector<std::uint32_t>& times) {
-    time.Advance(std::chrono::seconds(1));  // the server looks once a second
+    time.Advance(std::chrono::seconds(1));  // the server checks once a second
     return person.Await([&](const Interacting::Messages& messages) {
       return std::ranges::any_of(messages, [&](const Response& message) {
         return message.has_times_in_memory() && message.times_in_memory().storm_id() == "anvil" &&
@@ -489,7 +490,7 @@ TEST(InteractTest, EverybodyIsToldWhichTimesAreInMemory) {
   };
   const std::uint32_t shown = group.ben->AwaitScene(1).time_index();
   EXPECT_TRUE(told(*group.ben, {shown}));
-  // As if it had been read ahead: no scene shows it.
+  // Reads the time as if in advance; no scene shows it.
   const std::uint32_t ahead = shown == 2 ? 1 : 2;
   ASSERT_TRUE(group.service.store->Get("anvil", static_cast<int>(ahead), {}).ok());
   const std::vector<std::uint32_t> both = {std::min(shown, ahead), std::max(shown, ahead)};
@@ -532,7 +533,7 @@ TEST(InteractTest, OfTwoWhoChangeTheSameRevisionOneIsTold) {
   EXPECT_EQ(group.presenter->AwaitScene(2).sun().azimuth_deg(), 120.0F);
 }
 
-// Control may pass on while the storm is read from which an update's camera follows.
+// Control may change hands while the server reads the storm on which an update's camera depends.
 TEST(InteractTest, AnUpdateIsNotShownAfterControlWasTaken) {
   Class group;
   group.presenter->Send(Gives(group.ana->viewer_id()));
@@ -542,7 +543,8 @@ TEST(InteractTest, AnUpdateIsNotShownAfterControlWasTaken) {
   ASSERT_TRUE(group.service.store->reading.AwaitWaiting(1));
   group.presenter->Send(Takes());
   ASSERT_TRUE(Class::SteersFor(*group.ben, group.presenter->viewer_id()));
-  // It is not waited for by whoever steers now, and knows only the scene that was shown.
+  // The update does not wait for the viewer who now has control, and its expected revision is that
+  // of the scene that was shown.
   v1::InteractRequest next = SunTo(120.0F);
   next.mutable_update_scene()->set_expected_revision(1);
   const Response taken = group.presenter->Answer(group.presenter->Send(next));
@@ -558,7 +560,8 @@ TEST(InteractTest, AnUpdateIsNotShownAfterControlWasTaken) {
   }
 }
 
-// Nor is it shown over what was changed meanwhile, though its sender steers again by then.
+// An outdated update must not overwrite changes made meanwhile, even if its sender has regained
+// control by then.
 TEST(InteractTest, AnUpdateThatWasOverruledIsRefusedToWhoSteersAgain) {
   Class group;
   group.presenter->Send(Gives(group.ana->viewer_id()));
@@ -579,7 +582,8 @@ TEST(InteractTest, AnUpdateThatWasOverruledIsRefusedToWhoSteersAgain) {
   EXPECT_EQ(ReasonOf(refused.refused().status()), "REVISION_CHANGED");
 }
 
-// The fields that the second leaves alone are the first's, which is not shown yet.
+// The second request leaves some fields alone. They keep the values of the first request, which is
+// not shown yet.
 TEST(InteractTest, AChangeOfSomeFieldsIsTakenWhileTheSceneBeforeItWaitsForItsStorm) {
   Class group;
   group.service.store->reading.Close();
@@ -589,7 +593,7 @@ TEST(InteractTest, AChangeOfSomeFieldsIsTakenWhileTheSceneBeforeItWaitsForItsSto
   exposes.mutable_update_scene()->mutable_scene()->mutable_display()->set_exposure_ev(0.5F);
   exposes.mutable_update_scene()->mutable_update_mask()->add_paths("display.exposure_ev");
   const std::uint64_t follows = group.presenter->Send(exposes);
-  // Requests are read in their order.
+  // Requests are read in order.
   v1::InteractRequest rename;
   rename.mutable_set_name()->set_name("Read");
   group.presenter->Send(rename);
@@ -656,7 +660,7 @@ TEST(InteractTest, LookingAroundAndComingBack) {
       return message.frame().own_view() && message.frame().camera().orbit().azimuth_deg() == 45.0F;
     });
   }));
-  // Time and light stay the session's.
+  // Time and light remain those of the session.
   group.presenter->Send(SunTo(120.0F));
   EXPECT_TRUE(group.ana->Await([](const Interacting::Messages& messages) {
     return std::ranges::any_of(messages, [](const Response& message) {
@@ -679,7 +683,7 @@ TEST(InteractTest, WhoIsRefusedAViewOfTheirOwnGoesOnFollowing) {
   ASSERT_TRUE(group.ana->AwaitFrame(1));
   ASSERT_TRUE(group.service.store->Remove("anvil").ok());
   v1::InteractRequest detach;
-  detach.mutable_detach()->mutable_camera()->mutable_spotter();  // whose place the storm decides
+  detach.mutable_detach()->mutable_camera()->mutable_spotter();  // the storm decides its place
   EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(detach)), grpc::StatusCode::NOT_FOUND);
   v1::InteractRequest move;
   move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
@@ -694,8 +698,8 @@ TEST(InteractTest, WhoIsRefusedAViewOfTheirOwnGoesOnFollowing) {
   }));
 }
 
-// A class whose session goes to a time that is being read until the gate opens, and Ana's request
-// for a view from a place that the storm of that time decides.
+// A class whose session changes to a time that is being read until the gate opens. Ana has
+// requested a view from a place that depends on the storm at that time.
 struct SlowlyLeaving : Class {
   SlowlyLeaving() {
     EXPECT_TRUE(ana->AwaitFrame(1));
@@ -713,7 +717,8 @@ struct SlowlyLeaving : Class {
   }
   ~SlowlyLeaving() { service.store->reading.Open(); }
 
-  // Requests are obeyed in turn, so after a last one, of a new name, all are.
+  // Waits until all of Ana's requests are handled. Requests are handled in order, so it sends a
+  // last one, which changes her name.
   bool AnaIsObeyed() {
     v1::InteractRequest rename;
     rename.mutable_set_name()->set_name("Anna");
@@ -738,7 +743,8 @@ TEST(InteractTest, WhoComesBackBeforeTheOwnViewIsThereStays) {
   ASSERT_TRUE(group.AnaIsObeyed());
   group.service.store->reading.Open();
   ASSERT_TRUE(group.ana->AwaitFrame(2, /*own_view=*/false));
-  // Motions are taken for the view that is coming, and refused once it is known that none comes.
+  // Motions are accepted for the view that is pending, and refused once it is known that there will
+  // be none.
   v1::InteractRequest move;
   move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
   const auto is_refused = [](const Response& message) {
@@ -807,8 +813,8 @@ TEST(InteractTest, PointersAndMarksLieWhereTheyMeetTheStorm) {
   const v1::Pointer& pointer = pointers.pointers().pointers(0);
   EXPECT_EQ(pointer.viewer_id(), group.presenter->viewer_id());
   EXPECT_EQ(pointer.position().x_m(), -5500.0F);
-  // The cloud is in the third cell, whose middle is 1250 m high; its smooth edge ends at the next
-  // cell's middle, and is met from above.
+  // The cloud is in the third cell, whose middle is 1250 m high. Its smooth edge ends at the middle
+  // of the next cell, and the ray meets it from above.
   EXPECT_GT(pointer.position().z_m(), 1250.0F);
   EXPECT_LE(pointer.position().z_m(), 1750.0F);
   group.presenter->Send(Draws());
@@ -832,7 +838,7 @@ TEST(InteractTest, ALineHasOneDepth) {
   Class group;
   v1::InteractRequest request;
   v1::AddMark& mark = *request.mutable_add_mark();
-  // Two corners on the cloud; the third passes it and meets the ground, 1250 m deeper.
+  // Two corners lie on the cloud. The third ray misses it and meets the ground, 1250 m lower.
   *mark.add_rays() = RayDown();
   *mark.add_rays() = RayDown();
   v1::Ray& beside = *mark.add_rays();
@@ -908,7 +914,7 @@ TEST(InteractTest, MarksAreSeenOverTheStormsOfTheDomainThatTheyWereDrawnOn) {
   ASSERT_TRUE(show("anvil"));
   EXPECT_TRUE(has(*group.ana, 1));
   EXPECT_TRUE(has(late, 1));
-  // Another run over the same domain.
+  // Replaces the storm by another run over the same domain.
   group.service.store->Become("clear", [](storm_store::StormInfo& storm) {
     storm.file_cells = {20, 10, 7};
   });
@@ -968,7 +974,7 @@ TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   ASSERT_TRUE(group.ben->AwaitMarks([&](const v1::Marks& marks) {
     return marks.marks_size() == 2 && drawn_by(marks, group.ana->viewer_id()) == 1;
   }));
-  // The connection that she has lost still counts as hers here, as it may for a while.
+  // Here the connection that Ana lost still counts as hers, as it may for a while.
   Interacting back(group.service.stub(), group.created.viewer_key(),
                    {.name = "Ana", .participant_key = group.ana->participant_key()});
   EXPECT_EQ(back.participant_key(), group.ana->participant_key());
@@ -976,7 +982,7 @@ TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   ASSERT_TRUE(group.ben->AwaitMarks(
       [&](const v1::Marks& marks) { return drawn_by(marks, back.viewer_id()) == 1; }));
   group.ana->Cancel();
-  // A person without the key has none of them.
+  // A viewer without the key owns none of the marks.
   Interacting other(group.service.stub(), group.created.viewer_key(), {.name = "Ana"});
   other.Send(Erases());
   v1::InteractRequest rename;
@@ -998,7 +1004,7 @@ TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
 }
 
 TEST(InteractTest, WhoReconnectsSteersAgain) {
-  Class group;  // control waits for the one who comes back, for longer than this test
+  Class group;  // control waits for the returning viewer longer than this test takes
   Interacting second(group.service.stub(), group.created.session_id(), Class::Named("Tablet"));
   ASSERT_GT(second.viewer_id(), 0U);
   const std::string key = group.presenter->participant_key();
@@ -1012,7 +1018,7 @@ TEST(InteractTest, WhoReconnectsSteersAgain) {
   EXPECT_EQ(back.AnswerCode(back.Send(SunTo(120.0F))), grpc::StatusCode::OK);
 }
 
-// Its network is gone, so that it hears nothing and nothing ends it.
+// The lost client's network is gone: it receives nothing, and nothing closes its connection.
 TEST(InteractTest, ALostConnectionIsReplacedByTheOneThatComesBack) {
   RunningTime time;
   Class group({}, With({&Timeouts::sign_of_life}, time));
@@ -1023,7 +1029,7 @@ TEST(InteractTest, ALostConnectionIsReplacedByTheOneThatComesBack) {
   Interacting back(group.service.stub(), group.created.viewer_key(),
                    {.name = "Eve", .participant_key = lost.participant_key()});
   lost.AwaitNewest(Response::kCheckAlive);
-  // The server learns a little later that the question was sent.
+  // The server learns a little later that the check was sent.
   ASSERT_TRUE(WaitFor([&] {
     time.Advance(kTimeout);
     const v1::Presence presence = group.ana->AwaitNewest(Response::kPresence).presence();
@@ -1054,7 +1060,7 @@ TEST(InteractTest, AClientThatKnowsNoChecksStaysUntilItEnds) {
   EXPECT_TRUE(Class::SteersFor(*group.ana, back.viewer_id()));
 }
 
-// Its copy of the key is that of the tab that goes on.
+// The duplicated tab has a copy of the key of the tab that stays open.
 TEST(InteractTest, ADuplicatedTabTakesNothingFromTheOtherOne) {
   RunningTime time;
   Class group(
@@ -1063,7 +1069,8 @@ TEST(InteractTest, ADuplicatedTabTakesNothingFromTheOtherOne) {
                   {.participant_key = group.presenter->participant_key()});
   ASSERT_GT(tab.viewer_id(), 0U);
   group.presenter->AwaitNewest(Response::kCheckAlive);
-  // It answers before the time moves, and whatever it says later is heard after the answer.
+  // The tab answers before the time is advanced, and what it sends later is received after that
+  // answer.
   EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(SunTo(125.0F))),
             grpc::StatusCode::OK);
   ASSERT_TRUE(group.RosterSees(time, 2 * kTimeout));
@@ -1083,7 +1090,7 @@ TEST(InteractTest, AParticipantKeyThatNobodyGaveIsRefused) {
   }
 }
 
-// Threads of the executor, which finds the places of marks.
+// Number of threads of the executor that finds the places of marks.
 constexpr int kExecutorThreads = 4;
 
 TEST(InteractTest, AMarkWaitsUntilTheLastOneHasItsPlace) {
@@ -1116,8 +1123,8 @@ TEST(InteractTest, AMarkWaitsUntilTheLastOneHasItsPlace) {
       group.ana->AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 2; }));
 }
 
-// Answers alone wait for a slow client, so there is a limit to them: beyond it no further request
-// is read.
+// Only answers are queued for a slow client, so their number is limited. Beyond the limit no
+// further request is read.
 TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
   service::ServerOptions options = Patient();
   options.address = "127.0.0.1:0";
@@ -1125,7 +1132,7 @@ TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
       access::TrustEverybody(), std::make_shared<access::Audit>([](const std::string&) {}),
       access::QuotaLimits{.requests_per_second = 0.0});
   Class group({}, options);
-  // Its connection takes 64 KiB that nobody reads, and no more.
+  // The client's connection buffers only 64 KiB, which the client does not read.
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
   arguments.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 1 << 16);
@@ -1139,7 +1146,7 @@ TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
   join.mutable_join()->set_name("Deaf");
   join.mutable_join()->mutable_window()->set_hidden(true);
   ASSERT_TRUE(call->Write(join));
-  // Their answers are more than that, they themselves less.
+  // The answers are larger than that; the requests are smaller.
   constexpr std::uint64_t kRequests = 1500;
   for (std::uint64_t i = 1; i <= kRequests; ++i) {
     v1::InteractRequest refused = Takes();
@@ -1156,7 +1163,8 @@ TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
     };
   };
   ASSERT_TRUE(group.ana->AwaitPresence(is_called("Deaf")));
-  // The server has stopped reading when it goes on with others, but hears no more of this one.
+  // The server has stopped reading this client's requests once it serves others but counts no
+  // further request of this one.
   const auto heard = [] { return telemetry::Counted().refusals.Of("NOT_PRESENTER").Value(); };
   std::uint64_t before = 0;
   ASSERT_TRUE(WaitFor([&] {
@@ -1177,7 +1185,7 @@ TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
 }
 
 TEST(InteractTest, APresenterWhoReloadsHasControlAgain) {
-  Class group;  // control waits for the one who comes back, for longer than this test
+  Class group;  // control waits for the returning viewer longer than this test takes
   group.presenter->Cancel();
   ASSERT_TRUE(group.ana->AwaitPresence(
       [](const v1::Presence& presence) { return presence.presenter_away(); }));
@@ -1339,8 +1347,8 @@ TEST(InteractTest, NamesArePlainText) {
     return presence.people_size() == 1 && presence.people(0).name() == std::string(38, 'a');
   }));
   v1::InteractRequest rename;
-  // Without a right-to-left override and a space of no width, which would let it pass for
-  // another's.
+  // Names lose right-to-left overrides and zero-width spaces, which could make one name look like
+  // another.
   for (const auto& [name, shown] :
        {std::pair("Zoë", "Zoë"),
         {"A\u202Enna\u200B", "A nna"},

@@ -200,7 +200,8 @@ Interacting::Messages Interacting::All() {
 }
 
 std::uint64_t Interacting::viewer_id() {
-  // Without the lock once it is known, for conditions that wait for others' messages.
+  // Does not take the lock once the id is known, so that conditions that wait for other viewers'
+  // messages may call it.
   if (viewer_id_ == 0) AwaitNewest(v1::InteractResponse::kJoined);
   return viewer_id_;
 }

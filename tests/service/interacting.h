@@ -1,5 +1,5 @@
-// A person in a session by Interact: collects the messages of the call on a thread of its own and
-// acknowledges frames.
+// A participant of a session by Interact. It collects the messages of the call on its own thread
+// and acknowledges frames.
 #pragma once
 
 #include <atomic>
@@ -23,14 +23,14 @@ struct InteractingOptions {
   std::vector<v1::Codec> codecs{};
   bool saves_bytes = false;
   std::string participant_key;
-  bool answers_checks = true;  // by Alive
-  bool is_old = false;         // knows neither changes of marks nor checks
+  bool answers_checks = true;  // with Alive
+  bool is_old = false;         // supports neither incremental marks nor checks
 };
 
-// The reason in a refusal's details; empty if it has none.
+// Returns the reason in a refusal's details; empty if it has none.
 std::string ReasonOf(const google::rpc::Status& refusal);
 std::string ReasonOf(const grpc::Status& refusal);
-// The delay in a refusal's details; 0 if it has none.
+// Returns the delay in a refusal's details; 0 if it has none.
 std::chrono::milliseconds RetryAfterOf(const google::rpc::Status& refusal);
 
 class Interacting {
@@ -47,31 +47,31 @@ class Interacting {
   // Waits until `wanted` is true for the messages so far, for at most `patience`.
   bool Await(const std::function<bool(const Messages&)>& wanted,
              std::chrono::seconds patience = kPatience);
-  // Waits for a message with that part, and returns the newest such.
+  // Waits for a message with that part, and returns the newest such message.
   v1::InteractResponse AwaitNewest(v1::InteractResponse::MessageCase part);
-  // The answer to the request, SceneTaken or Refused.
+  // Returns the answer to the request, SceneTaken or Refused.
   v1::InteractResponse Answer(std::uint64_t request_id);
-  // The code of the refusal that answers the request; OK for SceneTaken.
+  // Returns the code of the refusal that answers the request; OK for SceneTaken.
   grpc::StatusCode AnswerCode(std::uint64_t request_id);
-  // Waits until the newest presence is as wanted.
+  // Waits until `wanted` is true for the newest presence.
   bool AwaitPresence(const std::function<bool(const v1::Presence&)>& wanted);
-  // Waits until the newest scene is of that revision or a newer one, and returns it.
+  // Waits until the newest scene has at least that revision, and returns it.
   v1::Scene AwaitScene(std::uint64_t revision);
-  // Waits for a frame of that revision or a newer one.
+  // Waits for a frame of at least that revision.
   bool AwaitFrame(std::uint64_t revision, bool own_view = false);
   Messages All();
 
-  // Messages with marks have all of them, as put together from their changes.
-  // Waits until the newest marks are as wanted.
+  // Waits until `wanted` is true for the newest marks. These are complete: incremental messages
+  // have been applied.
   bool AwaitMarks(const std::function<bool(const v1::Marks&)>& wanted);
-  // The messages with marks as they came.
+  // Returns the messages with marks as they were received.
   std::vector<v1::Marks> MarksAsTold();
 
-  // Of this person; known once joined.
+  // The id of this participant, known once it has joined.
   std::uint64_t viewer_id();
   std::string participant_key();
 
-  void Leave();  // half-closes
+  void Leave();  // half-closes the call
   void Cancel() { context_.TryCancel(); }
   // Waits for the call to end.
   grpc::Status End();
@@ -87,7 +87,7 @@ class Interacting {
   std::mutex mutex_;
   std::condition_variable changed_;
   Messages messages_;
-  v1::Marks marks_;  // all of them
+  v1::Marks marks_;  // the complete marks
   std::vector<v1::Marks> marks_as_told_;
   std::uint64_t request_count_ = 0;
   grpc::Status end_;

@@ -1,4 +1,5 @@
-// Sessions that outlive the server, on fakes: the next server on the same store has them again.
+// Tests of sessions that outlive the server, on fakes: the next server on the same store restores
+// them.
 #include <algorithm>
 #include <future>
 #include <map>
@@ -28,7 +29,7 @@ using ::testing::IsEmpty;
 using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
 
-// A store in memory, which the test reads and changes too.
+// A store in memory, which the test also reads and changes.
 class FakeSessionStore final : public session::SessionStore {
  public:
   absl::Status Save(const std::vector<SessionRecord>& records) override {
@@ -141,7 +142,7 @@ class KeptSessionsTest : public ::testing::Test {
     service_->Update(key, scene);
   }
 
-  // NOT_FOUND if no session has the key.
+  // Returns the status of an update by that key; NOT_FOUND if no session has the key.
   grpc::StatusCode CodeOf(const std::string& key) {
     v1::UpdateSceneRequest request;
     request.set_session_id(key);
@@ -197,7 +198,8 @@ TEST_F(KeptSessionsTest, TheNextServerHasTheSameSession) {
   EXPECT_EQ(joined.role(), v1::ROLE_VIEWER);
   const v1::SceneState after = viewer.AwaitNewest(Response::kScene).scene();
   EXPECT_EQ(after.scene().SerializeAsString(), before.scene().SerializeAsString());
-  // No client has seen so large a one, not even of the scenes that a killed server has not saved.
+  // The new revision is larger than any that a client has seen, even of scenes that a killed server
+  // did not save.
   EXPECT_GT(after.scene_revision(), before.scene_revision() + 1000);
   ASSERT_TRUE(viewer.AwaitFrame(after.scene_revision()));
   EXPECT_EQ(viewer.AwaitNewest(Response::kMarks).marks().SerializeAsString(),
@@ -209,7 +211,7 @@ TEST_F(KeptSessionsTest, TheNextServerHasTheSameSession) {
            !presence.rules().viewers_may_steer() && presence.rules().viewers_may_mark() &&
            presence.rules().following_locked();
   }));
-  // Control was kept for the presenter.
+  // Control was reserved for the presenter.
   Interacting presenter(service_->stub(), created.session_id());
   EXPECT_EQ(presenter.AwaitNewest(Response::kJoined).joined().role(), v1::ROLE_PRESENTER);
   EXPECT_EQ(presenter.AwaitNewest(Response::kJoined).joined().viewer_key(), created.viewer_key());
@@ -268,7 +270,7 @@ TEST_F(KeptSessionsTest, AViewerWhoSteeredSteersAgainInTheNextServer) {
   }));
 }
 
-// Whoever opened them has no more than before.
+// After the restart, the clients that opened the sessions may not open more sessions than before.
 TEST_F(KeptSessionsTest, SessionsStillCountForWhoOpenedThem) {
   options_.sessions.max_sessions_per_owner = 2;
   Start();
@@ -278,7 +280,7 @@ TEST_F(KeptSessionsTest, SessionsStillCountForWhoOpenedThem) {
     v1::CreateSessionResponse response;
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
-    context.AddMetadata("x-forwarded-for", address + ":4711");  // as the gateway says
+    context.AddMetadata("x-forwarded-for", address + ":4711");  // as the gateway does
     return service_->stub().CreateSession(&context, request, &response).error_code();
   };
   EXPECT_EQ(create("192.0.2.7"), grpc::StatusCode::OK);
@@ -357,7 +359,7 @@ TEST_F(KeptSessionsTest, ASessionHasAtMostSoManyMarks) {
   const v1::Refused refused = presenter.Answer(presenter.Send(DrawsDown())).refused();
   EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::FAILED_PRECONDITION));
   EXPECT_EQ(ReasonOf(refused.status()), "TOO_MANY_MARKS");
-  // One that goes makes room for another.
+  // Erasing a mark allows another one.
   v1::InteractRequest erase;
   erase.mutable_erase_marks()->add_mark_ids(7);
   presenter.Send(erase);
@@ -373,7 +375,7 @@ TEST_F(KeptSessionsTest, ASessionIsSavedBeforeItsClientKnowsIt) {
   std::thread opener([this] { Create(); });
   ASSERT_TRUE(store_->saving.AwaitWaiting(1));
   EXPECT_THAT(store_->Records(), IsEmpty());
-  // A disk that hangs holds up nothing else.
+  // A disk that hangs does not delay other calls.
   v1::ListStormsResponse storms;
   EXPECT_TRUE(Call(service_->stub(), &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
   store_->saving.Open();
@@ -401,13 +403,13 @@ TEST_F(KeptSessionsTest, ChangesAreSavedWhileTheServerRunsAndOnlyThey) {
     return scene.ParseFromString(records.begin()->second.scene) &&
            scene.sun().azimuth_deg() == 77.0F;
   }));
-  Create();  // before its answer comes, all that has changed is saved
+  Create();  // before it returns, all changes have been saved
   const int saves = store_->Saves();
   time_.Advance(3 * session::SessionKeeper::kPause);
   const auto other = Create();
   EXPECT_EQ(store_->Saves(), saves + 1) << "nothing else has changed";
   EXPECT_THAT(store_->LastSaved(), ElementsAre(other.session_id()));
-  // A drag of many scenes is few saves: one in each pause.
+  // A drag that changes the scene many times causes few saves: one in each pause.
   time_.Stop();
   for (int i = 0; i < 100; ++i) TurnSun(created.session_id(), static_cast<float>(i));
   EXPECT_LE(store_->Saves() - saves, 2) << "one may have begun before the time stopped";
@@ -433,8 +435,8 @@ TEST_F(KeptSessionsTest, RevisionsGoOnOverSeveralRestarts) {
   }
 }
 
-// Neither an outage nor a clock that was wrong at boot ends sessions that nobody could come back
-// to.
+// An outage, or a clock that was wrong at boot, does not expire sessions that no viewer could have
+// returned to.
 TEST_F(KeptSessionsTest, TheTimeThatTheServerWasDownDoesNotCount) {
   options_.sessions.idle_timeout = std::chrono::minutes(10);
   const auto created = Create();
@@ -552,7 +554,7 @@ TEST_F(KeptSessionsTest, AnEndThatCannotBeSavedSaysSo) {
   EXPECT_THAT(store_->Records(), IsEmpty()) << "what could not be removed was tried again";
 }
 
-// Each call reports what became of its own session.
+// Each call reports whether its own session was saved.
 TEST_F(KeptSessionsTest, AnEndIsSavedWhereOnlyOthersCannotBe) {
   const auto closed = Create();
   store_->FailSavesWith(absl::UnavailableError("the disk is full"));

@@ -1,4 +1,5 @@
-// The program itself, killed and started again: the same session for everybody who comes back.
+// Tests of the program itself, killed and restarted: all viewers who come back find the same
+// session.
 #include <chrono>
 #include <csignal>
 #include <cstdint>
@@ -50,8 +51,8 @@ class KilledServerTest : public ::testing::Test {
     return std::make_unique<ServedProgram>(PROGRAM, kServedSample, state_);
   }
 
-  // Returns whether the state folder has the session's scene of that revision, or a newer one, and
-  // its marks.
+  // Returns whether the state folder has the session's marks and its scene of at least that
+  // revision.
   bool HasSavedMarks(std::uint64_t revision) const {
     absl::StatusOr<store::Database> database = store::Database::Open(state_ + "/sessions.db");
     if (!database.ok()) return false;
@@ -74,7 +75,7 @@ TEST_F(KilledServerTest, EverybodyFindsTheSameSessionAgain) {
   *request.mutable_scene() = SmallSceneWithSun(10.0F);
   v1::CreateSessionResponse created;
   ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &created).ok());
-  // A session is there from the moment that its client knows of it.
+  // A session is stored before its client learns of it.
   program->End(SIGKILL);
   program = Start();
   ASSERT_NE(program->stub(), nullptr);
@@ -117,7 +118,7 @@ TEST_F(KilledServerTest, EverybodyFindsTheSameSessionAgain) {
     EXPECT_GT(scene.scene_revision(), revision);
     EXPECT_EQ(person->AwaitNewest(Response::kMarks).marks().SerializeAsString(), marks);
     EXPECT_TRUE(person->AwaitFrame(scene.scene_revision()));
-    // One session, not one each.
+    // All viewers are in one session instead of one session each.
     EXPECT_TRUE(person->AwaitPresence([&](const v1::Presence& presence) {
       return presence.people_size() == kViewers + 1 &&
              presence.steering_viewer_id() == everybody.back()->viewer_id();
@@ -152,7 +153,7 @@ TEST_F(KilledServerTest, EachServerNeedsAStateFolderOfItsOwn) {
               ::testing::AllOf(::testing::HasSubstr(state_), ::testing::HasSubstr("--state")));
 }
 
-// While it lives, programs that are started have their temporary files in a folder.
+// While the object lives, programs that are started put their temporary files in a folder.
 class TemporaryFiles {
  public:
   explicit TemporaryFiles(const std::string& folder) {
@@ -170,7 +171,7 @@ class TemporaryFiles {
   std::optional<std::string> before_;
 };
 
-// Of a temporary folder, those with clouds.
+// Returns the cloud folders within a temporary folder.
 std::vector<std::string> CloudFolders(const std::string& parent) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(parent)) {
@@ -205,7 +206,8 @@ TEST_F(KilledServerTest, TheNextDeletesItsTemporaryClouds) {
 
   killed = start("three");
   ASSERT_NE(killed->stub(), nullptr);
-  // The folder of the server that runs, that of the third server, and the new one without a lock.
+  // There are three: the folder of the running server, the folder of the third server, and the new
+  // folder without a lock.
   EXPECT_EQ(CloudFolders(parent).size(), 3U);
   EXPECT_THAT(CloudFolders(parent), ::testing::Contains(of_alive.front()));
   killed->End(SIGTERM);

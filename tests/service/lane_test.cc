@@ -1,5 +1,5 @@
-// A lane that draws with GL while others give it turns: that it draws in pieces, and ends when its
-// picture is no longer wanted.
+// Tests of a lane that draws with GL while others give it turns. It must draw in pieces, and end
+// when its picture is no longer wanted.
 #include "drawing/lane.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ class LaneTest : public ::testing::Test {
     return source.ok() ? (*source)->Draw(scene, fields_, quality) : source.status();
   }
 
-  // Gives turns until the work has ended; the pieces' milliseconds.
+  // Gives turns until the work has ended; returns the duration of each piece in milliseconds.
   std::vector<double> Finish() {
     std::vector<double> pieces_ms;
     while (!lane_->IsIdle()) {
@@ -95,7 +95,8 @@ class LaneBenchmark : public LaneTest {
     Begin(SceneOf(320, 180, 128), quality);
     Finish();
     ASSERT_TRUE(drawn_.ok()) << drawn_;
-    // The first picture has compiled the programs and prepared the storm.
+    // The first picture has compiled the programs and prepared the storm, so the next one is timed
+    // without that work.
     Begin(scene, quality);
     std::vector<double> pieces_ms = Finish();
     ASSERT_TRUE(drawn_.ok()) << drawn_;
@@ -110,7 +111,7 @@ class LaneBenchmark : public LaneTest {
 
 TEST_F(LaneBenchmark, PiecesOfALargePicture) { TellPieces(SceneOf(1920, 1080, 512), {}); }
 
-// Most of its time the processors complete it, and the device is free for others.
+// The processors complete the picture during most of its time, so the device is free for others.
 TEST_F(LaneBenchmark, PiecesOfALargePictureWithFewerRays) {
   TellPieces(SceneOf(1920, 1080, 256), {.sparse = true});
 }
@@ -132,7 +133,7 @@ TEST_F(LaneTest, APictureWithFewerRaysIsTheSameInPieces) {
   EXPECT_TRUE(whole->rgb == rgb_);
 }
 
-// For a still at rest, until something else is drawn.
+// The version with more bits is kept for a still at rest, until something else is drawn.
 TEST_F(LaneTest, APictureWithFewerRaysIsThereWithMoreBitsOnce) {
   const auto source = GlFrameSources(test_support::Device())(nullptr);
   ASSERT_TRUE(source.ok()) << source.status();
@@ -166,7 +167,8 @@ TEST_F(LaneTest, WhatNobodyWantsFreesTheDeviceAtOnce) {
   }
 }
 
-// Paths are traced without the device, so nothing is drawn at whose next piece they could end.
+// Paths are traced without the device. Tracing cannot end at the next drawn piece, so it must check
+// on its own.
 TEST_F(LaneTest, TracingEndsWhenNobodyWantsItAnyMore) {
   absl::StatusOr<accuracy::LightProgress> light = absl::UnknownError("not traced");
   absl::StatusOr<accuracy::ErrorProgress> error = absl::UnknownError("not measured");

@@ -1,5 +1,5 @@
-// OpenEXR files of every renderer: light, and the storm's share of each pixel in agreement with the
-// optical depth, which is computed apart from it.
+// Tests of the OpenEXR files of every renderer: radiance, and the storm's opacity in each pixel.
+// The opacity must agree with the optical depth, which is computed separately.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -19,13 +19,14 @@ namespace {
 
 constexpr char kLitSample[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
 
-// Each transport sees the background through less than the whole optical depth (below), so opacity
-// is never above 1 - exp(-depth), and 1 where the storm is deep.
+// A renderer and its flags. Each transport sees the background through at most the whole optical
+// depth (below). Opacity is therefore never above 1 - exp(-depth), and it is 1 where the storm is
+// deep.
 struct Renderer {
   std::string name;
   std::vector<std::string> flags;
-  // Of one that draws shapes in the fields' place: the mean difference from 1 - exp(-depth); 0:
-  // none.
+  // For a renderer that draws shapes instead of the fields: the mean difference from 1 -
+  // exp(-depth). 0: none.
   double shape_difference = 0.0;
 
   friend void PrintTo(const Renderer& renderer, std::ostream* out) { *out << renderer.name; }
@@ -58,7 +59,7 @@ TEST_P(LightFile, OpacityAndOpticalDepthAgree) {
   ASSERT_EQ(picture->opacity.size(), pixels);
   ASSERT_EQ(picture->optical_depth.size(), pixels);
   ASSERT_EQ(picture->depth_one_distance_m.size(), pixels);
-  double above = 0.0;  // what a depth allows; the noise of traced pixels averages out
+  double above = 0.0;  // opacity above the depth's limit; the noise of traced pixels averages out
   double difference = 0.0;
   double covered = 0.0;
   Mean clear;
@@ -71,7 +72,7 @@ TEST_P(LightFile, OpacityAndOpticalDepthAgree) {
     covered += most / static_cast<double>(pixels);
     if (depth < 1e-4F) clear.Add(picture->opacity[i]);
     if (depth > 30.0F) deep.Add(picture->opacity[i]);
-    // The distance is there where the depth reaches 1, and only there.
+    // The distance is finite exactly where the depth reaches 1.
     EXPECT_EQ(std::isfinite(picture->depth_one_distance_m[i]), depth >= 1.0F);
   }
   EXPECT_GT(covered, 0.05) << "no storm in sight";
@@ -89,13 +90,13 @@ INSTANTIATE_TEST_SUITE_P(Renderers, LightFile,
                          ::testing::Values(Renderer{"light_volume", {"--quality", "fast"}},
                                            Renderer{"half_angle", {"--renderer", "half_angle"}},
                                            Renderer{"metaball", {"--renderer", "metaball"}, 0.1},
-                                           // Shows cloud water and ice alone.
+                                           // This renderer shows only cloud water and ice.
                                            Renderer{"cumulus", {"--renderer", "cumulus"}, 0.2},
                                            Renderer{"reference",
                                                     {"--renderer", "reference", "--spp", "32"}}),
                          [](const auto& each) { return each.param.name; });
 
-// One field with a phase function in closed form: Henyey and Greenstein's.
+// One field with a phase function in closed form, that of Henyey and Greenstein.
 constexpr double kAsymmetry = 0.85;
 constexpr char kScene[] = R"({"camera": {"topDown": {}}, "rendering": {%s}, "fields": [
     {"hydrometeor": "HYDROMETEOR_CLOUD",
@@ -105,8 +106,8 @@ constexpr char kScene[] = R"({"camera": {"topDown": {}}, "rendering": {%s}, "fie
     {"hydrometeor": "HYDROMETEOR_SNOW", "visible": false},
     {"hydrometeor": "HYDROMETEOR_GRAUPEL", "visible": false}]})";
 
-// The share of light that is scattered by less than 10 degrees (half of theta_f) above what a phase
-// function that is flat there would scatter: it counts as unscattered.
+// Returns the share of light that counts as unscattered. It is the light scattered by less than 10
+// degrees (half of theta_f), above what a phase function that is flat there would scatter.
 double CutShare() {
   const double cosine = std::cos(std::numbers::pi / 18.0);
   const double g = kAsymmetry;
@@ -116,7 +117,7 @@ double CutShare() {
   return within - flat;
 }
 
-// Of the optical depth, how much a transport sees the background through.
+// A transport, and the share of the optical depth through which it sees the background.
 struct Transport {
   std::string name;
   std::string rendering;
@@ -128,9 +129,9 @@ struct Transport {
 
 class TransportOpacity : public ::testing::TestWithParam<Transport> {};
 
-// Diffused light goes on by its mean cosine, so that the background counts as lit through the
-// transport depth, (1 - g) depth: it is not opaque below a depth of some 20, though no straight ray
-// would come through.
+// Diffused light continues by its mean cosine, so the background counts as lit through the
+// transport depth, (1 - g) depth. The storm is not opaque below a depth of some 20, although no
+// unscattered ray would pass.
 TEST_P(TransportOpacity, IsOfTheDepthThatItSeesThrough) {
   const TemporaryFolder folder;
   const std::string scene = folder.File("scene.json");
@@ -151,7 +152,7 @@ TEST_P(TransportOpacity, IsOfTheDepthThatItSeesThrough) {
   for (std::size_t i = 0; i < picture->opacity.size(); ++i) {
     const double depth = picture->optical_depth[i];
     const double expected = 1.0 - std::exp(-GetParam().seen_share * depth);
-    // Rays end where next to nothing is seen through the storm.
+    // Rays end where the storm's transmittance is nearly 0.
     if (expected > 0.94) {
       EXPECT_GT(picture->opacity[i], 0.93);
       continue;
@@ -172,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
         Transport{"consistent",
                   R"("lightVolume": {"detail": false, "transport": "TRANSPORT_CONSISTENT"})",
                   1.0 - CutShare()},
-        // Its slices are coarser than cells.
+        // The slices are coarser than cells.
         Transport{"half_angle", R"("halfAngle": {"slices": 256})", 1.0 - CutShare(), 0.03}),
     [](const auto& each) { return each.param.name; });
 

@@ -1,5 +1,5 @@
-// Every limit of the schema is checked, and the error has the value's full path, the value and its
-// range.
+// Tests that every limit of the schema is checked, and that the error has the value's full path,
+// the value and its range.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// The server's error for a scene; empty if it accepts it.
+// Returns the server's error for a scene; empty if the server accepts it.
 std::string Complaint(const v1::Scene& scene) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = scene;
@@ -142,7 +142,7 @@ TEST(LimitsTest, TheLimitsThemselvesAreAllowed) {
   v1::Scene scene;
   v1::FieldParameters& field = *scene.add_fields();
   field.set_hydrometeor(v1::HYDROMETEOR_HAIL);
-  // 0.1 and 1e-7 as floats lie beyond 0.1 and 1e-7 as doubles.
+  // As floats, 0.1 and 1e-7 lie outside the range of the doubles 0.1 and 1e-7.
   for (const float radius_m : {1e-7F, 0.1F}) {
     field.set_radius_m(radius_m);
     EXPECT_EQ(Complaint(scene), "");
@@ -159,8 +159,7 @@ TEST(LimitsTest, TheLimitsThemselvesAreAllowed) {
   EXPECT_EQ(Complaint(scene), "");
 }
 
-// The transports that a technique is described with are those that a scene may have, its
-// default first.
+// A technique's description lists the transports that a scene may have, the default first.
 TEST(LimitsTest, TransportsOnOfferAreThoseAllowed) {
   int with_transport = 0;
   for (const scene::TechniqueInfo& info : test_support::TechniquesOfTheSchema()) {

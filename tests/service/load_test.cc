@@ -1,4 +1,4 @@
-// A load on a server on fakes, by gRPC and by WebSocket.
+// Tests of the load generator against a server on fakes, by gRPC and by WebSocket.
 #include "load/load.h"
 
 #include <unistd.h>
@@ -36,10 +36,10 @@ using ::testing::Pair;
 
 enum class By { kGrpc, kWebSocket };
 
-// Until a test stops the load.
+// A load that lasts until a test stops it.
 constexpr double kForEver_s = 1e6;
 
-// A machine that is slow makes nothing fail.
+// A slow machine makes nothing fail.
 constexpr LoadTimes kTimes{.warm_up_s = 0.1,
                            .sampling_s = 0.05,
                            .visit_s = 0.5,
@@ -84,7 +84,7 @@ class LoadTest : public ::testing::TestWithParam<By> {
                      progress);
   }
 
-  // Runs until each viewer that reads all it gets has so many frames.
+  // Runs until each viewer that reads all its messages has so many frames.
   absl::StatusOr<Report> RunFor(std::uint64_t frames) {
     return RunUntil([frames](const Progress& progress) { return progress.least_frames >= frames; });
   }
@@ -98,8 +98,8 @@ class LoadTest : public ::testing::TestWithParam<By> {
         stop.get_token());
   }
 
-  // The most that throttled viewers can get of a rate: also the message that was on its way when
-  // the period began.
+  // Returns the most that throttled viewers can receive at a rate. It includes the message that was
+  // in flight when the period began.
   double MostKbit(const Report& report) const {
     return 1.5 * options_.kbit_per_s +
            2.0 * 8e-3 * report.throttled.bytes_per_frame / report.seconds;
@@ -130,7 +130,7 @@ TEST_P(LoadTest, HasAllFigures) {
   EXPECT_THAT(report->healthy.kbit_per_viewer, Gt(0.0));
   EXPECT_THAT(report->healthy.bytes_per_frame, Gt(100.0));
   EXPECT_EQ(report->healthy_first.count, 3);
-  // The server is this process.
+  // The server is in this process.
   ASSERT_TRUE(report->server.has_value());
   EXPECT_THAT(report->server->rss_first_mb, Gt(1.0));
   EXPECT_THAT(report->server->rss_last_mb, Gt(1.0));
@@ -184,7 +184,7 @@ TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
 
 TEST_P(LoadTest, WhoLooksAroundGetsPicturesOfTheOwnViewAndTheOthersTheSessions) {
   options_.looking = 2;
-  // More than the two that may be unacknowledged.
+  // More than the two frames that may be unacknowledged.
   const auto report = RunFor(5);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
@@ -222,7 +222,7 @@ TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
   EXPECT_EQ(report->passing, 40);
-  // One without a frame is an error.
+  // A passing viewer without a frame is an error.
   EXPECT_THAT(report->passing_first.count, Ge(60U)) << ToText(*report);
 }
 
@@ -233,10 +233,10 @@ TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
       stopping = std::jthread([&] { StopServer(); });
   });
   ASSERT_TRUE(report.ok()) << report.status();
-  // It does not wait for the end, and has the figures so far.
+  // The load does not wait for the end, and reports the figures so far.
   EXPECT_THAT(report->seconds, Lt(kForEver_s));
   EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
-  // Three viewers and the presenter; closing the session fails too.
+  // Three viewers and the presenter fail, and so does closing the session.
   EXPECT_THAT(report->ErrorCount(), Ge(4)) << ToText(*report);
   EXPECT_THAT(report->errors, Contains(Pair(HasSubstr("UNAVAILABLE"), Ge(3)))) << ToText(*report);
 }
@@ -250,7 +250,7 @@ TEST_P(LoadTest, InterruptedHasTheFiguresSoFar) {
 }
 
 TEST_P(LoadTest, InterruptedWaitsForNoStill) {
-  // Hours for the picture, some milliseconds for a frame.
+  // The picture takes hours, a frame some milliseconds.
   service_->machine->ms_per_mega_sample = 100.0;
   options_.stills = {.count = 1, .width_px = 4096, .height_px = 2048, .slices = 4096};
   const auto report = RunFor(1);
@@ -266,7 +266,7 @@ TEST_P(LoadTest, FailsWithoutAServer) {
   EXPECT_EQ(report.status().code(), absl::StatusCode::kUnavailable) << report.status();
 }
 
-// Waits for the end of a call.
+// A listener that waits for the end of a call.
 class EndListener final : public Listener {
  public:
   void OnMessage(google::protobuf::io::ZeroCopyInputStream& /*message*/,
@@ -299,7 +299,7 @@ TEST_P(LoadTest, AcknowledgingAfterLeavingIsNoError) {
   EXPECT_TRUE(end.ok()) << end;
 }
 
-// How well a server on fakes serves a class, which depends on the machine.
+// Measures how well a server on fakes serves a class, which depends on the machine.
 class LoadBenchmark : public LoadTest {};
 
 TEST_P(LoadBenchmark, AClassAndSlowViewers) {
@@ -335,7 +335,7 @@ TEST(SecureLoad, ComesByTlsToWhomItTrustsOnly) {
   testing::WriteSelfSigned(certificate, folder.File("key.pem"), 1);
   testing::FakeService service;
   gateway::GatewayOptions site;
-  site.address = "0.0.0.0";  // also where the certificate does not name it
+  site.address = "0.0.0.0";  // an address that the certificate does not name
   site.tls_certificate = certificate;
   site.tls_key = folder.File("key.pem");
   const auto gateway = gateway::Gateway::Start(site, service.server().LocalChannel());
@@ -363,7 +363,7 @@ TEST(SecureLoad, ComesByTlsToWhomItTrustsOnly) {
     EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
     EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
   }
-  // The machine does not vouch for it, and it is not the one that it is asked for.
+  // The machine does not trust the certificate, and the certificate is not for the requested name.
   const auto stranger = run("127.0.0.1", "");
   EXPECT_EQ(stranger.status().code(), absl::StatusCode::kUnavailable);
   EXPECT_THAT(std::string(stranger.status().message()), HasSubstr("speak TLS with https://"));
@@ -381,7 +381,7 @@ TEST(ServerProcess, IsFoundByItsPort) {
   const auto sample = process->Sample();
   ASSERT_TRUE(sample.has_value());
   EXPECT_THAT(sample->rss_mb, Gt(1.0));
-  // An address of another machine, reserved for documentation.
+  // The address belongs to no machine; it is reserved for documentation.
   EXPECT_FALSE(ServerProcess::Find("192.0.2.1", service.server().Port()).has_value());
 }
 

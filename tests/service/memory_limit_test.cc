@@ -1,4 +1,4 @@
-// The program with a memory budget, and more storms than that holds.
+// Tests of the program with a memory budget and more storms than fit in it.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -25,9 +25,9 @@ using Response = v1::InteractResponse;
 using Stub = v1::ThunderheadService::Stub;
 
 constexpr int kStorms = 64;
-constexpr double kBudget_mib = 256.0;  // drawing one storm takes about half of them
+constexpr double kBudget_mib = 256.0;  // drawing one storm takes about half of it
 
-// A value of /proc/PID/status, in MiB.
+// Returns a value of /proc/PID/status, in MiB.
 double StatusMib(pid_t process, const std::string& name) {
   std::ifstream status(absl::StrCat("/proc/", process, "/status"));
   for (std::string line; std::getline(status, line);) {
@@ -56,7 +56,7 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
 #endif
   const TemporaryFolder folder;
   const std::string first = folder.File(NameOf(0) + ".nc");
-  // 0.8 million cells: 10 MiB a time, 680 MiB in all.
+  // 0.8 million cells: 10 MiB for each time, 680 MiB in all.
   WriteCf(ExtinctionFile(128, 128, 48, 250.0, 250.0, 250.0,
                          [](auto x, auto y, auto z) {
                            return z > 8 && z < 40 && (x / 16 + y / 16) % 2 == 0 ? 0.02 : 0.0;
@@ -71,8 +71,8 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
   }
   ServedProgram program(PROGRAM, first, "none", more);
   ASSERT_NE(program.stub(), nullptr);
-  // The memory of software GL, the shaders' programs and gRPC is taken once a picture has been
-  // drawn, and does not count.
+  // Software GL, the shader programs and gRPC have taken their memory once a picture has been
+  // drawn, so that memory does not count.
   double shown_mib = 0.0;
   std::vector<std::unique_ptr<Interacting>> viewers;
   for (int i = 0; i < kStorms; ++i) {
@@ -81,11 +81,11 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
     scene.set_storm_id(NameOf(i));
     scene.mutable_output()->set_width_px(64);
     scene.mutable_output()->set_height_px(36);
-    // Given, so that opening a session needs no fields.
+    // The camera is given, so that opening a session needs no fields.
     scene.mutable_camera()->mutable_top_down();
     v1::CreateSessionResponse created;
     grpc::Status status;
-    // Clients that are told when to try again do so.
+    // Clients that are told when to retry do so.
     WaitFor([&] {
       status = Call(*program.stub(), &Stub::CreateSession, request, &created);
       if (status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED) return true;
@@ -102,7 +102,7 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
     }));
     shown_mib = StatusMib(program.process(), "VmHWM");
   }
-  // Whoever is refused meanwhile is told why, and has its turn.
+  // A viewer that is refused meanwhile is told why, and gets its turn later.
   std::size_t pictures = 0;
   for (const auto& viewer : viewers) {
     if (viewer->Await(HasPicture)) ++pictures;

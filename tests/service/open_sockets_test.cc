@@ -1,4 +1,4 @@
-// Which connection of gRPC's port makes room for another.
+// Tests which connection of gRPC's port is closed in favour of a new one.
 #include "service/open_sockets.h"
 
 #include <chrono>
@@ -20,7 +20,8 @@ class OpenSocketsTest : public ::testing::Test {
     return {most, most_per_address, {}, calls_, [this](int socket) { return PeerOf(socket); }};
   }
 
-  // A connection of that peer, a second after the one before. True if it is taken.
+  // Opens a connection of that peer, a second after the previous one. Returns true if it is
+  // accepted.
   bool Take(OpenSockets& open, const std::string& peer) {
     const int socket = kNoDescriptor + taken_;
     now_ += seconds(1);
@@ -37,13 +38,13 @@ class OpenSocketsTest : public ::testing::Test {
     return peer == peers_.end() ? std::nullopt : std::optional(peer->second);
   }
 
-  // Nothing has such a number, so nothing is shut down.
+  // No descriptor has such a number, so no socket is shut down.
   static constexpr int kNoDescriptor = 1 << 28;
 
   const std::shared_ptr<ConnectionCalls> calls_ = std::make_shared<ConnectionCalls>();
   std::map<int, std::string> peers_;
   int taken_ = 0;
-  int looked_for_ = -1;  // last: the one that is closed, by the order in which they were taken
+  int looked_for_ = -1;  // the last one looked up, which is closed, by the order of acceptance
   OpenSockets::Clock::time_point now_ = OpenSockets::Clock::now();
 };
 
@@ -104,8 +105,8 @@ TEST_F(OpenSocketsTest, ThoseThatAreClosedCountNoMore) {
   EXPECT_FALSE(Take(open, "192.0.2.1:4"));
 }
 
-// A client's system gives the port of a closed connection to the next, which has another descriptor
-// here; that the first is closed is seen later.
+// A client's system may reuse the port of a closed connection for the next one, which has another
+// descriptor here. The server notices only later that the first is closed.
 TEST_F(OpenSocketsTest, OneThatIsClosedTakesNoUseFromAnotherOfTheSamePeer) {
   OpenSockets open = Of(100, 3);
   EXPECT_TRUE(Take(open, "192.0.2.1:1"));
@@ -114,7 +115,7 @@ TEST_F(OpenSocketsTest, OneThatIsClosedTakesNoUseFromAnotherOfTheSamePeer) {
   EXPECT_TRUE(Take(open, "192.0.2.1:1"));
   EXPECT_FALSE(calls_->UseOf("192.0.2.1:1").has_value()) << "of the one before";
   const auto call = calls_->Begin("192.0.2.1:1");
-  // Its number goes to another, and there are as many as there may be.
+  // The descriptor's number is reused, and there are as many connections as allowed.
   EXPECT_TRUE(open.Take(kNoDescriptor, "192.0.2.1:7", now_));
   for (const char* peer : {"192.0.2.1:2", "192.0.2.1:3", "192.0.2.1:4"}) {
     EXPECT_TRUE(Take(open, peer));

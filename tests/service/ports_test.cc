@@ -1,5 +1,5 @@
-// The ports as doors: gRPC's by TLS with a certificate that changes, and the local socket, which is
-// for this user alone.
+// Tests of access to the ports: gRPC's port by TLS with a certificate that changes, and the local
+// socket, which only this user may use.
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -58,7 +58,7 @@ class TlsPort {
     return v1::ThunderheadService::NewStub(grpc::CreateCustomChannel(
         absl::StrCat("localhost:", service_->server().Port()), credentials, arguments));
   }
-  // Trusts that certificate alone.
+  // Returns a client that trusts only that certificate.
   std::unique_ptr<Stub> Trust(const std::string& certificate) {
     return Connect(grpc::SslCredentials({certificate, "", ""}));
   }
@@ -100,13 +100,13 @@ TEST(PortsTest, ANewCertificateIsForNewConnections) {
   ASSERT_TRUE(Answers(*old));
   WriteSelfSigned(port.Certificate(), port.Key(), 2);
   const std::string renewed = ReadFile(port.Certificate());
-  // gRPC looks at the files once a second.
+  // gRPC checks the files once a second.
   EXPECT_TRUE(WaitFor([&] { return Answers(*port.Trust(renewed)); }));
-  // On the connection that was open before.
+  // The connection that was open before still works.
   EXPECT_TRUE(Answers(*old));
 }
 
-// A client's socket that says nothing.
+// A client's socket that sends nothing.
 class SilentClient {
  public:
   explicit SilentClient(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -118,7 +118,7 @@ class SilentClient {
         connect(socket_.Get(), reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0;
   }
 
-  // Returns whether the server has ended the connection, whatever it said before.
+  // Returns whether the server has ended the connection. Ignores anything that it sent before.
   bool IsClosed() const {
     if (!connected_) return true;
     while (true) {
@@ -133,7 +133,7 @@ class SilentClient {
   bool connected_ = false;
 };
 
-// True if a call is answered, if only by a refusal.
+// Returns true if a call is answered, even with a refusal.
 bool IsReached(int port) {
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
@@ -183,11 +183,11 @@ TEST(PortsTest, SilentConnectionsOfGrpcMakeRoomWithinTheirAddress) {
   const int port = guarded.service().server().Port();
   std::vector<SilentClient> clients;
   for (int i = 0; i < 5; ++i) clients.emplace_back(port);
-  // The server accepts one connection after another, so it has all of them.
+  // The server accepts connections one after another, so by now it has all of them.
   EXPECT_TRUE(IsReached(port));
   EXPECT_TRUE(WaitFor([&] { return clients[0].IsClosed(); })) << "the oldest made room";
   for (std::size_t i = 1; i < clients.size(); ++i) EXPECT_FALSE(clients[i].IsClosed()) << i;
-  // Opened again and again.
+  // Opens new connections repeatedly.
   for (int i = 0; i < 20; ++i) clients.emplace_back(port);
   EXPECT_TRUE(IsReached(port));
 }
@@ -247,7 +247,7 @@ TEST(PortsTest, GrpcListensOnAddressesOfIpv6) {
   EXPECT_TRUE(IsReached(fake.server().Port())) << "and of IPv4, by any address";
 }
 
-// A value of /proc/self/status, in MiB.
+// Returns a value of /proc/self/status, in MiB.
 double OwnStatusMib(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -292,7 +292,7 @@ TEST(PortsTest, CompressedRequestsAreRefused) {
   EXPECT_TRUE(fake.stub().ListStorms(&plain, v1::ListStormsRequest(), &storms).ok());
 }
 
-// Some 60 kB that would become 60 MiB.
+// The request has some 60 kB that would expand to 60 MiB.
 TEST(PortsTest, CompressedRequestsAreNotInflated) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "AddressSanitizer keeps what is freed";
@@ -301,7 +301,7 @@ TEST(PortsTest, CompressedRequestsAreNotInflated) {
   options.address = "127.0.0.1:0";
   FakeService fake(options);
   const std::string bomb = Gzip(std::string(60 << 20, '\0'));
-  // From now on VmHWM is the most that the process holds.
+  // Resets VmHWM, which is from now on the process's peak memory.
   std::ofstream("/proc/self/clear_refs") << 5;
   const double before_mib = OwnStatusMib("VmHWM");
   std::vector<std::unique_ptr<UntakingClient>> clients;
@@ -315,7 +315,7 @@ TEST(PortsTest, CompressedRequestsAreNotInflated) {
   EXPECT_LT(OwnStatusMib("VmHWM") - before_mib, 40.0);
 }
 
-// The name of this process' newest local socket.
+// Returns the name of this process's newest local socket.
 std::string LocalSocket() {
   std::ifstream sockets("/proc/net/unix");
   const std::string prefix = absl::StrCat("@thunderhead-", getpid(), "-");
@@ -327,8 +327,8 @@ std::string LocalSocket() {
   return newest;
 }
 
-// Connects once: 0 if the server says something, 1 if it ends the connection, 2 for another
-// failure.
+// Connects once. Returns 0 if the server sends something, 1 if it ends the connection, 2 for
+// another failure.
 int TryOnce(const std::string& name) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -344,7 +344,7 @@ int TryOnce(const std::string& name) {
   return recv(socket.Get(), answer, sizeof(answer), 0) > 0 ? 0 : 1;
 }
 
-// In a process of that user, so many times: how the last one ended.
+// Connects so many times in a process of that user. Returns how the last attempt ended.
 int TryAs(uid_t user, const std::string& name, int times = 1) {
   const pid_t child = fork();
   if (child == 0) {

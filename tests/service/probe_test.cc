@@ -1,5 +1,5 @@
-// ProbeRay and GetStormMap on fakes: "anvil" has one cell of cloud, 1 g/m3, its middle at (-5500,
-// -500, 1250) m, in cells of 1 km x 1 km x 500 m.
+// Tests of ProbeRay and GetStormMap on fakes. "anvil" has one cell of cloud with 1 g/m3, with its
+// middle at (-5500, -500, 1250) m, in cells of 1 km x 1 km x 500 m.
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -57,7 +57,7 @@ void SetRay(double x_m, double y_m, double z_m, double dx, double dy, double dz,
   ray.mutable_direction()->set_z(static_cast<float>(dz));
 }
 
-// A camera straight above the cell.
+// Returns a scene with a camera straight above the cell.
 v1::Scene SceneFromAbove() {
   v1::Scene scene = SmallScene();
   v1::TopDownCamera& camera = *scene.mutable_camera()->mutable_top_down();
@@ -67,7 +67,7 @@ v1::Scene SceneFromAbove() {
   return scene;
 }
 
-// Puts "anvil" on a map of Mercator's, 40 N 100 W in its middle.
+// Puts "anvil" on a Mercator map with 40 N 100 W in its middle.
 void GiveAPlace(FakeService& service) {
   service.store->Become("anvil", [](storm_store::StormInfo& storm) {
     storm.latitude_deg = 40.0;
@@ -88,10 +88,11 @@ TEST(ProbeTest, ARayDownThroughTheCellHasItsTent) {
   EXPECT_EQ(probe.scene_revision(), 0U);
   EXPECT_EQ(probe.ray().origin().x_m(), -5500.0);
   EXPECT_EQ(probe.ray().direction().z(), -1.0F);
-  // A triangle of 1 km.
+  // The extinction along the ray is a triangle 1 km wide.
   EXPECT_NEAR(probe.optical_depth(), kCellExtinction_per_m * 500.0, 1e-3);
   EXPECT_EQ(probe.first_cloud_depth(), 0.1F);
-  // Its depth s below the tent's top is s^2 / (2 * 500 m) of the cell's extinction.
+  // At depth s below the top of the triangle, the optical depth is s^2 / (2 * 500 m) times the
+  // cell's extinction.
   const double first_m = std::sqrt(0.1 * 2.0 * 500.0 / kCellExtinction_per_m);
   EXPECT_NEAR(probe.first_cloud().height_m(), 1750.0 - first_m, 0.1);
   EXPECT_NEAR(probe.first_cloud().height_above_ground_m(), 1750.0 - first_m, 0.1);
@@ -103,7 +104,7 @@ TEST(ProbeTest, ARayDownThroughTheCellHasItsTent) {
   EXPECT_EQ(probe.seen(), v1::ProbeRayResponse::SEEN_CLOUD);
   EXPECT_NEAR(probe.seen_place().height_m(), 1750.0 - first_m * std::sqrt(std::log(2.0) / 0.1),
               1.0);
-  // From the top of the domain to the ground's metre: every 312.5 m.
+  // The samples run from the top of the domain to the ground, every 312.5 m.
   ASSERT_EQ(probe.distances_m_size(), 9);
   EXPECT_NEAR(probe.heights_m(0), 2500.0F, 1e-3F);
   EXPECT_NEAR(probe.heights_m(8), 0.0F, 1.0F);
@@ -144,7 +145,8 @@ TEST(ProbeTest, PointsOfThePictureAndAllKindsOfCamerasCount) {
   FakeService service;
   v1::ProbeRayRequest request;
   *request.mutable_scene() = SceneFromAbove();
-  // 64 x 36 pixels on 4000 m: its upper right corner is 2000 m east and 1125 m north.
+  // The picture of 64 x 36 pixels covers 4000 m, so its upper right corner is 2000 m east and 1125
+  // m north.
   request.mutable_point()->set_x(1.0F);
   request.mutable_point()->set_y(1.0F);
   v1::ProbeRayResponse probe = Probed(service, request);
@@ -153,7 +155,7 @@ TEST(ProbeTest, PointsOfThePictureAndAllKindsOfCamerasCount) {
   EXPECT_EQ(probe.seen(), v1::ProbeRayResponse::SEEN_GROUND);
   EXPECT_NEAR(probe.seen_place().position().x_m(), -3500.0, 1e-2);
   EXPECT_FALSE(probe.has_first_cloud());
-  // Another camera than the scene's.
+  // Uses another camera than the scene's.
   v1::SpotterCamera& spotter = *request.mutable_camera()->mutable_spotter();
   spotter.set_x_m(-5500.0F);
   spotter.set_y_m(-9000.0F);
@@ -165,11 +167,11 @@ TEST(ProbeTest, PointsOfThePictureAndAllKindsOfCamerasCount) {
   EXPECT_EQ(probe.seen(), v1::ProbeRayResponse::SEEN_CLOUD);
   EXPECT_GT(probe.optical_depth(), 10.0);
   EXPECT_FALSE(probe.has_ground());
-  // An orbit that the server frames shows the only cell in its middle.
+  // An orbit that the server frames shows the only cell in the middle of the picture.
   request.mutable_camera()->mutable_orbit();
   probe = Probed(service, request);
   EXPECT_GT(probe.optical_depth(), 10.0);
-  // A spotter who turns away from it.
+  // A spotter who looks away from the cell sees nothing of it.
   request.clear_point();
   v1::SpotterCamera& away = *request.mutable_camera()->mutable_spotter();
   away.set_x_m(-5500.0F);

@@ -11,15 +11,16 @@ namespace thunderhead::testing {
 
 std::string Contents(const std::string& path);
 
-// The entries of a manifest by the product's file; a torn last line is left out. Fails the test if
-// a product has two.
+// Returns the entries of a manifest by the product's file, without a torn last line. Fails the test
+// if a product has two entries.
 std::map<std::string, pipeline::ManifestEntry> EntriesOf(const std::string& manifest);
 
-// Fails the test unless every picture in the folder decodes. Called while nothing writes there.
+// Fails the test unless every picture in the folder decodes. Call it only while nothing writes
+// there.
 void ExpectWholePictures(const std::string& folder);
 
-// Fails the test unless the folder holds the products named, their manifest, whose hashes are
-// theirs, and nothing else but `others`.
+// Fails the test unless the folder holds exactly the named products, their manifest with matching
+// hashes, and `others`.
 void ExpectFinished(const std::string& folder, const std::vector<std::string>& products,
                     const std::vector<std::string>& others = {});
 

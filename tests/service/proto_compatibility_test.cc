@@ -1,6 +1,7 @@
-// The wire format of thunderhead.v1 that existing clients rely on: tests/service/v1_wire_format.txt
-// lists it. THUNDERHEAD_UPDATE=1 rewrites the list after an addition, or after a removal whose
-// number and name are reserved; it does not accept a change that breaks clients.
+// Tests of the wire format of thunderhead.v1 that existing clients rely on:
+// tests/service/v1_wire_format.txt lists it. THUNDERHEAD_UPDATE=1 rewrites the list after an
+// addition, or after a removal whose number and name are reserved. It does not accept a change that
+// breaks clients.
 #include <cstdlib>
 #include <fstream>
 #include <set>
@@ -60,7 +61,8 @@ TEST(ProtoCompatibility, TheListedFormatStillHolds) {
          "with THUNDERHEAD_UPDATE=1";
 }
 
-// The format of message M with these fields, in the text format of descriptors, beside oneof `o`.
+// Returns the format of a message M with oneof `o` and these fields, in the text format of
+// descriptors.
 FormatLines FormatOf(const std::string& fields) {
   google::protobuf::FileDescriptorProto file;
   EXPECT_TRUE(google::protobuf::TextFormat::ParseFromString(
@@ -100,7 +102,8 @@ TEST(ProtoCompatibility, AFieldMayGoIfItsNumberAndItsNameAreReservedForEver) {
               HasSubstr("gone: reserved p.M number 1"));
 }
 
-// A field in a oneof clears the others of it, which clients that know it alone do not expect.
+// Setting a field of a oneof clears its other fields. Clients that know only one of the fields do
+// not expect that.
 TEST(ProtoCompatibility, AKnownFieldNeitherEntersNorLeavesAOneof) {
   const std::string member = "oneof_index: 0 ";
   const FormatLines outside = FormatOf(Field("a", 1, "TYPE_STRING", "proto3_optional: false "));

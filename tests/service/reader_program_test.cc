@@ -1,4 +1,4 @@
-// `thunderhead serve` while the program that reads its storm files changes on the disk.
+// Tests of `thunderhead serve` while the program that reads its storm files changes on the disk.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,8 +28,8 @@ void WriteStorm(const std::string& path) {
 class ReaderProgramTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    // Storms of the same time, which are no series. The server draws the first as it starts, and a
-    // reader may still rest with the first or the last.
+    // The storms have the same time, so they form no series. The server draws the first as it
+    // starts, and an idle reader may still belong to the first or the last.
     fs::create_directory(folder_.File("data"));
     for (const char* const storm : {"anvil", "tower", "wall"}) {
       WriteStorm(folder_.File(absl::StrCat("data/", storm, ".nc")));
@@ -41,7 +41,7 @@ class ReaderProgramTest : public ::testing::Test {
     ASSERT_NE(server_->stub(), nullptr);
   }
 
-  // Has a time of the storm read.
+  // Makes the server read a time of the storm.
   grpc::Status Describe(const std::string& storm) {
     v1::DescribeStormRequest request;
     request.set_storm_id(storm);
@@ -54,14 +54,14 @@ class ReaderProgramTest : public ::testing::Test {
   std::optional<ServedProgram> server_;
 };
 
-// As backups and profilers give it.
+// Backups and profilers create such hard links.
 TEST_F(ReaderProgramTest, AnotherNameOfTheReaderChangesNothing) {
   fs::create_hard_link(reader_, folder_.File("backup"));
   const grpc::Status described = Describe("tower");
   EXPECT_TRUE(described.ok()) << described.error_message();
 }
 
-// Another version may understand other requests.
+// Another version may expect other requests.
 TEST_F(ReaderProgramTest, AReplacedReaderIsNotStarted) {
   fs::copy_file(reader_, folder_.File("newer"));
   fs::rename(folder_.File("newer"), reader_);

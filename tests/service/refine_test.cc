@@ -1,5 +1,5 @@
-// Sessions that show the reference, over gRPC: pictures that improve while the scene rests, start
-// again when it changes and stop when nobody watches; other sessions are not delayed.
+// Tests of sessions that show the reference, over gRPC. Pictures improve while the scene rests,
+// restart when it changes and stop when no viewer watches. Other sessions are not delayed.
 #include <grpcpp/create_channel.h>
 
 #include <algorithm>
@@ -33,7 +33,8 @@ v1::Scene TracedFrom(float azimuth_deg) {
   return scene;
 }
 
-// Time stands still, so that frames are shown by their samples alone.
+// A fixture whose time stands still, so that only the number of samples decides when frames are
+// shown.
 class RefineTest : public ::testing::Test {
  protected:
   ~RefineTest() override { truth_->sampling.Open(); }
@@ -46,7 +47,7 @@ class RefineTest : public ::testing::Test {
     return options;
   }
 
-  // The frames of a revision, in order.
+  // Returns the frames of a revision, in order.
   static std::vector<v1::Frame> FramesOf(Watcher& watcher, std::uint64_t revision) {
     std::vector<v1::Frame> frames;
     for (const v1::WatchFramesResponse& message : watcher.Messages()) {
@@ -66,7 +67,7 @@ class RefineTest : public ::testing::Test {
     });
   }
 
-  // Lets the reference trace so many samples more, and waits until frames show `samples`.
+  // Lets the reference trace so many more samples, and waits until frames show `samples`.
   bool TraceOn(Watcher& watcher, std::uint64_t revision, int more, std::uint32_t samples) {
     truth_->sampling.LetPass(more);
     return AwaitSamples(watcher, revision, samples);
@@ -101,7 +102,7 @@ TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
     if (i == 1) continue;
     EXPECT_LT(refinement.relative_error(), frames[i - 1].refinement().relative_error());
   }
-  // The frame source drew nothing.
+  // The frame source has drawn nothing.
   EXPECT_TRUE(service_.machine->Log().empty());
 }
 
@@ -128,7 +129,7 @@ TEST_F(RefineTest, AChangeBeginsAgainAtOnce) {
   truth_->sampling.Close();
   ASSERT_TRUE(truth_->sampling.AwaitWaiting(1));
   const std::uint64_t revision = service_.Update(id, TracedFrom(40.0F));
-  // The first picture ends at its next sample; it would need many more to be shown again.
+  // The first picture ends at its next sample. It would need many more samples to be shown again.
   truth_->sampling.LetOnePass();
   ASSERT_TRUE(WaitFor([&] { return truth_->Log().size() == 2U; }));
   ASSERT_TRUE(TraceOn(watcher, revision, 1, 1));
@@ -137,7 +138,7 @@ TEST_F(RefineTest, AChangeBeginsAgainAtOnce) {
   const std::vector<v1::Frame> frames = FramesOf(watcher, revision);
   EXPECT_EQ(frames.front().refinement().samples_per_pixel(), 1U);
   EXPECT_EQ(frames.front().camera().orbit().azimuth_deg(), 40.0F);
-  // The source of the first picture is kept for the second.
+  // The second picture reuses the source of the first.
   EXPECT_EQ(truth_->sources, 1);
   EXPECT_EQ(truth_->Log().size(), 2U);
 }
@@ -167,7 +168,7 @@ TEST_F(RefineTest, LeavingEndsItAndComingBackBeginsAnew) {
   }
   ASSERT_TRUE(WaitFor([&] { return truth_->sources == 0; }));
   const int samples = truth_->samples;
-  // The first frame may still be the last one of the previous scene.
+  // The first frame may still be the last frame of the previous scene.
   Watcher again(service_.stub(), id);
   EXPECT_TRUE(WaitFor([&] { return truth_->Log().size() == 2U; }));
   EXPECT_EQ(truth_->Log().back().samples_before, samples) << "traced while nobody watched";
@@ -192,7 +193,7 @@ TEST_F(RefineTest, AnotherTimeIsReadAndTraced) {
   ASSERT_TRUE(AwaitSamples(watcher, 1, 8));
   v1::Scene scene = Traced();
   scene.set_time_index(2);
-  // The camera is complete, so that only the render loop reads.
+  // The camera is complete, so only the render loop reads the storm.
   scene.mutable_camera()->mutable_orbit()->mutable_target();
   scene.mutable_camera()->mutable_orbit()->set_elevation_deg(4.0F);
   scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
@@ -208,7 +209,7 @@ TEST_F(RefineTest, OtherSessionsAreDrawnMeanwhile) {
   ASSERT_TRUE(truth_->sampling.AwaitWaiting(1));
   const std::string id = service_.Open(SmallScene());
   Watcher other(service_.stub(), id);
-  // Each would wait for the sample if pictures were traced on the render loop's thread.
+  // Each frame would wait for the sample if pictures were traced on the render loop's thread.
   for (int i = 0; i < 10; ++i) {
     v1::Scene scene = SmallScene();
     scene.mutable_sun()->set_azimuth_deg(static_cast<float>(10 * i));
@@ -229,7 +230,7 @@ TEST_F(RefineTest, SessionsTakeTurnsAndOneTooManyIsTold) {
 }
 
 TEST_F(RefineTest, OneIdentityHasHalfOfThePlaces) {
-  // By the port, all are of one address.
+  // All calls through the port have the same address.
   const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
       absl::StrCat("127.0.0.1:", service_.server().Port()), grpc::InsecureChannelCredentials()));
   const auto open = [&](float azimuth_deg) {
@@ -259,7 +260,7 @@ TEST_F(RefineTest, WhatCannotBeTracedIsAProblemUntilTheSceneChanges) {
   Watcher watcher(service_.stub(), id);
   ASSERT_TRUE(watcher.Await([](const Messages& messages) { return !messages.empty(); }));
   EXPECT_THAT(watcher.Messages().front().problem().message(), HasSubstr("this exposure"));
-  // The render loop looks at the session again, as another is drawn.
+  // The render loop checks the session again when another session is drawn.
   Watcher other(service_.stub(), service_.Open(SmallScene()));
   ASSERT_TRUE(other.AwaitFrame(1, true));
   EXPECT_EQ(truth_->Log().size(), 1U);
@@ -285,10 +286,10 @@ TEST_F(RefineTest, StopsAmidWork) {
   EXPECT_EQ(truth_->sources, 0);
 }
 
-// The path tracer itself behind the same service.
+// Runs the path tracer itself behind the same service.
 TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
   FakeService service;
-  // The fake storm's cell is opaque, and its paths long.
+  // The fake storm's cell is opaque, so its paths are long.
   const auto from = [](float azimuth_deg) {
     v1::Scene scene = TracedFrom(azimuth_deg);
     scene.mutable_output()->set_width_px(16);
@@ -307,7 +308,8 @@ TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
     };
   };
   Watcher watcher(service.stub(), id);
-  // 32 times the samples of the first frame that has an error: some frames may be left out.
+  // Waits for 32 times the samples of the first frame that has an error. Some frames may be
+  // skipped.
   ASSERT_TRUE(watcher.Await([&](const Messages& messages) {
     const auto first = std::ranges::find_if(messages, [](const auto& message) {
       return message.frame().refinement().has_relative_error();
@@ -323,7 +325,7 @@ TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
     if (first_error == 0.0) first_error = last_error;
   }
   EXPECT_GT(first_error, 0.0);
-  // The square root of 32; an estimate from two samples is itself uncertain.
+  // The error falls by the square root of 32. An estimate from two samples is itself uncertain.
   EXPECT_LT(last_error, first_error / 2.0);
   EXPECT_GT(last_error, first_error / 16.0);
   const std::uint64_t revision = service.Update(id, from(120.0F));

@@ -1,4 +1,4 @@
-// Single pictures.
+// Tests of single pictures.
 #include "frame/image_codec.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -71,7 +71,7 @@ TEST(RenderImageTest, ErrorsOfReadingAndDrawingComeBack) {
   EXPECT_EQ(Render(service, request, &response).error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
-// Renders on a thread of its own.
+// A request that renders on its own thread.
 class Request {
  public:
   Request(FakeService& service, float exposure_ev, std::uint32_t time_index = 0) {
@@ -103,7 +103,7 @@ class Request {
   std::thread thread_;
 };
 
-// Two are read meanwhile, one in each lane.
+// Two pictures are read meanwhile, one in each lane.
 TEST(RenderImageTest, CancelledPictureIsNeverDrawn) {
   FakeService service;
   service.store->reading.Close();
@@ -134,7 +134,7 @@ TEST(RenderImageTest, TooManyWaitingPicturesAreRefused) {
   std::vector<std::unique_ptr<Request>> others;
   others.push_back(std::make_unique<Request>(service, 2.0F, 1));
   others.push_back(std::make_unique<Request>(service, 3.0F, 2));
-  // One of the two waits, the other is refused while the first picture is drawn.
+  // One of the two waits; the other is refused while the first picture is drawn.
   ASSERT_TRUE(WaitFor([&] { return others[0]->HasEnded() || others[1]->HasEnded(); }));
   ASSERT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 1; }));
   service.machine->drawing.Open();

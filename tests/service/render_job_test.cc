@@ -1,5 +1,5 @@
-// Render jobs on a fake machine: every picture once, each failure by itself, for its owner alone,
-// and again after a restart.
+// Tests of render jobs on a fake machine: every picture is drawn once, one failure does not affect
+// others, only the owner has access, and jobs continue after a restart.
 #include <fcntl.h>
 #include <sys/stat.h>
 
@@ -53,7 +53,8 @@ v1::RenderJobPicture Picture(std::uint32_t time_index, const std::string& name =
   return picture;
 }
 
-// One that takes half an hour if a million samples take 200 ms: it does not end while a test runs.
+// Returns a picture that takes half an hour if a million samples take 200 ms. It does not end while
+// a test runs.
 v1::RenderJobPicture EndlessPicture() {
   v1::RenderJobPicture picture = Picture(0);
   picture.mutable_scene()->mutable_output()->set_width_px(8192);
@@ -81,7 +82,7 @@ struct Fetched {
   v1::FetchRenderResultResponse first;
 };
 
-// Calls as one identity; an empty role shows no token.
+// A client that calls with one identity. With an empty role it shows no token.
 class Jobs {
  public:
   explicit Jobs(service::Server& server, std::string role = "")
@@ -133,7 +134,7 @@ class Jobs {
     return Call(&JobStub::CancelRenderJob, request, &response);
   }
 
-  // Watches until the stream ends; returns the newest state of every picture.
+  // Watches until the stream ends, and collects the newest state of every picture.
   grpc::Status Watch(const std::string& id, std::map<std::uint32_t, State>* pictures,
                      std::atomic<int>* messages = nullptr) {
     grpc::ClientContext context;
@@ -219,7 +220,7 @@ TEST_F(RenderJobTest, DrawsEveryPictureOnceAndKeepsItUntilItIsFetched) {
     EXPECT_EQ(fetched.first.input().valid_time(),
               absl::StrCat("0001-01-01T00:", 10 + 10 * i, ":00Z"));
     EXPECT_EQ(jobs.Fetch(job.id(), i, 10).bytes, fetched.bytes.substr(10));
-    // By HTTP, whoever has the path.
+    // By HTTP, any client that has the path can fetch the file.
     const auto file = service.server().FindResult(absl::StrCat(job.result_path(), "/", i));
     ASSERT_TRUE(file.has_value());
     std::stringstream contents;
@@ -274,7 +275,8 @@ TEST_F(RenderJobTest, GoesOnAfterARestartAndDrawsNothingTwice) {
     std::vector<v1::RenderJobPicture> pictures;
     for (int i = 0; i < 12; ++i) pictures.push_back(Picture(static_cast<std::uint32_t>(i % 4)));
     id = jobs.Create(pictures).id();
-    // One that has been drawn ends only when the device is free: the next may hold it at the gate.
+    // A picture that has been drawn ends only when the device is free, and the next picture may
+    // hold the device at the gate.
     constexpr std::size_t kInHand = 3;
     for (std::size_t i = 0; i < kInHand + 3; ++i) service.machine->drawing.LetOnePass();
     ASSERT_TRUE(WaitFor([&] { return jobs.Get(id).job().counts().drawn() >= 3; }));
@@ -289,7 +291,7 @@ TEST_F(RenderJobTest, GoesOnAfterARestartAndDrawsNothingTwice) {
   std::map<std::uint32_t, State> pictures;
   ASSERT_TRUE(jobs.Watch(id, &pictures).ok());
   EXPECT_EQ(jobs.Get(id).job().counts().drawn(), 12U);
-  // Those in hand when the first server ended were drawn there or here.
+  // The pictures in progress when the first server ended were drawn by either server.
   EXPECT_LE(service.machine->Log().size(), 12U - drawn);
   EXPECT_EQ(Files(), 12U);
   for (std::uint32_t i = 0; i < 12; ++i) EXPECT_TRUE(jobs.Fetch(id, i).status.ok());
@@ -312,7 +314,7 @@ TEST_F(RenderJobTest, ATimeIsFoundAgainWhereItStandsNow) {
   EXPECT_EQ(jobs.Fetch(job.id(), 4).first.input().valid_time(), "0001-01-01T00:30:00Z");
 }
 
-// The file of one time lies on a storage that hangs, the others' elsewhere.
+// The file of one time lies on a storage that hangs; the others lie elsewhere.
 TEST_F(RenderJobTest, AStorageThatHangsHoldsUpOnlyItsOwnPictures) {
   std::promise<void> storage;
   std::atomic<int> hanging{0};
@@ -349,7 +351,7 @@ TEST_F(RenderJobTest, AResultWhoseStorageHangsIsRefusedAndTheNextAtOnce) {
   const v1::RenderJob job = jobs.Create({Picture(0), Picture(1)});
   ASSERT_TRUE(WaitFor([&] { return jobs.Get(job.id()).job().counts().drawn() == 2; }));
   ASSERT_TRUE(jobs.Fetch(job.id(), 1).status.ok());
-  // A pipe that nobody writes hangs as it is opened.
+  // Opening a pipe that has no writer hangs.
   const std::string picture = absl::StrCat(folder_.File("jobs"), "/", job.id(), "/000000.png");
   std::filesystem::rename(picture, picture + ".kept");
   ASSERT_EQ(mkfifo(picture.c_str(), 0600), 0);
@@ -358,14 +360,14 @@ TEST_F(RenderJobTest, AResultWhoseStorageHangsIsRefusedAndTheNextAtOnce) {
     time.Advance(milliseconds(500));
     return first.wait_for(milliseconds(0)) == std::future_status::ready;
   }));
-  // The next one waits no longer.
+  // The next fetch does not wait longer.
   for (const Fetched& fetched : {first.get(), jobs.Fetch(job.id(), 0)}) {
     EXPECT_EQ(fetched.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED);
     bool retries = false;
     EXPECT_EQ(ReasonOf(fetched.status, &retries), "STORAGE_HANGS");
     EXPECT_TRUE(retries);
   }
-  // The storage answers: whoever opened the pipe reads its end.
+  // The storage answers again: the fetches that opened the pipe reach its end.
   std::filesystem::rename(picture, picture + ".pipe");
   std::filesystem::rename(picture + ".kept", picture);
   { const base::FileDescriptor writer(open((picture + ".pipe").c_str(), O_RDWR | O_NONBLOCK)); }
@@ -392,7 +394,7 @@ TEST_F(RenderJobTest, CancellingFreesTheDevice) {
   EXPECT_EQ(ended.counts().drawing() + ended.counts().waiting(), 0U);
 }
 
-// The server checks the token again after it has sent news.
+// The server checks the token again after it has sent an update.
 TEST_F(RenderJobTest, ATokenThatIsTakenAwayEndsItsWatch) {
   ManualTime time;
   GuardedService guarded(Options(time));
@@ -474,7 +476,7 @@ TEST_F(RenderJobTest, MoreThanIsAllowedIsRefusedWithATimeToTryAgain) {
   refused = jobs.Create({Picture(0)}, &job);
   EXPECT_EQ(ReasonOf(refused), "TOO_MANY_JOBS");
   EXPECT_EQ(jobs.Create({}, &job).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  // One that has ended makes room.
+  // A job that has ended frees a place.
   ASSERT_TRUE(jobs.Cancel(first.id()).ok());
   EXPECT_TRUE(jobs.Create({Picture(0)}, &job).ok());
   v1::GetRenderJobResponse gone;
@@ -487,7 +489,7 @@ TEST_F(RenderJobTest, WhereNobodyFetchesDrawingPausesAndGoesOnAfterAFetch) {
   FakeService service(options);
   Jobs jobs(service.server());
   const v1::RenderJob job = jobs.Create(std::vector<v1::RenderJobPicture>(6, Picture(0)));
-  // Some were in hand when the first was drawn.
+  // Some pictures were in progress when the first was drawn.
   ASSERT_TRUE(WaitFor([&] { return jobs.Get(job.id()).job().has_paused(); }));
   const auto drawn = [&] { return jobs.Get(job.id()).job().counts().drawn(); };
   ASSERT_TRUE(WaitFor([&] { return jobs.Get(job.id()).job().counts().drawing() == 0; }));
@@ -497,7 +499,7 @@ TEST_F(RenderJobTest, WhereNobodyFetchesDrawingPausesAndGoesOnAfterAFetch) {
   EXPECT_EQ(paused.counts().dropped(), 0U) << "nothing drawn is thrown away";
   EXPECT_LE(paused.counts().drawn(), 4U) << "three in hand, and one that replaced the first";
   EXPECT_EQ(service.server().Load().jobs.paused, paused.counts().waiting());
-  // Those fetched by gRPC and by HTTP count alike.
+  // Pictures fetched by gRPC and by HTTP count alike.
   std::uint32_t fetched = 0;
   while (jobs.Get(job.id()).job().state() == v1::RenderJob::STATE_RUNNING && fetched < 6) {
     ASSERT_TRUE(WaitFor([&] {
@@ -513,7 +515,7 @@ TEST_F(RenderJobTest, WhereNobodyFetchesDrawingPausesAndGoesOnAfterAFetch) {
     ++fetched;
   }
   EXPECT_EQ(service.machine->Log().size(), 6U) << "each once";
-  // What was fetched makes room, and says so.
+  // Fetching a picture frees its space, and the job reports it.
   const auto got = jobs.Get(job.id());
   EXPECT_FALSE(got.job().has_paused());
   EXPECT_GT(got.job().counts().dropped(), 0U);
@@ -523,7 +525,7 @@ TEST_F(RenderJobTest, WhereNobodyFetchesDrawingPausesAndGoesOnAfterAFetch) {
     EXPECT_EQ(jobs.Fetch(job.id(), picture.index()).status.error_code(),
               grpc::StatusCode::NOT_FOUND);
   }
-  // Paths that name nothing are ignored.
+  // Paths that do not name a result are ignored.
   service.server().ResultFetched(job.result_path() + "/99");
   service.server().ResultFetched("/results/nobody/0");
 }
@@ -595,7 +597,7 @@ class RenderJobBenchmark : public RenderJobTest {};
 TEST_F(RenderJobBenchmark, MovingFramesBesideFiveHundredStillsOfTenJobs) {
   FakeService service(Options());
   Jobs jobs(service.server());
-  service.machine->ms_per_mega_sample = 100.0;  // 3.7 ms a picture
+  service.machine->ms_per_mega_sample = 100.0;  // 3.7 ms for each picture
   const std::string session = service.Open(SmallScene());
   Watcher watcher(service.stub(), session);
   ASSERT_TRUE(watcher.AwaitFrame(1, true));

@@ -1,4 +1,4 @@
-// The program as another process, which a test may stop at any moment.
+// The program in another process, which a test may stop at any moment.
 #pragma once
 
 #include <sys/types.h>
@@ -8,25 +8,25 @@
 
 namespace thunderhead::testing {
 
-// How a process ended.
+// The exit code or signal of a process.
 struct Ending {
   int code = -1;   // -1 if a signal ended it
-  int signal = 0;  // 0 if it ended by itself
+  int signal = 0;  // 0 if it exited on its own
 };
 
 class RunningProgram {
  public:
-  // Starts PROGRAM; its output goes to the files `out` and `err`, behind what is there.
+  // Starts `program`. Its output is appended to the files `out` and `err`.
   RunningProgram(const std::string& program, const std::vector<std::string>& arguments,
                  const std::string& out, const std::string& err);
-  // Kills it if it still runs.
+  // Kills the process if it still runs.
   ~RunningProgram();
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
   void Signal(int signal) const;
-  // Returns whether the program has taken a first signal as its request to stop, so that a second
-  // one ends it (server/app/interruption.h).
+  // Returns whether the program has treated a first signal as a request to stop, so that a second
+  // signal ends it (server/app/interruption.h).
   bool IsInterrupted() const;
   bool Runs();
   Ending Wait();

@@ -1,4 +1,4 @@
-// The defaults of a scene agree everywhere: in the options of the messages' fields, in
+// Tests that the defaults of a scene agree everywhere: in the options of the messages' fields, in
 // scene/scene.h and in the messages that the server completes.
 #include <algorithm>
 #include <memory>
@@ -42,8 +42,8 @@ double NumberOf(const Message& message, const FieldDescriptor& field) {
   }
 }
 
-// Enumerators and switches whose default depends on the storm or on other fields, or which have
-// none.
+// Enumerators and switches without a fixed default: it depends on the storm or on other fields, or
+// there is none.
 const std::set<std::string> kWithoutDefault = {
     "thunderhead.v1.FieldParameters.hydrometeor",
     "thunderhead.v1.FieldParameters.sizes",
@@ -54,7 +54,8 @@ const std::set<std::string> kWithoutDefault = {
     "thunderhead.v1.Sun.source",
 };
 
-// Compares the value with the default in the field's options; false for one that has none.
+// Compares the value with the default in the field's options. Returns false for a field without a
+// default.
 bool CompareWithDefault(const Message& message, const FieldDescriptor& field,
                         const std::string& name) {
   const google::protobuf::FieldOptions& options = field.options();
@@ -83,8 +84,8 @@ bool CompareWithDefault(const Message& message, const FieldDescriptor& field,
   }
 }
 
-// Compares every value that has a default in its options; returns how many there are. `message`
-// holds defaults.
+// Compares every value that has a default in its options, and returns their number. `message` holds
+// defaults.
 int CompareDefaults(const Message& message, const std::string& path) {
   int compared = 0;
   const google::protobuf::Descriptor& type = *message.GetDescriptor();
@@ -92,7 +93,7 @@ int CompareDefaults(const Message& message, const std::string& path) {
     const FieldDescriptor& field = *type.field(i);
     const auto& reflection = *message.GetReflection();
     const std::string name = absl::StrCat(path, ".", field.name());
-    // Of a oneof the one that is chosen.
+    // For a oneof, only the chosen field is compared.
     if (field.real_containing_oneof() != nullptr && !reflection.HasField(message, &field)) continue;
     if (field.is_repeated()) {
       if (field.message_type() == nullptr || field.is_map()) continue;
@@ -122,7 +123,7 @@ v1::Scene Completed(v1::Scene scene = {}) {
   return scene;
 }
 
-// The value as a message holds it, which has numbers of single precision.
+// Returns the value rounded to single precision, as a message stores it.
 scene::Scene InSinglePrecision(scene::Scene value) {
   v1::Camera camera;
   ToMessage(value.camera, camera);
@@ -131,14 +132,15 @@ scene::Scene InSinglePrecision(scene::Scene value) {
   ToMessage(value.rendering.technique, rendering);
   value.rendering.technique = ToTechnique(rendering);
   for (double* number : {&value.sky.brightness, &value.sky.ground_albedo, &value.sky.turbidity}) {
-    // Volatile, as GCC 12 leaves out the rounding of neighbouring doubles to floats and back.
+    // The variable is volatile because GCC 12 otherwise omits rounding neighbouring doubles to
+    // floats and back.
     const volatile auto single = static_cast<float>(*number);
     *number = single;
   }
   return value;
 }
 
-// Clears the numbers whose default stands in their options.
+// Clears the numbers whose default is in their options.
 void ClearNumbersWithDefaults(Message& message) {
   std::vector<const FieldDescriptor*> set;
   message.GetReflection()->ListFields(message, &set);
@@ -151,8 +153,8 @@ void ClearNumbersWithDefaults(Message& message) {
   }
 }
 
-// The same scene twice: as a message completed by the server, and as a value by itself. Defaults
-// that depend on the storm are the value's in both.
+// The same default scene twice: as a message completed by the server, and as a separately built
+// value. Defaults that depend on the storm are the value's in both.
 struct Defaults {
   v1::Scene message;
   scene::Scene value;
@@ -180,7 +182,7 @@ Defaults DefaultsWith(const Camera& camera, const Technique& technique) {
   return defaults;
 }
 
-// With each kind of camera and each technique that has a message of its own.
+// Returns the defaults for each kind of camera and each technique with its own message.
 std::vector<Defaults> AllDefaults() {
   const std::vector<scene::Camera> cameras = {scene::OrbitCamera{}, scene::SpotterCamera{},
                                               scene::TopDownCamera{}};
@@ -197,7 +199,7 @@ std::vector<Defaults> AllDefaults() {
   return all;
 }
 
-// A scene compares all of its fields. Parts are compared first, to tell which one differs.
+// A scene compares all of its fields. Its parts are compared first, to show which part differs.
 TEST(SceneDefaults, OfTheValueAreThoseOfTheCompletedMessage) {
   for (const Defaults& defaults : AllDefaults()) {
     const scene::Scene value = ToScene(defaults.message);
@@ -237,7 +239,7 @@ const std::set<std::string> kReplaced = {
     "thunderhead.v1.SunClock.date_time",
     "thunderhead.v1.SunClock.latitude_deg",
     "thunderhead.v1.SunClock.longitude_deg",
-    // Chooses the field of the value; that it is repeated is refused.
+    // Chooses the field of the value. A repeated hydrometeor would be refused.
     "thunderhead.v1.FieldParameters.hydrometeor",
 };
 
@@ -255,8 +257,8 @@ void SetNumber(Message& message, const FieldDescriptor& field, double value) {
   }
 }
 
-// Sets the field to its `i`th value, for a number one of its limits; false if there are no more.
-// An enumerator of 0 is none: completing a message replaces it.
+// Sets the field to its `i`th value; a number is set to one of its limits. Returns false if there
+// are no further values. Enumerator 0 means "unset", so completing a message replaces it.
 bool SetValue(Message& message, const FieldDescriptor& field, int i) {
   const auto& reflection = *message.GetReflection();
   switch (field.cpp_type()) {
@@ -278,7 +280,7 @@ bool SetValue(Message& message, const FieldDescriptor& field, int i) {
   return i < 2;
 }
 
-// True if each value of the field makes another scene. `message` is part of `scene`.
+// Returns true if each value of the field makes another scene. `message` is part of `scene`.
 bool Matters(const v1::Scene& scene, Message& message, const FieldDescriptor& field) {
   const std::unique_ptr<Message> kept(message.New());
   kept->CopyFrom(message);
@@ -340,7 +342,7 @@ TEST(SceneDefaults, OfTechniquesAreTheirOptionsAndTheValuesOwn) {
     rendering.GetReflection()->MutableMessage(&rendering, &field);
     FillTechniqueDefaults(rendering);
     compared += CompareDefaults(rendering, field.name());
-    // Every field of it is filled in.
+    // Every field of the technique's message is filled in.
     const Message& filled = rendering.GetReflection()->GetMessage(rendering, &field);
     for (int j = 0; j < field.message_type()->field_count(); ++j) {
       const FieldDescriptor& setting = *field.message_type()->field(j);
@@ -353,7 +355,8 @@ TEST(SceneDefaults, OfTechniquesAreTheirOptionsAndTheValuesOwn) {
     EXPECT_TRUE(MessageDifferencer::Equals(again, rendering)) << field.name();
   }
   EXPECT_GE(compared, 15);
-  // Without regard to floats and doubles: these have only exact numbers.
+  // Float and double defaults need no rounding here, because these messages contain only exact
+  // numbers.
   for (const scene::Technique& own :
        {scene::Technique(scene::LightVolume{}), scene::Technique(scene::HalfAngle{}),
         scene::Technique(scene::Reference{})}) {
@@ -374,7 +377,7 @@ TEST(SceneDefaults, HydrometeorsAreNamedAlike) {
   }
 }
 
-// Records and clients know the kinds by these numbers.
+// Records and clients identify the kinds by these numbers.
 TEST(SceneDefaults, PhaseKindsAreNamedAlike) {
   using physics::PhaseKind;
   const std::vector<std::pair<std::string, PhaseKind>> kinds = {
@@ -399,14 +402,14 @@ TEST(SceneDefaults, PhaseKindsAreNamedAlike) {
   }
 }
 
-// As a damaged record of a session may have it.
+// A damaged record of a session may contain such a field.
 TEST(SceneDefaults, AFieldWithoutAPhaseKindHasTheFirst) {
   v1::Scene scene;
   scene.add_fields()->set_hydrometeor(v1::HYDROMETEOR_CLOUD);
   EXPECT_EQ(ToScene(scene).fields[0].optics.phase.kind, physics::PhaseKind::kHenyeyGreenstein);
 }
 
-// The sizes of cloud's particles in a scene as it is drawn.
+// Returns the sizes of cloud particles in a scene as it is drawn.
 scene::FieldParameters Cloud(const v1::Scene& scene) { return ToScene(Completed(scene)).fields[0]; }
 
 TEST(SceneDefaults, ARadiusWinsOverTheFieldsSizesAndThoseOverTheScenes) {
@@ -432,7 +435,7 @@ TEST(SceneDefaults, ARadiusWinsOverTheFieldsSizesAndThoseOverTheScenes) {
   EXPECT_EQ(ToScene(Completed(scene)).fields[1].sizes, SizeSource::kPapers);
 }
 
-// Completing a completed scene changes nothing, and adds no radius that nobody gave.
+// Completing a completed scene changes nothing, and adds no radius that was not given.
 TEST(SceneDefaults, OfSizesAreFilledInOnce) {
   const v1::Scene once = Completed();
   EXPECT_EQ(once.particle_sizes(), v1::PARTICLE_SIZES_MODEL);
@@ -458,7 +461,7 @@ TEST(SceneDefaults, ThePapersPresetsStandForTheirConstants) {
   }
 }
 
-// On land use of a storm with a map projection.
+// Borders are on for ground by land use, in a storm with a map projection.
 TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
   const auto borders = [](const storm_store::StormInfo& storm, v1::Scene scene = {}) {
     FillSceneDefaults(scene, storm);
@@ -483,7 +486,7 @@ TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
   EXPECT_FALSE(borders(real, off));
 }
 
-// The ground that is the default follows from the storm; rings are as the value has them.
+// The default ground follows from the storm. Rings default as in the value.
 TEST(SceneDefaults, TheGroundIsThatOfTheStormAndPlainInThePapersLook) {
   const auto cover = [](const storm_store::StormInfo& storm, v1::Scene scene = {}) {
     FillSceneDefaults(scene, storm);
@@ -525,7 +528,7 @@ TEST(SceneDefaults, LightIsTracedByDefaultWhereItIsShown) {
   rendering.mutable_light_volume()->set_transport(v1::TRANSPORT_PAPER);
   FillTechniqueDefaults(rendering);
   EXPECT_EQ(rendering.light_volume().traced_light(), v1::TRACED_LIGHT_OFF);
-  // It cannot be shown, and the frame says so.
+  // The correction cannot be shown, and the frame reports that.
   rendering.mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_AT_REST);
   FillTechniqueDefaults(rendering);
   EXPECT_EQ(rendering.light_volume().traced_light(), v1::TRACED_LIGHT_AT_REST);

@@ -1,4 +1,5 @@
-// `thunderhead sequence` as a suite runs it: whole products, each once, whenever it is killed.
+// Tests of `thunderhead sequence` as a workflow suite runs it: complete products, each drawn once,
+// whenever the program is killed.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -47,7 +48,7 @@ class SequenceCommand : public ::testing::Test {
     std::ofstream(above_) << R"({"camera": {"topDown": {}}})";
   }
 
-  // Into the folder `out`.
+  // Returns arguments that write into the folder `out`.
   std::vector<std::string> Arguments(const std::string& out,
                                      const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {
@@ -78,7 +79,7 @@ class SequenceCommand : public ::testing::Test {
     return names;
   }
 
-  // Lines of products drawn by the last run.
+  // Returns the number of products that the last run drew, from its output lines.
   int Drawn() const {
     const std::string out = Contents(out_);
     int count = 0;
@@ -121,7 +122,7 @@ TEST_F(SequenceCommand, DrawsEveryTimeAndViewOnceAndOnlyWhatChangedAgain) {
   EXPECT_EQ(Drawn(), 2) << Contents(out_);
   std::ofstream(above_) << R"({"camera": {"topDown": {}}, "sky": {"turbidity": 3}})";
   fs::remove(folder_.File("out/" + Products()[0]));
-  // One byte of a picture is another: only its hash tells.
+  // One byte of a picture is changed. Only the hash shows it.
   std::string changed = Contents(folder_.File("out/" + Products()[2]));
   changed.back() ^= 1;
   std::ofstream(folder_.File("out/" + Products()[2]), std::ios::binary) << changed;
@@ -136,17 +137,17 @@ TEST_F(SequenceCommand, DrawsEveryTimeAndViewOnceAndOnlyWhatChangedAgain) {
   ExpectFinished(folder_.File("out"), Products());
 }
 
-// The files that a run leaves besides its pictures.
+// The files that a run leaves in addition to its pictures.
 struct Extras {
   std::vector<std::string> flags;
-  std::vector<std::string> products;  // with a line in the manifest
-  bool done = false;                  // a marker for each product
+  std::vector<std::string> products;  // products with a line in the manifest
+  bool done = false;                  // whether each product has a marker
 };
 
 TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
   const char* wanted = std::getenv("THUNDERHEAD_KILLS");
   const int kills = wanted == nullptr ? 50 : std::atoi(wanted);
-  // World files are of maps, so both views are from above.
+  // World files belong to maps, so both views are from above.
   std::ofstream(west_) << R"({"camera": {"topDown": {}}, "sky": {"turbidity": 3}})";
   const std::string movie = "film.webm";
   std::vector<std::string> maps;
@@ -156,7 +157,7 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
   const Extras with_movie{{"--done"}, {movie}, true};
   const Extras with_maps{{"--world-file"}, maps, false};
   std::mt19937 random(7);
-  std::map<bool, milliseconds> whole;  // with a movie, or maps
+  std::map<bool, milliseconds> whole;  // key: true with a movie, false with maps
   int killed = 0;
   for (int round = 0; killed < kills; ++round) {
     const std::string out = "out" + std::to_string(round);
@@ -164,8 +165,8 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
     std::vector<std::string> flags = extras.flags;
     if (extras.done) flags.insert(flags.end(), {"--movie", folder_.File(out) + "/" + movie});
     const std::vector<std::string> arguments = Arguments(out, flags);
-    // A moment of a whole run, from its start to the end: the first of a round is left to end by
-    // itself once, to know how long it takes.
+    // The kill comes at a random moment of a whole run. The first run of each kind is left to
+    // finish, to measure how long it takes.
     if (!whole.contains(extras.done)) {
       const auto begun = std::chrono::steady_clock::now();
       ASSERT_EQ(Run(arguments).code, 0) << Contents(err_);
@@ -183,7 +184,7 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
       ended = ending.signal == 0;
       if (!ended) ++killed;
       ExpectWholePictures(folder_.File(out));
-      // Recorded entries stay as they were: nothing is drawn again, nothing is lost.
+      // Recorded entries are unchanged: nothing is drawn again, and nothing is lost.
       const std::string now = Contents(folder_.File(out + "/manifest.jsonl"));
       EXPECT_THAT(now, StartsWith(recorded));
       recorded = now.substr(0, now.rfind('\n') + 1);
@@ -206,7 +207,8 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
 }
 
 TEST_F(SequenceCommand, ASignalEndsItWithTryAgain) {
-  // Holds the second product if it is drawn, so that the run cannot end before the signal has come.
+  // Holds the second product while it is written, so that the run cannot end before the signal
+  // arrives.
   const std::string held = folder_.File("out/" + Products()[1]) + ".partial";
   fs::create_directories(folder_.File("out"));
   ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
@@ -214,7 +216,7 @@ TEST_F(SequenceCommand, ASignalEndsItWithTryAgain) {
   WaitFor([&] { return Drawn() > 0 || !program.Runs(); });
   program.Signal(SIGTERM);
   EXPECT_TRUE(WaitFor([&] { return program.IsInterrupted() || !program.Runs(); }));
-  // Opened at both ends, so that the program's calls return, with an error of the last.
+  // The pipe is opened at both ends, so that the program's calls return; the last returns an error.
   const int both = open(held.c_str(), O_RDWR | O_CLOEXEC);
   EXPECT_EQ(program.Wait().code, 75);
   close(both);
@@ -227,11 +229,11 @@ TEST_F(SequenceCommand, ASignalEndsItWithTryAgain) {
   ExpectFinished(folder_.File("out"), Products());
 }
 
-// A product that does not come to the disk, as on a file system that hangs: the bar on a terminal
-// says how far it is, a signal waits for it, and a second one does not.
+// A product's write hangs, as on a file system that hangs. The bar on a terminal shows the
+// progress. A first signal waits for the write, and a second does not.
 TEST_F(SequenceCommand, ASecondSignalEndsWhatHangsAndATerminalShowsABar) {
   fs::create_directories(folder_.File("out"));
-  // Opening it for writing waits for a reader.
+  // Opening the pipe for writing waits for a reader.
   const std::string stuck = folder_.File("out/" + Products()[0]) + ".partial";
   ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
   Terminal terminal;
@@ -269,11 +271,12 @@ TEST_F(SequenceCommand, SharesTogetherMakeAllAndThenTheMovie) {
   EXPECT_GT(fs::file_size(folder_.File("out/storms.webm")), 500U);
   ASSERT_EQ(Run(Arguments("out", {"--movie", movie})).code, 0) << Contents(err_);
   EXPECT_EQ(Drawn(), 0) << Contents(out_);
-  // All lines are in one manifest now, those of the shares included.
+  // All lines are now in one manifest, including those of the shares.
   std::vector<std::string> all = Products();
   all.push_back("storms.webm");
   ExpectFinished(folder_.File("out"), all);
-  // Shares of another scene take the lines of what they draw anew from it: every line stays true.
+  // Shares of a changed scene remove the manifest lines of products that they draw again. Every
+  // remaining line stays valid.
   std::ofstream(above_) << R"({"camera": {"topDown": {}}, "sky": {"turbidity": 3}})";
   ASSERT_EQ(Run(Arguments("out", {"--shard", "0/2"})).code, 0) << Contents(err_);
   EXPECT_EQ(Drawn(), 2) << Contents(out_);
@@ -288,7 +291,7 @@ TEST_F(SequenceCommand, SharesTogetherMakeAllAndThenTheMovie) {
 }
 
 TEST_F(SequenceCommand, TwoAtOnceDoNotMix) {
-  // Holds the first for as long as the second needs to start.
+  // Holds the first run for as long as the second needs to start.
   fs::create_directories(folder_.File("out"));
   const std::string stuck = folder_.File("out/" + Products()[0]) + ".partial";
   ASSERT_EQ(mkfifo(stuck.c_str(), 0600), 0);
@@ -337,7 +340,7 @@ TEST_F(SequenceCommand, WhatIsWrongIsToldByItsExitCodeBeforeAnythingIsDrawn) {
 }
 
 TEST_F(SequenceCommand, OneBadFileLeavesTheOthersAlone) {
-  // Its description is sound; its fields are not.
+  // The file's description is valid, but its fields are not.
   WriteRunFile(storms_, 2, 1.0, true);
   KeepFresh(RunFile(storms_, 2));
   EXPECT_EQ(Run(Arguments("out", {"--times", "2"})).code, 75) << "just written: " << Contents(err_);
@@ -362,9 +365,10 @@ TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
   const std::string cut = RunFile(storms_, 1);
   const std::string whole = Contents(cut);
   std::ofstream(cut, std::ios::binary) << whole.substr(0, whole.size() / 2);
-  // Of a kind that is no storm's, as beside any run.
+  // The folder also contains files that are not storms, as model folders do.
   std::ofstream(storms_ + "/README") << "no storm";
-  // Alone as well as in its folder: it may still be being written, until it has rested.
+  // Whether it is read alone or in its folder, the cut file may still be being written until it has
+  // been unchanged for a while.
   KeepFresh(cut);
   EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", cut}, out_, err_).Wait().code, 75);
   KeepFresh(cut);
@@ -378,7 +382,7 @@ TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
   alone[1] = cut;
   EXPECT_EQ(Run(alone).code, 65) << Contents(err_);
   EXPECT_EQ(Run(Arguments("out")).code, 65) << Contents(err_);
-  // Which time is the last, or has the number 1, only the missing file can tell.
+  // Only the missing file can tell which time is the last, or has the number 1.
   EXPECT_EQ(Run(Arguments("out", {"--times", "last"})).code, 65);
   EXPECT_THAT(Contents(err_), HasSubstr("Nothing is drawn, as --times is only known"));
   std::vector<std::string> numbered = Arguments("numbered");
@@ -388,7 +392,8 @@ TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
   EXPECT_FALSE(fs::exists(folder_.File("numbered")));
 }
 
-// Shares that look before and after a file is complete: each time is still in exactly one share.
+// The shares list the folder before and after a file is complete. Each time must still be in
+// exactly one share.
 TEST_F(SequenceCommand, SharesThatSeeDifferentFilesLeaveNoTimeOut) {
   const std::string first = RunFile(storms_, 0);
   const std::string whole = Contents(first);
@@ -414,7 +419,7 @@ TEST_F(SequenceCommand, AnInputThatChangesWhileItIsReadNeverMakesAPicture) {
   WriteRunFile(storms_, 1, 5.0);
   const std::string dense = Contents(file);
   bool is_dense = true;
-  // Another file takes the place of the input whenever the program is about to open it.
+  // Another file replaces the input whenever the program is about to open it.
   HangAt(file);
   const auto program = [&] {
     const HangingStorage hanging;
@@ -442,7 +447,8 @@ TEST_F(SequenceCommand, AFullDiskIsWorthAnotherTry) {
   std::string command = "(ulimit -f 0; exec " + std::string(PROGRAM);
   for (const std::string& argument : Arguments("out")) command += " '" + argument + "'";
   const std::string err = folder_.File("pipe");
-  // Through a pipe, as the limit counts for standard error in a file as well.
+  // Standard error goes through a pipe, because the file size limit would also apply to it in a
+  // file.
   ASSERT_EQ(
       std::system(("(" + command + ") 2>&1 >/dev/null; echo code $?) | cat > " + err).c_str()), 0);
   EXPECT_THAT(Contents(err), HasSubstr("code 75"));

@@ -33,7 +33,7 @@ ServedProgram::ServedProgram(const std::string& program, const std::string& stor
     _exit(127);
   }
   close(out[1]);
-  // One line, or none if it ends before.
+  // The output is one line, or none if the program ends before.
   std::string line;
   for (char next = 0; read(out[0], &next, 1) == 1 && next != '\n';) line += next;
   close(out[0]);

@@ -1,4 +1,4 @@
-// The program as a server of its own process, which a test may kill.
+// The program as a server in its own process, which a test may kill.
 #pragma once
 
 #include <sys/types.h>
@@ -13,16 +13,16 @@ namespace thunderhead::testing {
 
 class ServedProgram {
  public:
-  // Starts `thunderhead serve` on the storm, on free ports, with software GL and `more` flags, and
-  // waits until it is ready.
+  // Starts `thunderhead serve` on the storm, on free ports, with software GL and the flags in
+  // `more`, and waits until it is ready.
   ServedProgram(const std::string& program, const std::string& storm, const std::string& state,
                 const std::vector<std::string>& more = {});
-  // Kills it with SIGKILL.
+  // Kills the process with SIGKILL.
   ~ServedProgram();
   ServedProgram(const ServedProgram&) = delete;
   ServedProgram& operator=(const ServedProgram&) = delete;
 
-  // Null if it did not start.
+  // Returns the stub; null if the program did not start.
   v1::ThunderheadService::Stub* stub() { return stub_.get(); }
 
   pid_t process() const { return process_; }

@@ -1,4 +1,5 @@
-// `thunderhead sequence --server` and `watch --server`: each product once, whoever is killed.
+// Tests of `thunderhead sequence --server` and `watch --server`: each product is drawn once,
+// whichever process is killed.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -31,8 +32,8 @@ using ::testing::HasSubstr;
 
 constexpr int kSequenceTimes = 5;
 
-// Returns a loopback address of this process alone, so that no other program takes a port of a
-// server that is started again.
+// Returns a loopback address that only this process uses, so that no other program takes a port
+// while the server restarts.
 std::string OwnHost() {
   const pid_t process = getpid();
   return absl::StrCat("127.", 1 + (process >> 16 & 127), ".", process >> 8 & 255, ".",
@@ -46,8 +47,8 @@ class ServerSequence : public ::testing::Test {
     for (int time = 0; time < kSequenceTimes; ++time) WriteRunFile(storms_, time);
   }
 
-  // Starts the server, at `address_` if it had one before, and waits until it is ready. All files
-  // that are there count as complete.
+  // Starts the server, at `address_` if it had one before, and waits until it is ready. All
+  // existing files count as complete.
   std::unique_ptr<RunningProgram> Serve(const std::vector<std::string>& more = {}) {
     fs::remove(served_);
     WaitFor([this] {
@@ -104,7 +105,7 @@ class ServerSequence : public ::testing::Test {
     return fs::exists(out_ + "/manifest.jsonl") ? EntriesOf(out_ + "/manifest.jsonl").size() : 0;
   }
 
-  // Results that the server keeps.
+  // Returns the number of results that the server keeps.
   std::size_t Kept() const {
     std::size_t files = 0;
     std::error_code error;
@@ -154,7 +155,7 @@ TEST_F(ServerSequence, AJobThatAKilledClientLeftIsForgottenThoughNothingIsMissin
   for (const std::string& product : Products()) {
     fs::rename(out_ + "/" + product, aside + "/" + product);
   }
-  // Holds the client at its first product, so that results are left at the server.
+  // Holds the client at its first product, so that results remain at the server.
   const std::string held = out_ + "/" + Products()[0] + ".partial";
   ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
   const auto client = Start("sequence", "run");
@@ -195,7 +196,7 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
   EXPECT_EQ(Start("sequence", "nowhere")->Wait().code, 75) << "not there yet";
   EXPECT_THAT(Errors(), HasSubstr("no storm has the id 'nowhere'"));
   EXPECT_EQ(Start("sequence", "run", {"--times", "99"})->Wait().code, 64);
-  // Holds the client at a product, so that it cannot end before the signal has come.
+  // Holds the client at a product, so that it cannot end before the signal arrives.
   const std::string held = out_ + "/" + Products()[0] + ".partial";
   fs::create_directories(out_);
   ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
@@ -203,7 +204,7 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
   ASSERT_TRUE(WaitFor([&] { return Kept() >= 1 || !client->Runs(); }));
   client->Signal(SIGTERM);
   EXPECT_TRUE(WaitFor([&] { return client->IsInterrupted() || !client->Runs(); }));
-  // Opened at both ends, so that the client's calls return, with an error of the last.
+  // The pipe is opened at both ends, so that the client's calls return; the last returns an error.
   const int both = open(held.c_str(), O_RDWR | O_CLOEXEC);
   EXPECT_EQ(client->Wait().code, 75) << Errors();
   close(both);
@@ -211,7 +212,7 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
   EXPECT_THAT(Errors(), HasSubstr("the same command goes on"));
 }
 
-// As an office would run it: TLS, a token with the role of pipelines, shares in two views, their
+// Runs as an office would: TLS, a token with the pipeline role, shares in two views, and their
 // movie.
 TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
   const std::string token = folder_.File("token");
@@ -226,7 +227,7 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
   const std::string key = folder_.File("key.pem");
   WriteSelfSigned(certificate, key, 1);
   fs::permissions(key, fs::perms::owner_read | fs::perms::owner_write);
-  // The certificate is of localhost.
+  // The certificate is for localhost.
   address_ = "127.0.0.1:0";
   const auto server =
       Serve({"--auth", "tokens", tokens, "--tls-cert", certificate, "--tls-key", key});
@@ -265,7 +266,7 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
     }
   }
   ExpectFinished(out_, products);
-  // By the same rules `watch` finds all made, and `render` gets one more.
+  // By the same rules `watch` finds all products made, and `render` draws one more.
   std::vector<std::string> until = movie;
   until.insert(until.end(), {"--until", std::to_string(kSequenceTimes)});
   EXPECT_EQ(start("watch", until, token)->Wait().code, 0) << Errors();
@@ -288,7 +289,7 @@ TEST_F(ServerSequence, WatchesAStormAsItsTimesCome) {
   const auto server = Serve();
   const auto client = Start("watch", "run", {"--until", std::to_string(kSequenceTimes + 1)});
   ASSERT_TRUE(WaitFor([&] { return Made() >= kSequenceTimes || !client->Runs(); })) << Errors();
-  // Comes whole.
+  // The file is moved into place complete.
   const std::string aside = folder_.File("aside");
   fs::create_directory(aside);
   WriteRunFile(aside, kSequenceTimes);

@@ -1,4 +1,4 @@
-// The server as a whole: ports, health, reflection, ending.
+// Tests of the server as a whole: ports, health, reflection, shutdown.
 #include "service/server.h"
 
 #include <grpcpp/generic/generic_stub.h>
@@ -30,7 +30,7 @@ std::string Text(grpc::ByteBuffer& buffer) {
   return text;
 }
 
-// Sends one message of a service whose generated code Debian does not ship, and returns the first
+// Sends one message to a service whose generated code Debian does not ship, and returns the first
 // reply.
 std::string Ask(const std::shared_ptr<grpc::Channel>& channel, const std::string& method,
                 const std::string& request) {
@@ -68,7 +68,8 @@ TEST(ServerTest, HealthIsServingInProcessAndOnItsPort) {
   ASSERT_GT(service.server().Port(), 0);
   const auto remote = grpc::CreateChannel("127.0.0.1:" + std::to_string(service.server().Port()),
                                           grpc::InsecureChannelCredentials());
-  // HealthCheckResponse: field 1 (status) is 1, SERVING. Requests: all, and ours by name (field 1).
+  // In HealthCheckResponse, field 1 (status) is 1, SERVING. One request is for all services, one
+  // for ours by name (field 1).
   const std::string serving("\x08\x01", 2);
   const std::string name = "thunderhead.v1.ThunderheadService";
   const std::string by_name = std::string("\x0a") + static_cast<char>(name.size()) + name;
@@ -89,7 +90,7 @@ TEST(ServerTest, HealthIsServingInProcessAndOnItsPort) {
 
 TEST(ServerTest, ReflectionListsTheService) {
   FakeService service;
-  // ServerReflectionRequest: field 7 (list_services) is "".
+  // In ServerReflectionRequest, field 7 (list_services) is "".
   const std::string services =
       Ask(service.server().LocalChannel(),
           "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", "\x3a\x01*");
@@ -137,7 +138,7 @@ TEST(ServerTest, ShutdownEndsStreamsAndPicturesWithUnavailable) {
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
   std::thread second([&] { render(2, &waited); });
   EXPECT_TRUE(WaitFor([&] { return service.server().Load().pictures == 2; }));
-  // It is read when it is begun.
+  // The storm is read when its picture is begun.
   EXPECT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 1; }));
   std::thread shutdown([&] { service.server().Shutdown(); });
   const grpc::Status ended = watcher.End();
@@ -148,7 +149,7 @@ TEST(ServerTest, ShutdownEndsStreamsAndPicturesWithUnavailable) {
   EXPECT_EQ(ended.error_code(), grpc::StatusCode::UNAVAILABLE);
   EXPECT_EQ(ended.error_message(), "the server is shutting down");
   EXPECT_EQ(waited.error_code(), grpc::StatusCode::UNAVAILABLE);
-  // The one being drawn is finished if its encoding began in time.
+  // The picture being drawn is delivered if its encoding began in time.
   EXPECT_TRUE(drawn.ok() || drawn.error_code() == grpc::StatusCode::UNAVAILABLE)
       << drawn.error_message();
 }

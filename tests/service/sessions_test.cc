@@ -1,4 +1,4 @@
-// Sessions: opening, completing scenes, closing, expiring, and how many there may be.
+// Tests of sessions: opening, completing scenes, closing, expiring, and the limit on their number.
 #include <cmath>
 
 #include "glm/trigonometric.hpp"
@@ -44,7 +44,7 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   const v1::OrbitCamera& camera = scene.camera().orbit();
   EXPECT_EQ(camera.azimuth_deg(), 200.0F);
   EXPECT_EQ(camera.field_of_view_deg(), 35.0F);
-  // The middle of the one cell with condensate, (4, 4, 2).
+  // The target is the middle of the one cell with condensate, (4, 4, 2).
   EXPECT_EQ(camera.target().x_m(), -5500.0F);
   EXPECT_EQ(camera.target().y_m(), -500.0F);
   EXPECT_EQ(camera.target().z_m(), 1250.0F);
@@ -66,7 +66,7 @@ TEST(SessionsTest, EmptySceneComesBackWithEveryDefault) {
   EXPECT_FALSE(scene.fields(0).has_radius_m());
   EXPECT_EQ(scene.particle_sizes(), v1::PARTICLE_SIZES_MODEL);
   EXPECT_EQ(scene.fields(0).phase().kind(), v1::PhaseFunction::KIND_WATER_DROPLETS);
-  // #56B4E9.
+  // The colour is #56B4E9.
   EXPECT_NEAR(scene.fields(1).false_color().blue(), 0.815F, 0.001F);
   EXPECT_TRUE(scene.fields(1).visible());
   EXPECT_EQ(scene.fields(1).sizes(), v1::PARTICLE_SIZES_UNSPECIFIED) << "the scene's";
@@ -128,14 +128,15 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   EXPECT_EQ(spotter.azimuth_deg(), 0.0F);
   EXPECT_EQ(spotter.eye_height_m(), 1.7F);
   EXPECT_EQ(spotter.focal_length_mm(), 24.0F);
-  // Due south of the one cell with condensate.
+  // The spotter is due south of the one cell with condensate.
   EXPECT_NEAR(spotter.x_m(), -5500.0F, 0.01);
-  // Its top is at 1.5 km: 1.25 to 2.1 times as far.
+  // The cell's top is at 1.5 km; the spotter is 1.25 to 2.1 times as far away.
   EXPECT_LT(spotter.y_m(), -500.0F - 1875.0F + 1.0F);
   EXPECT_GT(spotter.y_m(), -500.0F - 3150.0F);
   EXPECT_GT(spotter.elevation_deg(), 0.0F);
   EXPECT_EQ(CreateWith(service, spotted).scene().SerializeAsString(), spotted.SerializeAsString());
-  // Half a place stays, and it looks at the storm from there.
+  // A place of which only one coordinate is given keeps it, and the spotter looks at the storm from
+  // there.
   wanted.mutable_camera()->mutable_spotter()->clear_azimuth_deg();
   wanted.mutable_camera()->mutable_spotter()->set_x_m(-4000.0F);
   wanted.mutable_camera()->mutable_spotter()->set_elevation_deg(3.0F);
@@ -144,7 +145,7 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   EXPECT_EQ(beside.elevation_deg(), 3.0F);
   EXPECT_NEAR(std::tan(glm::radians(beside.azimuth_deg())),
               (-5500.0F + 4000.0F) / (-500.0F - beside.y_m()), 1e-3);
-  // From a place of its own it looks at the storm.
+  // From a given place the spotter looks at the storm.
   wanted.mutable_camera()->mutable_spotter()->set_x_m(-50000.0F);
   wanted.mutable_camera()->mutable_spotter()->set_y_m(-500.0F);
   EXPECT_NEAR(CreateWith(service, wanted).scene().camera().spotter().azimuth_deg(), 90.0F, 0.01);
@@ -186,7 +187,7 @@ TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
   const v1::Scene noon = CreateWith(service, wanted).scene();
   EXPECT_GT(noon.sun().elevation_deg(), 87.0F);
   EXPECT_EQ(CreateWith(service, noon).scene().SerializeAsString(), noon.SerializeAsString());
-  // It moves with the storm's times, a quarter of a degree per minute.
+  // The sun moves with the storm's times, a quarter of a degree per minute.
   wanted.set_time_index(3);
   sun.mutable_clock()->set_date_time("2013-03-20T06:20:00Z");
   const float later_deg = CreateWith(service, wanted).scene().sun().elevation_deg();
@@ -227,7 +228,7 @@ TEST(SunMessages, ARealStormsSunFollowsItsTimeAndPlace) {
   const physics::SunPosition expected = physics::SunPositionAt(1369080000.0, 35.3, -97.6);
   EXPECT_NEAR(sun.azimuth_deg(), expected.azimuth_deg, 1e-3);
   EXPECT_NEAR(sun.elevation_deg(), expected.elevation_deg, 1e-3);
-  // Setting its direction by hand ends following the clock.
+  // Setting the sun's direction by hand stops it from following the clock.
   v1::Sun held;
   held.set_elevation_deg(10.0F);
   service::FillSunDefaults(held, storm, 1);
@@ -333,10 +334,10 @@ TEST(SessionsTest, AWatchedSessionExpiresWhenNobodyDoesAnything) {
   Interacting person(service.stub(), created.viewer_key());
   Watcher watcher(service.stub(), created.session_id());
   ASSERT_TRUE(person.AwaitFrame(1));
-  // It is in use while somebody sends something.
+  // The session is in use while a viewer sends messages.
   for (int i = 0; i < 8; ++i) {
     time.Advance(std::chrono::hours(4));
-    // A refusal is an answer, too.
+    // A refusal is also an answer, so the session counts as in use.
     v1::InteractRequest steers;
     *steers.mutable_update_scene()->mutable_scene() = SmallScene();
     EXPECT_EQ(person.AnswerCode(person.Send(steers)), grpc::StatusCode::PERMISSION_DENIED);

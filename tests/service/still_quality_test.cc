@@ -1,6 +1,7 @@
-// The stills that are sent at rest against the picture before its rounding to 8 bits: how far the
-// sky of the default spotter is from it in blocks of 8 x 8 pixels, where steps show as bands.
-// Prints a table; with THUNDERHEAD_SIZE=1280x720 that of decision 28.
+// Tests of the still images that are sent at rest, compared with the picture before its rounding to
+// 8 bits. They measure the error of the default spotter's sky in blocks of 8 x 8 pixels, where
+// steps show as bands. Prints a table; with THUNDERHEAD_SIZE=1280x720 it is the table of decision
+// 28.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -23,9 +24,9 @@ namespace thunderhead {
 namespace {
 
 constexpr int kBlock_px = 8;
-constexpr double kLevel = 65535.0 / 255.0;  // of 8 bits, in those of 16
+constexpr double kLevel = 65535.0 / 255.0;  // one level of 8 bits, in levels of 16 bits
 
-using Pixels = std::vector<double>;  // three levels of 255 a pixel, rows from top to bottom
+using Pixels = std::vector<double>;  // three values (0 to 255) a pixel, rows from the top
 
 Pixels LevelsOf(const std::vector<std::uint16_t>& rgb) {
   Pixels levels;
@@ -51,7 +52,7 @@ double BlockMean(const Pixels& pixels, int width_px, int x, int y, int channel) 
   return sum / (kBlock_px * kBlock_px);
 }
 
-// The still of the sample storm's default spotter, drawn once.
+// A fixture with the still of the sample storm's default spotter, drawn once.
 class StillQuality : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -91,7 +92,7 @@ class StillQuality : public ::testing::Test {
     delete truth_;
   }
 
-  // Blocks of blue that hardly varies.
+  // Returns whether a block is of blue that hardly varies.
   static bool IsSky(int x, int y) {
     const auto& rgb = fine_->rgb;
     int least = 65535;
@@ -107,7 +108,7 @@ class StillQuality : public ::testing::Test {
     return most - least < 2.5 * kLevel;
   }
 
-  // Root mean square of the differences of block means in the sky, of 255 levels.
+  // Returns the root mean square of the differences of block means in the sky, in levels of 255.
   static double Banding(const Pixels& pixels) {
     double sum = 0.0;
     int count = 0;
@@ -126,7 +127,7 @@ class StillQuality : public ::testing::Test {
     return std::sqrt(sum / count);
   }
 
-  // Root mean square of all pixels' differences, of 255 levels.
+  // Returns the root mean square of all pixels' differences, in levels of 255.
   static double Rmse(const Pixels& pixels) {
     double sum = 0.0;
     for (std::size_t i = 0; i < pixels.size(); ++i) sum += std::pow(pixels[i] - (*truth_)[i], 2);
@@ -152,7 +153,7 @@ class StillQuality : public ::testing::Test {
     return {jpeg->size(), Banding(pixels)};
   }
 
-  // As a canvas of 8 bits shows it.
+  // Returns the image as a canvas of 8 bits shows it.
   static Sent Avif(const codec::AvifOptions& options) {
     const base::Stopwatch stopwatch;
     const auto avif = codec::EncodeAvif(*fine_, options);
@@ -171,7 +172,7 @@ drawing::DisplayFrame* StillQuality::drawn_ = nullptr;
 frame::FineImage* StillQuality::fine_ = nullptr;
 Pixels* StillQuality::truth_ = nullptr;
 
-// The picture in 8 bits is the fine one with noise of half a step.
+// The picture in 8 bits is the fine picture with noise of half a step.
 TEST_F(StillQuality, TheFinePictureIsTheOneDrawn) {
   const Pixels drawn = LevelsOf(drawn_->rgb);
   double most = 0.0;

@@ -1,5 +1,6 @@
-// Single pictures beside sessions: that they hold nobody up, wait instead of being refused, and end
-// when nobody wants them. On a fake machine that draws in pieces.
+// Tests of single pictures next to sessions, on a fake machine that draws in pieces. Single
+// pictures must not delay sessions, must wait instead of being refused, and must end when no caller
+// wants them.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -34,10 +35,10 @@ v1::RenderImageRequest Still(std::uint32_t width_px, std::uint32_t height_px, st
   return request;
 }
 
-// One that takes 3 s, in 300 pieces, if a million samples take 200 ms.
+// Returns a picture that takes 3 s, in 300 pieces, if a million samples take 200 ms.
 v1::RenderImageRequest LongStill() { return Still(640, 360, 64); }
 
-// One that takes half an hour then: it does not end while a test runs.
+// Returns a picture that takes half an hour at that speed. It does not end while a test runs.
 v1::RenderImageRequest EndlessStill() { return Still(8192, 1024, 1024); }
 
 v1::Scene SeenFrom(double azimuth_deg) {
@@ -46,7 +47,7 @@ v1::Scene SeenFrom(double azimuth_deg) {
   return scene;
 }
 
-// Calls without threads.
+// A call that needs no thread.
 class Asked {
  public:
   Asked(FakeService& service, const v1::RenderImageRequest& request) : request_(request) {
@@ -115,7 +116,7 @@ TEST(StillsTest, ALongOneHoldsUpNoSession) {
 
 TEST(StillsBenchmark, MovingFramesBesideALongStill) {
   FakeService service;
-  service.machine->ms_per_mega_sample = 200.0;  // 7 ms a frame, pieces of 10 ms
+  service.machine->ms_per_mega_sample = 200.0;  // 7 ms for each frame, pieces of 10 ms
   const std::string id = service.Open(SmallScene());
   Watcher watcher(service.stub(), id);
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
@@ -155,7 +156,7 @@ TEST(StillsTest, OneThatWouldTakeTooLongIsRefusedAtOnceByName) {
   service.machine->drawing.Close();
   Asked drawn(service, Still(64, 36, 16));
   Asked huge(service, Still(8192, 4096, 4096));
-  // Not held up by what is drawn, but for its piece.
+  // A small picture is delayed only by the current piece of the picture being drawn.
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
   service.machine->drawing.Open();
   const grpc::Status refused = huge.End();
@@ -173,7 +174,7 @@ TEST(StillsTest, OneThatTakesLongerThanPredictedEnds) {
   options.render_loop.image_limits.max_predicted_s = 0.1;
   FakeService service(options);
   service.machine->time = &time;
-  service.machine->ms_per_mega_sample = 200.0;  // believed to be 2 at first
+  service.machine->ms_per_mega_sample = 200.0;  // the server first assumes 2 ms
   Asked still(service, LongStill());
   const grpc::Status end = still.End();
   EXPECT_EQ(end.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << end.error_message();
@@ -194,7 +195,7 @@ TEST(StillsTest, HundredsAtOnceWaitAndAllAreDrawn) {
 TEST(StillsTest, ThoseThatWaitHoldNoFields) {
   FakeService service;
   service.machine->ms_per_mega_sample = 0.01;
-  // Believed to take 9 s each, so that all wait for the same lane; they take 43 ms.
+  // The server expects each to take 9 s, so all wait for the same lane; they take 43 ms.
   const auto long_still = [](std::uint32_t time) { return Still(1024, 1024, 4096, time); };
   service.machine->next_piece.Close();
   std::deque<Asked> stills;
@@ -202,7 +203,7 @@ TEST(StillsTest, ThoseThatWaitHoldNoFields) {
   ASSERT_TRUE(service.machine->next_piece.AwaitWaiting(1));
   for (std::uint32_t time = 1; time < 4; ++time) stills.emplace_back(service, long_still(time));
   ASSERT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 3; }));
-  // The render loop attends to them between two pieces.
+  // The render loop handles the new requests between two pieces.
   service.machine->next_piece.LetPass(3);
   ASSERT_TRUE(service.machine->next_piece.AwaitWaiting(1));
   EXPECT_EQ(service.store->Reads(), 1);

@@ -1,4 +1,4 @@
-// Descriptions of the server and its storms.
+// Tests of the descriptions of the server and its storms.
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
@@ -103,7 +103,8 @@ TEST(StormsTest, DescriptionHoldsGridTimesFieldsAndDefaults) {
   EXPECT_EQ(cloud.defaults().detail().wavelength_m(),
             3.0F * static_cast<float>(storm.grid().dx_m()));
   EXPECT_EQ(storm.fields(1).defaults().density_kg_per_m3(), 1000.0F);
-  // Cell (4, 4, 2) of 1 km x 1 km x 500 m cells counted from (-10 km, -5 km, 0).
+  // The bounds are those of cell (4, 4, 2), in cells of 1 km x 1 km x 500 m counted from (-10 km,
+  // -5 km, 0).
   EXPECT_EQ(storm.condensate_low().x_m(), -6000.0F);
   EXPECT_EQ(storm.condensate_low().z_m(), 1000.0F);
   EXPECT_EQ(storm.condensate_high().y_m(), 0.0F);
@@ -159,7 +160,7 @@ TEST(StormsTest, ACallWithoutMemoryIsAnsweredAndTheServerStops) {
   probe.mutable_point()->set_y(0.5F);
   v1::ProbeRayResponse probed;
   ExpectOutOfMemory(Call(service.stub(), &Stub::ProbeRay, probe, &probed));
-  // Would wait for calls that never finish.
+  // The shutdown would wait for calls that never finish.
   service.server().Shutdown();
 }
 

@@ -10,14 +10,14 @@
 
 namespace thunderhead::testing {
 
-// To be opened as the program's standard error.
+// A terminal that is opened as the program's standard error.
 class Terminal {
  public:
   Terminal() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK)) {
     grantpt(master_);
     unlockpt(master_);
     name_ = ptsname(master_);
-    // Held, so that what the program says stays after it.
+    // Holds the slave side open, so that the output is kept after the program has ended.
     slave_ = open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   }
   ~Terminal() {
@@ -28,7 +28,7 @@ class Terminal {
   Terminal& operator=(const Terminal&) = delete;
 
   const std::string& Name() const { return name_; }
-  // All that it has shown until now.
+  // Returns everything that the terminal has shown until now.
   const std::string& Shown() {
     char part[4096];
     for (ssize_t got = 0; (got = read(master_, part, sizeof(part))) > 0;) {

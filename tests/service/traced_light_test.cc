@@ -1,5 +1,5 @@
-// Sessions and pictures with traced light, on a fake machine that traces a hundred thousand paths
-// at a time.
+// Tests of sessions and pictures with the path-traced correction, on a fake machine that traces a
+// hundred thousand paths at a time.
 #include <algorithm>
 #include <vector>
 
@@ -27,7 +27,7 @@ v1::Scene WithTracedLight() {
   return scene;
 }
 
-// Time moves only where a test moves it.
+// A fixture whose time advances only where a test advances it.
 class TracedLightTest : public ::testing::Test {
  protected:
   ~TracedLightTest() override { service_.machine->tracing.Open(); }
@@ -37,14 +37,14 @@ class TracedLightTest : public ::testing::Test {
     return options;
   }
 
-  // Lets a scene that is shown settle, after which its light is traced.
+  // Waits until a shown scene has settled, after which its light is traced.
   bool Settle(Watcher& watcher, std::uint64_t revision) {
     if (!watcher.AwaitFrame(revision, true)) return false;
     time_.Advance(seconds(1));
     return true;
   }
 
-  // Returns when the render loop has looked at every session again. Draws a picture.
+  // Draws a picture, and returns when the render loop has checked every session again.
   void GoAround() {
     v1::RenderImageRequest request;
     *request.mutable_scene() = SmallScene();
@@ -71,7 +71,8 @@ TEST_F(TracedLightTest, FramesAreDrawnForMoreAndMorePathsUntilThereAreEnough) {
   service_.machine->tracing.Close();
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(Settle(watcher, 1));
-  // The first step tells where it begins. Later ones are shown as there are half as many more.
+  // The first step reports where the correction begins. Later steps are shown whenever the paths
+  // have grown by half.
   service_.machine->tracing.LetOnePass();
   for (const std::uint64_t shown : {2, 3, 5}) {
     ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
@@ -116,7 +117,7 @@ TEST_F(TracedLightTest, NothingIsTracedForScenesThatDoNotAskOrCannotShowIt) {
   Watcher second(service_.stub(), service_.Open(consistent));
   Watcher traced(service_.stub(), service_.Open(WithTracedLight()));
   for (Watcher* const watcher : {&first, &second, &traced}) ASSERT_TRUE(Settle(*watcher, 1));
-  // Sessions are traced in turn, so that the others would have been by now.
+  // Sessions are traced in turn, so the others would have been traced by now.
   ASSERT_TRUE(AwaitPaths(traced, 1, 4'100'000));
   EXPECT_EQ(service_.machine->Traced().size(), 41U);
   for (const scene::Scene& scene : service_.machine->Traced()) {
@@ -147,7 +148,7 @@ TEST_F(TracedLightTest, WhatCannotBeTracedIsSaidOnceAndThePictureStays) {
   time_.Advance(seconds(60));
   GoAround();
   EXPECT_EQ(service_.machine->trace_failures, 1);
-  // All that was sent before has arrived when the next scene does.
+  // All earlier messages have arrived when the next scene does.
   ASSERT_TRUE(watcher.AwaitFrame(service_.Update(id, SmallScene()), true));
   int told = 0;
   for (const v1::WatchFramesResponse& message : watcher.Messages()) {
@@ -162,7 +163,7 @@ TEST_F(TracedLightTest, OtherSessionsAreDrawnMeanwhile) {
   Watcher tracing(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(Settle(tracing, 1));
   ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
-  // During a step.
+  // The other session opens during a step.
   Watcher other(service_.stub(), service_.Open(SmallScene()));
   EXPECT_TRUE(other.AwaitFrame(1, true));
   EXPECT_EQ(service_.machine->traced_steps, 0);
@@ -173,7 +174,7 @@ TEST_F(TracedLightTest, OneSceneTooManyWaitsForItsTurn) {
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(Settle(watcher, 1));
   ASSERT_TRUE(WaitFor([&] { return service_.machine->trace_refusals == 1; }));
-  // It tries again as time passes.
+  // The machine tries again as time passes.
   ASSERT_TRUE(WaitFor([&] {
     time_.Advance(milliseconds(100));
     return service_.machine->trace_refusals > 1;
@@ -194,7 +195,7 @@ TEST_F(TracedLightTest, NoPictureIsDrawnForTooFewPaths) {
   service_.machine->tracing.Close();
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(Settle(watcher, 1));
-  // So far apart in time that each alone would be due for a picture.
+  // The steps are so far apart in time that each alone would be due for a picture.
   for (int step = 0; step < 3; ++step) {
     ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
     time_.Advance(milliseconds(600));

@@ -12,7 +12,7 @@
 namespace thunderhead::testing {
 namespace {
 
-// Frames' types, and flags.
+// Types and flags of HTTP/2 frames.
 constexpr char kData = 0;
 constexpr char kHeaders = 1;
 constexpr char kReset = 3;
@@ -41,7 +41,7 @@ std::string HeadersOf(const std::string& method, const std::string& encoding = "
                                     {"te", "trailers"},
                                     {"grpc-encoding", encoding},
                                     {"content-type", "application/grpc"}}) {
-    // A literal that is not indexed.
+    // The header is a literal that is not indexed.
     headers += '\0' + Text(name) + Text(value);
   }
   return headers;
@@ -134,7 +134,7 @@ bool UntakingClient::TakeFrame() {
   const std::string payload = received_.substr(kHeader, bytes);
   received_.erase(0, kHeader + bytes);
   if (type == kReset) reset_ = true;
-  // Headers that end the call are trailers alone: no message was on its way.
+  // Headers that end the call are a response of trailers only: no message was in flight.
   if (type == kHeaders && (flags & kEndStream) != 0) ++refused_;
   if (type == kSettings && flags != kAck) Answer(Frame(kSettings, kAck, 0, ""));
   if (type == kPing && flags != kAck) Answer(Frame(kPing, kAck, 0, payload));

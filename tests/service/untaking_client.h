@@ -1,4 +1,4 @@
-// A client that speaks HTTP/2 by itself, and grants no room for what the server sends.
+// A client with its own HTTP/2 implementation. It grants the server no flow-control window.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,16 @@ class UntakingClient {
   explicit UntakingClient(int port);
 
   enum class Stream { kEnds, kStaysOpen };
-  // `method` with its service; its own side of the call ends with the message, or stays open.
+  // Calls `method`, which includes the service's name. The client's side of the call ends with the
+  // message, or stays open.
   void Call(const std::string& method, const std::string& message, Stream stream = Stream::kEnds);
-  // A call whose message is `gzip`, compressed already.
+  // Makes a call whose message is `gzip`, which is already compressed.
   void CallCompressed(const std::string& method, const std::string& gzip);
-  // The headers of a call whose message does not come.
+  // Sends the headers of a call whose message never follows.
   void Announce(const std::string& method);
 
-  // Each takes what has come, and answers pings.
-  // Returns whether the server has reset a call.
+  // Returns whether the server has reset a call. This and the next two functions read what has
+  // arrived and answer pings.
   bool IsReset();
   // Returns how many calls the server has refused without a message.
   int Refused();
@@ -33,13 +34,13 @@ class UntakingClient {
  private:
   static std::string Frame(char type, char flags, std::size_t stream, const std::string& payload);
   void Send(const std::string& bytes);
-  // The same for an answer, which the server may no longer take.
+  // Sends an answer, which the server may no longer accept.
   void Answer(const std::string& bytes);
   bool TakeFrame();
   void TakeAll();
 
   base::FileDescriptor socket_;
-  std::size_t stream_ = 1;  // the next call's
+  std::size_t stream_ = 1;  // of the next call
   std::string received_;
   bool reset_ = false;
   bool closed_ = false;

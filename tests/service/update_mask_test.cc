@@ -1,4 +1,4 @@
-// Update masks with paths that name no field. A client may send any text as a path.
+// Tests of update masks with paths that name no field. A client may send any text as a path.
 #include <string>
 
 #include "gtest/gtest.h"
@@ -46,7 +46,8 @@ TEST_F(UpdateMaskTest, APathThatNamesAFieldIsAccepted) {
   }
 }
 
-// The presenter may give control to any viewer, whose messages are then as trusted as its own.
+// The presenter may give control to any viewer, whose messages are then as trusted as the
+// presenter's.
 TEST_F(UpdateMaskTest, AViewerInControlIsRefusedAndTheSessionGoesOn) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = SmallScene();

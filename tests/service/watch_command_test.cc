@@ -1,4 +1,4 @@
-// `thunderhead watch` as a suite runs it: files arrive as they do in life.
+// Tests of `thunderhead watch` as a workflow suite runs it: files arrive as they do in operation.
 #include <fcntl.h>
 #include <netcdf.h>
 
@@ -48,13 +48,13 @@ class WatchCommand : public ::testing::Test {
     return arguments;
   }
 
-  // The bytes of a whole file of the run.
+  // Returns the bytes of a complete file of the run.
   std::string Bytes(int time) const {
     WriteRunFile(model_, time);
     return Contents(RunFile(model_, time));
   }
 
-  // The time that is `seconds` from now.
+  // Returns the time that is `seconds` from now.
   static std::string In(int seconds) {
     return absl::FormatTime("%Y-%m-%dT%H:%M:%SZ", absl::Now() + absl::Seconds(seconds),
                             absl::UTCTimeZone());
@@ -65,7 +65,7 @@ class WatchCommand : public ::testing::Test {
     EXPECT_TRUE(holds());
   }
 
-  // Lines that programs have written so far.
+  // Returns the number of lines that programs have written so far.
   std::size_t Lines() const {
     std::size_t lines = 0;
     for (const std::string& file : {out_, err_}) {
@@ -75,7 +75,7 @@ class WatchCommand : public ::testing::Test {
     return lines;
   }
 
-  // How often programs have found the file not whole.
+  // Returns how often programs have found the file incomplete.
   std::size_t Refusals(int time) const {
     const std::string text = Contents(err_);
     const std::string refusal = "until it changes: " + RunFile(inbox_, time);
@@ -91,8 +91,8 @@ class WatchCommand : public ::testing::Test {
     std::ofstream(RunFile(inbox_, time), std::ios::binary) << bytes;
   }
 
-  // Writes the file in pieces, as a slow copy does: each piece comes after a program has found the
-  // file not whole.
+  // Writes the file in pieces, as a slow copy does. Each piece is written after a program has found
+  // the file incomplete.
   void PutSlowly(int time, const std::string& bytes) const {
     std::ofstream file(RunFile(inbox_, time), std::ios::binary);
     constexpr std::size_t kPieces = 4;
@@ -126,8 +126,8 @@ class WatchCommand : public ::testing::Test {
   const std::string err_ = folder_.File("stderr");
 };
 
-// Files are written slowly, in pieces, one cut short, one twice, while the program is killed again
-// and again.
+// Files are written slowly, in pieces, one truncated, one twice, while the program is killed
+// repeatedly.
 TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
   constexpr int kFiles = 5;
   const char* wanted = std::getenv("THUNDERHEAD_KILLS");
@@ -139,7 +139,7 @@ TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
     Put(0, bytes[0]);
     Put(2, bytes[2].substr(0, bytes[2].size() / 2));
     PutSlowly(3, bytes[3]);
-    // Until these three are drawn, in two views.
+    // Waits until these three files are drawn, in two views.
     EXPECT_TRUE(
         WaitFor([&] { return EntriesOf(folder_.File("out/manifest.jsonl")).size() >= 3 * 2; }));
     Put(1, bytes[1]);
@@ -152,7 +152,8 @@ TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
   std::mt19937 random(5);
   std::uniform_int_distribution<std::size_t> moment(1, 5);
   for (int i = 0; i < kills; ++i) {
-    // Killed once it has written so many lines: on products drawn and files that are not whole.
+    // The program is killed once it has written so many lines, about products drawn and incomplete
+    // files.
     const std::size_t lines = Lines() + moment(random);
     RunningProgram program(PROGRAM, arguments, out_, err_);
     WaitFor([&] { return Lines() >= lines || !program.Runs(); });
@@ -163,9 +164,9 @@ TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
   EXPECT_EQ(RunningProgram(PROGRAM, arguments, out_, err_).Wait().code, 0) << Contents(err_);
   std::vector<std::string> products = Products(kFiles);
   products.push_back("inbox.webm");
-  // ExpectFinished decodes pictures and checks hashes, the movie's too.
+  // ExpectFinished decodes pictures and checks hashes, including the movie's.
   ExpectFinished(folder_.File("out"), products);
-  // A new look draws nothing, and neither does a file that is copied in once more.
+  // Another scan of the folder draws nothing, even for a file that is copied in once more.
   Put(1, bytes[1]);
   const std::string before = folder_.File("before");
   EXPECT_EQ(RunningProgram(PROGRAM, arguments, before, err_).Wait().code, 0);
@@ -203,12 +204,13 @@ TEST_F(WatchCommand, AMarkedFileThatIsNotWholeWaits) {
   ExpectFinished(folder_.File("out"), second);
 }
 
-// HDF5 locks a file that it writes; its readers cannot tell that from damage, and `watch` must.
+// HDF5 locks a file while writing it. Its readers cannot distinguish that from damage, but `watch`
+// must.
 TEST_F(WatchCommand, AFileThatItsWriterHoldsOpenIsNotReady) {
   Put(0, Bytes(0));
   int writer = 0;
   ASSERT_EQ(nc_open(RunFile(inbox_, 0).c_str(), NC_WRITE, &writer), NC_NOERR);
-  // Closed on exec: otherwise the programs started here would inherit the file and its lock.
+  // Sets close-on-exec: otherwise the programs started here would inherit the file and its lock.
   for (const auto& file : fs::directory_iterator("/proc/self/fd")) {
     std::error_code gone;
     if (fs::read_symlink(file, gone) == RunFile(inbox_, 0)) {
@@ -218,7 +220,7 @@ TEST_F(WatchCommand, AFileThatItsWriterHoldsOpenIsNotReady) {
   LeaveAlone(RunFile(inbox_, 0));
   EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", RunFile(inbox_, 0)}, out_, err_).Wait().code, 75);
   EXPECT_THAT(Contents(err_), HasSubstr("another program is writing it"));
-  // A file that comes later is drawn, and with it this one would be.
+  // A later file is drawn, so this file would be drawn with it if it were ready.
   Put(1, Bytes(1));
   RunningProgram program(PROGRAM, Arguments({"--ready", "age:0", "--until", "2"}), out_, err_);
   const auto entries = [&] { return EntriesOf(folder_.File("out/manifest.jsonl")); };
@@ -238,7 +240,7 @@ TEST_F(WatchCommand, AFileWaitsForTheNextOrForItsSize) {
             0)
       << Contents(err_);
   ExpectFinished(folder_.File("out"), Products(1));
-  // HDF5 ignores bytes behind its end.
+  // HDF5 ignores bytes after its end of file.
   Put(1, Bytes(1) + std::string(5000, '\0'));
   const std::size_t between = Bytes(1).size() + 2500;
   const std::string ready = "age:0,minsize:" + std::to_string(between);
@@ -253,7 +255,8 @@ TEST_F(WatchCommand, AFileWaitsForTheNextOrForItsSize) {
   ExpectFinished(folder_.File("out"), second);
 }
 
-// The clock was set back by an hour since the file was written, or is another machine's.
+// The clock was set back by an hour since the file was written, or the file comes from another
+// machine's clock.
 TEST_F(WatchCommand, AFileFromTheFutureWaitsNoLongerThanItRests) {
   const std::string bytes = Bytes(0);
   const auto begun = std::chrono::steady_clock::now();
@@ -283,7 +286,7 @@ TEST_F(WatchCommand, ABadFileCountsAndTheEndTellsOfIt) {
   ExpectFinished(folder_.File("out"), Products(1));
 }
 
-// Only one of two files with the same time is drawn. The command says which, and says it once.
+// Only one of two files with the same time is drawn. The command reports once which one it draws.
 TEST_F(WatchCommand, OfTwoFilesWithOneTimeItSaysWhichItDraws) {
   Put(0, Bytes(0));
   const std::string copy = RunFile(inbox_, 0) + "_copy";
@@ -303,7 +306,7 @@ TEST_F(WatchCommand, OfTwoFilesWithOneTimeItSaysWhichItDraws) {
   ExpectFinished(folder_.File("out"), Products(1));
 }
 
-// A suite may move what is drawn to an archive, also while nobody watches.
+// A suite may move drawn files to an archive, even while `watch` is not running.
 TEST_F(WatchCommand, FilesThatAreMovedAwayOnceDrawnStillCount) {
   const std::vector<std::string> arguments =
       Arguments({"--ready", "age:0", "--until", "3", "files", In(3600), "--movie",
@@ -311,7 +314,7 @@ TEST_F(WatchCommand, FilesThatAreMovedAwayOnceDrawnStillCount) {
   const auto archive = [&](int time) {
     fs::rename(RunFile(inbox_, time), folder_.File("archived" + std::to_string(time)));
   };
-  // Two views and the movie of so many files.
+  // Returns whether so many files are drawn: two views and the movie of each.
   const auto drawn = [&](std::size_t files) {
     const auto entries = EntriesOf(folder_.File("out/manifest.jsonl"));
     return entries.size() == 2 * files + 1 &&
@@ -339,7 +342,7 @@ TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
   const std::string cut = Bytes(1);
   Put(1, cut.substr(0, cut.size() / 2));
   std::ofstream(folder_.File("inbox/README")) << "no storm";
-  // The program looks at the folder at least once, also if it starts after that time.
+  // The program scans the folder at least once, even if it starts after that time.
   EXPECT_EQ(RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", In(1)}), out_, err_)
                 .Wait()
                 .code,

@@ -1,4 +1,5 @@
-// Streams of frames to viewers: order, skipping, coarse and refined, problems, ends.
+// Tests of streams of frames to viewers: order, skipping, coarse and refined frames, problems,
+// ends.
 #include <algorithm>
 #include <cstdlib>
 
@@ -24,7 +25,7 @@ v1::Scene Facing(float sun_azimuth_deg) {
 v1::Scene AtTime(std::uint32_t time_index) {
   v1::Scene scene = SmallScene();
   scene.set_time_index(time_index);
-  // With the camera complete only the render loop reads.
+  // The camera is complete, so only the render loop reads the storm.
   scene.mutable_camera()->mutable_orbit()->mutable_target();
   scene.mutable_camera()->mutable_orbit()->set_elevation_deg(4.0F);
   scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
@@ -36,7 +37,7 @@ void ExpectPainted(const v1::Frame& frame, std::uint8_t red, std::uint8_t green)
   ASSERT_TRUE(image.ok()) << image.status();
   ASSERT_EQ(image->width_px, 64);
   ASSERT_EQ(image->height_px, 36);
-  // A pixel in the middle; JPEG with halved colour resolution is a few levels off.
+  // Compares a pixel in the middle. JPEG with halved colour resolution is a few levels off.
   const std::size_t middle = 3U * (18U * 64U + 32U);
   EXPECT_NEAR(image->rgb[middle], red, 12);
   EXPECT_NEAR(image->rgb[middle + 1], green, 12);
@@ -88,7 +89,7 @@ TEST(WatchFramesTest, WhoJoinsIsToldTheWholeSceneAndThenEveryChange) {
     EXPECT_EQ(told.scene().sky().turbidity(), 3.0F);
     EXPECT_EQ(told.scene().display().exposure_ev(), 1.5F);
     EXPECT_EQ(told.scene().sun().azimuth_deg(), 180.0F);
-    // Complete, as in CreateSession's response.
+    // The scene is complete, as in CreateSession's response.
     EXPECT_EQ(told.scene().storm_id(), "anvil");
     EXPECT_TRUE(told.scene().rendering().light_volume().has_theta_f_deg());
     EXPECT_TRUE(told.scene().camera().orbit().has_distance_m());
@@ -99,7 +100,7 @@ TEST(WatchFramesTest, NothingIsDrawnWithoutAViewer) {
   FakeService service;
   const std::string id = service.Open(SmallScene());
   service.Update(id, Facing(10.0F));
-  // Another session has its turn several times meanwhile.
+  // Another session is drawn several times meanwhile.
   const std::string watched = service.Open(Facing(20.0F));
   Watcher watcher(service.stub(), watched);
   for (int i = 0; i < 5; ++i) {
@@ -148,7 +149,7 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
   Watcher watcher(service.stub(), id);
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   const std::size_t drawn_before = service.machine->Log().size();
-  // The burst falls into the drawing of its first scene.
+  // The burst of updates comes while its first scene is drawn.
   service.machine->drawing.Close();
   std::uint64_t revision = service.Update(id, Facing(0.0F));
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
@@ -158,7 +159,8 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
   EXPECT_EQ(revision, 101U);
   EXPECT_EQ(watcher.NewestFrame().scene_revision(), revision);
   ExpectPainted(watcher.NewestFrame(), RedOf(0), GreenOf(99.0));
-  // The first scene, the last, and the last again where it was coarse.
+  // At most four are drawn: the first scene, the last, and the refined pictures of those that were
+  // coarse.
   EXPECT_LE(service.machine->Log().size() - drawn_before, 4U);
   std::uint64_t last = 0;
   for (const auto& message : watcher.Messages()) {
@@ -168,10 +170,10 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
 }
 
 TEST(WatchFramesTest, CoarseWhileChangingRefinedAtRest) {
-  ManualTime time;  // moved by drawing, too
+  ManualTime time;  // drawing advances it too
   FakeService service(Patient(time));
   service.machine->time = &time;
-  service.machine->ms_per_mega_sample = 4800.0;  // 177 ms a full frame: refined in one step
+  service.machine->ms_per_mega_sample = 4800.0;  // 177 ms for each full frame: refined in one step
   const std::string id = service.Open(SmallScene());
   Watcher watcher(service.stub(), id);
   ASSERT_TRUE(watcher.AwaitFrame(1, false));
@@ -277,7 +279,7 @@ TEST(WatchFramesTest, TimesScrubbedFasterThanTheDiskAreStillShown) {
   }));
   service.store->reading.Open();
   ASSERT_TRUE(watcher.AwaitFrame(newest, true));
-  EXPECT_EQ(service.store->Reads(), 3);  // time 2 was passed over
+  EXPECT_EQ(service.store->Reads(), 3);  // time 2 was skipped
 }
 
 TEST(WatchFramesTest, SessionsTakeTurns) {

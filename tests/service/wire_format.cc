@@ -42,7 +42,7 @@ void Add(const EnumDescriptor& type, FormatLines* lines) {
   }
   for (int i = 0; i < type.reserved_range_count(); ++i) {
     const EnumDescriptor::ReservedRange& range = *type.reserved_range(i);
-    for (int number = range.start; number <= range.end; ++number) {  // the end is reserved too
+    for (int number = range.start; number <= range.end; ++number) {  // the range includes its end
       lines->insert(ReservedNumber(type.full_name(), absl::StrCat(number)));
     }
   }
@@ -80,20 +80,21 @@ void Add(const MethodDescriptor& call, FormatLines* lines) {
                              call.server_streaming() ? " stream" : ""));
 }
 
-// "a.b.C.d" as "a.b.C" and "d".
+// Splits "a.b.C.d" into "a.b.C" and "d".
 std::pair<std::string, std::string> SplitName(const std::string& full_name) {
   const std::size_t dot = full_name.rfind('.');
   return {full_name.substr(0, dot), full_name.substr(dot + 1)};
 }
 
-// True if the field or enumerator of a listed line is gone with its number and its name reserved.
+// Returns true if the field or enumerator of a listed line is gone and its number and name are
+// reserved.
 bool IsReserved(const std::vector<std::string>& line, const FormatLines& current) {
   const auto& [type, name] = SplitName(line[1]);
   return current.contains(ReservedName(type, name)) &&
          current.contains(ReservedNumber(type, line[3]));
 }
 
-// The listed declaration of a field.
+// Returns the listed declaration of a field.
 const std::string* FieldLine(const std::string& full_name, const FormatLines& lines) {
   const std::string start = absl::StrCat("field ", full_name, " = ");
   const auto found = lines.lower_bound(start);

@@ -1,5 +1,5 @@
-// The wire format of proto files as lines of text that can be kept beside them and compared, and
-// the rule for which changes of it existing clients survive.
+// The wire format of proto files as lines of text, which can be stored next to them and compared.
+// The rule for compatible changes is here too.
 #pragma once
 
 #include <set>
@@ -11,13 +11,14 @@ namespace thunderhead::service {
 
 using FormatLines = std::set<std::string>;
 
-// A line for each field, oneof member, enumerator, reserved number and name, extension and call of
-// `files`.
+// Returns a line for each field, oneof member, enumerator, reserved number and name, extension and
+// call of `files`.
 FormatLines FormatLinesOf(const std::set<const google::protobuf::FileDescriptor*>& files);
 
-// The lines of `listed` and `current` by which the format stopped being the one that is listed,
-// empty if clients built with the listed format still work. A field or an enumerator may go if its
-// number and its name are reserved; a listed field may not move into a oneof.
+// Returns the lines of `listed` and `current` in which the format is incompatible with the listed
+// one. The result is empty if clients built with the listed format still work. A field or an
+// enumerator may be removed if its number and name are reserved. A listed field may not move into a
+// oneof.
 std::string Breaks(const FormatLines& listed, const FormatLines& current);
 
 }  // namespace thunderhead::service

@@ -1,4 +1,4 @@
-// What the program logs while this exists.
+// Captures what the program logs while this object exists.
 #pragma once
 
 #include <spdlog/sinks/ostream_sink.h>

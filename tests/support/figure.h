@@ -1,12 +1,12 @@
-// Figures that depend on the speed of the machine. A test never fails by one: it prints it, and
-// `./dev bench waits` collects what suites named ...Benchmark print.
+// Figures that depend on the machine's speed. No test fails because of a figure: it only prints the
+// figure. `./dev bench waits` collects the figures that suites named ...Benchmark print.
 #pragma once
 
 #include <cstdio>
 
 namespace thunderhead::testing {
 
-// Prints one measured value, e.g. Figure("acknowledged frame, median", 12.5, "ms").
+// Prints one measured value, for example Figure("acknowledged frame, median", 12.5, "ms").
 inline void Figure(const char* name, double value, const char* unit) {
   std::printf("figure: %s: %.4g %s\n", name, value, unit);
   std::fflush(stdout);

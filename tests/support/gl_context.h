@@ -9,8 +9,8 @@
 
 namespace thunderhead::test_support {
 
-// Software GL, which every machine draws alike; or the device that THUNDERHEAD_TEST_DEVICE names,
-// as `--device` does.
+// Returns the device of the test. The default is software GL, which gives the same pictures on
+// every machine. THUNDERHEAD_TEST_DEVICE names another device, like `--device`.
 inline const char* Device() {
   const char* device = std::getenv("THUNDERHEAD_TEST_DEVICE");
   return device == nullptr ? "software" : device;

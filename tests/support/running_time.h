@@ -1,4 +1,4 @@
-// A time source that runs like the real time, and that a test moves ahead or stops.
+// A time source that runs like the real time. A test can move it ahead or stop it.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 
 namespace thunderhead::testing {
 
-// For whole servers, which do some things only as time passes, e.g. tell people at most some times
-// a second. Timeouts that a test is about must be so long that they end nothing before the test
-// moves the time. Threads that wait by it notice a new time within a few milliseconds. Safe from
-// any thread.
+// A clock for tests of whole servers. A server needs a running clock because it limits some actions
+// to a number per second. The timeouts under test must be so long that they do not expire before
+// the test moves the time. Threads that wait by it notice a new time within a few milliseconds. Any
+// thread may use it.
 class RunningTime : public base::TimeSource {
  public:
   Clock::time_point Now() const override {
@@ -24,7 +24,8 @@ class RunningTime : public base::TimeSource {
   Clock::time_point LookAgainAt(Clock::time_point deadline) const override {
     const std::lock_guard lock(mutex_);
     const Clock::time_point real = Clock::now();
-    // While it is stopped, a deadline that has passed on the real clock may still be ahead.
+    // While the clock is stopped, a deadline that has passed on the real clock may still be in the
+    // future.
     const Clock::time_point due = deadline - ahead_;
     const bool waits = stopped_at_.has_value() && *stopped_at_ < due;
     const Clock::time_point soon = real + std::chrono::milliseconds(2);
@@ -37,7 +38,7 @@ class RunningTime : public base::TimeSource {
     ahead_ += by;
   }
 
-  // From now on only Advance moves it.
+  // Stops the clock. From then on only Advance() moves it.
   void Stop() {
     const std::lock_guard lock(mutex_);
     stopped_at_ = stopped_at_.value_or(Clock::now());

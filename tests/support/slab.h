@@ -1,5 +1,5 @@
-// A homogeneous box of one field for tests with analytic answers. The box touches every face of its
-// domain, so that its extinction is the same everywhere inside.
+// A homogeneous box of one field, for tests with analytic results. The box touches every face of
+// its domain, so that its extinction is the same everywhere inside.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace thunderhead::support {
 
-// A box `width_m` wide and `height_m` high, standing on z = 0, whose cloud water has the given
-// extinction with the default radius and density.
+// Makes a box that is `width_m` wide and `height_m` high and stands on z = 0. Its cloud water has
+// the given extinction with the default radius and density.
 inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(
     double width_m, double height_m, double extinction_per_m,
     const glm::ivec3& cells = glm::ivec3(32, 32, 16)) {
@@ -30,9 +30,9 @@ inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(
   return fields;
 }
 
-// The same, `cells_thick` cells of the middle of a domain `height_m` high filled and none above and
-// below, so that extinction rises linearly over a cell as in a storm. `optical_depth` is that of
-// the whole layer, straight up.
+// Makes a layer in the middle of a domain that is `height_m` high. The layer is `cells_thick` cells
+// thick, with no cloud above and below. Extinction therefore rises linearly over one cell, as in a
+// storm. `optical_depth` is the vertical optical depth of the whole layer.
 inline std::shared_ptr<const volume::HydrometeorFields> MakeLayerInAir(double width_m,
                                                                        double height_m,
                                                                        int cells_thick,

@@ -1,5 +1,5 @@
-// Linked into every test program that draws: its programs are strict (gl/strict_programs.h),
-// however it is started.
+// Makes the programs of every test that draws strict (gl/strict_programs.h). It is linked into
+// these tests, so it applies however they are started.
 #include <cstdlib>
 
 namespace {

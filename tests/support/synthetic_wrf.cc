@@ -71,7 +71,7 @@ class Writer {
     Succeed(nc_put_vara_double(id_, variable, &start, &count, file_.minutes.data()));
   }
 
-  // `level_dimension` empty: a field of columns.
+  // Writes a field. An empty `level_dimension` makes a two-dimensional field.
   void Field(const std::string& name, const std::string& level_dimension, const std::string& units,
              const Value& value) {
     if (file_.omitted.contains(name)) return;
@@ -91,7 +91,7 @@ class Writer {
                                         static_cast<std::size_t>(file_.nx)};
       if (level_dimension.empty()) count.erase(count.begin() + 1);
       start[0] = record;
-      // As float, so that netCDF does not refuse infinities.
+      // The values are converted to float here, because netCDF refuses to convert infinities.
       const std::vector<float> narrow(values.begin(), values.end());
       Succeed(nc_put_vara_float(id_, variable, start.data(), count.data(), narrow.data()));
     }
@@ -126,7 +126,7 @@ class Writer {
     if (file_.land_use_classes != 0) Number("NUM_LAND_CAT", file_.land_use_classes);
   }
 
-  // Classic files are declared in one mode and written in another; netCDF-4 changes by itself.
+  // Classic files have a define mode and a data mode. netCDF-4 switches between them automatically.
   template <typename Declare>
   void Define(Declare declare) {
     if (defined_) Succeed(nc_redef(id_));
@@ -201,7 +201,7 @@ void WriteWrf(const SyntheticWrf& file, const std::string& path) {
   Writer writer(file, path);
   writer.Times();
   writer.Minutes();
-  // State is split into a base that is the same for all times and the perturbation, as WRF does.
+  // As in WRF, the state is the sum of a base that is constant in time and a perturbation.
   const auto base_geopotential = [&](const WrfCell& cell) {
     WrfCell first = cell;
     first.record = 0;

@@ -1,5 +1,6 @@
-// Writes small files in WRF's output layout with known contents, sound or broken in one chosen way.
-// Calls netCDF-C without a lock: write files before anything reads.
+// Writes small files with known contents in WRF's output layout. A file is valid, or broken in one
+// chosen way. It calls netCDF-C without a lock, so tests must write their files before anything
+// reads.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@
 
 namespace thunderhead::testing {
 
-// How a projection of WRF ends in PROJ's words: places are on a sphere.
+// The end of a PROJ string for WRF's projections, whose places are on a sphere.
 inline constexpr char kSphereOfWrf[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
 
 // A cell of the file: indices from west, south and bottom, and the record.
@@ -21,7 +22,7 @@ struct WrfCell {
   int record = 0;
 };
 
-// A value put in place of the computed one, as stored in the file.
+// A value that replaces the computed value, as stored in the file.
 struct StoredValue {
   std::string variable;
   WrfCell cell;
@@ -30,8 +31,8 @@ struct StoredValue {
 
 enum class WrfFormat { kNetcdf4, kClassic, kOffset64, kCdf5 };
 
-// Layers follow the terrain at the bottom and are level at the top, all of a column equally thick,
-// unless `interface_height_m` says otherwise.
+// The contents of a file. The layers follow the terrain at the bottom and are level at the top. All
+// layers of a column are equally thick, unless `interface_height_m` says otherwise.
 struct SyntheticWrf {
   int nx = 4;
   int ny = 3;
@@ -40,46 +41,47 @@ struct SyntheticWrf {
   double dy_m = 2000.0;
   double top_m = 4000.0;
   std::vector<std::string> times = {"2013-05-20_20:00:00"};
-  std::function<double(int x, int y)> terrain_m;             // none: 0
+  std::function<double(int x, int y)> terrain_m;             // empty: 0 everywhere
   std::function<double(const WrfCell&)> interface_height_m;  // `level` counts interfaces
 
   double pressure_Pa = 80'000.0;
   double potential_temperature_K = 310.0;
   double vapour_kg_per_kg = 0.01;
 
-  // Mixing ratios by variable name; a variable that is not here is not in the file.
+  // Mixing ratios by variable name. Other mixing ratios are not in the file.
   std::map<std::string, std::function<double(const WrfCell&)>> mixing_ratios;
 
-  // Fields of columns besides HGT, XLAT and XLONG by variable name, such as LU_INDEX.
+  // Two-dimensional fields in addition to HGT, XLAT and XLONG, by variable name, such as LU_INDEX.
   std::map<std::string, std::function<double(const WrfCell&)>> columns;
   std::string land_use_table;  // MMINLU; empty: not in the file
   int land_use_classes = 0;    // NUM_LAND_CAT; 0: not in the file
 
-  double latitude_deg = 35.0;  // of the south-west cell; 0.1 degrees more a cell
+  double latitude_deg =
+      35.0;  // latitude of the south-west cell; it increases by 0.1 degrees per cell
   double longitude_deg = -97.0;
   int map_projection = 1;
-  std::map<std::string, double> numbers;  // more global attributes, such as TRUELAT1
+  std::map<std::string, double> numbers;  // additional global attributes, such as TRUELAT1
   int domain = 1;
   int microphysics = 0;  // MP_PHYSICS; 0: not in the file
-  int hail_option = 0;   // HAIL_OPT; the same
+  int hail_option = 0;   // HAIL_OPT; 0: not in the file
   std::string simulation_start = "2013-05-20_12:00:00";
 
   WrfFormat format = WrfFormat::kNetcdf4;
   std::set<std::string> omitted;    // variables and global attributes left out
   std::set<std::string> unwritten;  // variables declared but never written
   std::set<std::string> packed;     // variables stored as shorts with scale_factor and add_offset
-  std::set<std::string> one_level_short;      // variables whose levels are one fewer
-  std::map<std::string, std::string> units;   // units attribute in place of the right one
+  std::set<std::string> one_level_short;      // variables with one level fewer
+  std::map<std::string, std::string> units;   // units attribute that replaces the right one
   std::map<std::string, double> fill_values;  // _FillValue attribute
   std::vector<StoredValue> stored_values;
   std::vector<double> minutes;  // XTIME; empty: not in the file
-  int times_left_blank = 0;     // records at the end whose Times are not written yet
+  int times_left_blank = 0;     // number of records at the end whose Times are not written yet
 };
 
-// Height of an interface of `file`.
+// Returns the height of an interface of `file`.
 double InterfaceHeight_m(const SyntheticWrf& file, const WrfCell& cell);
 
-// Writes `file` at `path`; aborts the test program if that fails.
+// Writes `file` at `path`. Aborts the test program if that fails.
 void WriteWrf(const SyntheticWrf& file, const std::string& path);
 
 }  // namespace thunderhead::testing

@@ -1,4 +1,4 @@
-// Descriptions of the techniques, for tests of messages, which have no renderers.
+// Descriptions of the techniques, for tests of messages, which do not link renderers.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace thunderhead::test_support {
 
-// Those of scene::Technique that have a message of their own, in its order.
+// Returns the techniques of scene::Technique that have their own message, in its order.
 inline std::vector<scene::TechniqueInfo> TechniquesOfTheSchema() {
   std::vector<scene::TechniqueInfo> infos;
   const auto add = [&]<typename Kind>(std::type_identity<Kind>) {

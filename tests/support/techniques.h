@@ -1,5 +1,5 @@
-// Scenes by the axes that tests sweep: a technique, a mode of the papers, a transport. Setting one
-// keeps the others, as far as the technique has them.
+// Scenes along the axes that tests vary: a technique, a mode of the papers, a transport. Setting
+// one axis keeps the others, if the technique has them.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,15 @@
 
 namespace thunderhead::test_support {
 
-// A scene by the light volume with consistent transport, without detail and traced light.
+// Returns a scene that uses the light volume with consistent transport, without detail and
+// path-traced correction.
 inline scene::Scene PlainScene() {
   scene::Scene scene;
   scene.rendering.technique = accuracy::Plain<scene::LightVolume>().settings();
   return scene;
 }
 
-// For parameters of tests.
+// Plain techniques and modes as test parameters.
 inline constexpr auto kHalfAngle = accuracy::Plain<scene::HalfAngle>();
 inline constexpr auto kLightVolume = accuracy::Plain<scene::LightVolume>();
 inline constexpr auto kMetaball = accuracy::Plain<scene::Metaballs>();
@@ -28,12 +29,12 @@ inline constexpr accuracy::Mode kUniformPhase = accuracy::kUniformPhaseTransluce
 inline constexpr accuracy::Mode kPerFieldPhase = accuracy::kPerFieldPhaseTranslucentMode;
 inline constexpr accuracy::Mode kWithDetail = accuracy::kPerFieldPhaseDetailTranslucentMode;
 
-// None for the reference and techniques that the program was extended by.
+// Returns the plain technique; none for the reference and for techniques of extensions.
 inline std::optional<accuracy::PlainTechnique> PlainTechniqueOf(const scene::Technique& technique) {
   return accuracy::PlainTechniqueNamed(scene::NameOf(technique));
 }
 
-// The transport of the technique's translucent variant.
+// Returns the transport of the technique's translucent variant.
 inline scene::Transport TransportOf(const scene::Technique& technique) {
   const std::string_view name = accuracy::TransportNameOf(technique);
   for (const auto& transport : accuracy::kTransportNames) {
@@ -46,12 +47,13 @@ inline void SetMode(scene::Technique* technique, const accuracy::Mode& mode) {
   *technique = accuracy::InMode(*technique, mode, TransportOf(*technique));
 }
 
-// Of the translucent variant; a mode of low albedo stays one.
+// Sets the transport of the translucent variant. A low-albedo mode stays a low-albedo mode.
 inline void SetTransport(scene::Technique* technique, scene::Transport transport) {
   *technique = accuracy::InMode(*technique, accuracy::ModeOf(*technique), transport);
 }
 
-// Its own settings, such as the number of metaballs, are the plain ones.
+// Sets the technique. Settings that only this technique has, such as the number of metaballs, get
+// their plain values.
 inline void SetTechnique(scene::Technique* technique, const accuracy::PlainTechnique& plain) {
   if (PlainTechniqueOf(*technique) == plain) return;
   const scene::Technique before = *technique;

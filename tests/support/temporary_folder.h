@@ -1,4 +1,4 @@
-// A folder that is gone when its owner is.
+// A folder that is deleted together with its owner.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& Path() const { return path_; }
 
-  // The path of `name` in the folder.
+  // Returns the path of `name` in the folder.
   std::string File(const std::string& name) const { return (path_ / name).string(); }
 
  private:

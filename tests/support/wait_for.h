@@ -1,4 +1,4 @@
-// Waiting for conditions in tests, however slow the machine is.
+// Waits for conditions in tests, however slow the machine is.
 #pragma once
 
 #include <chrono>
@@ -6,8 +6,8 @@
 
 namespace thunderhead::testing {
 
-// The longest wait before a test counts as hung. It is no requirement on speed: ten other processes
-// may compete with the test for one processor.
+// The longest wait before a test counts as hung. It is not a performance requirement, because ten
+// other processes may compete with the test for one processor.
 inline constexpr std::chrono::minutes kHangLimit{10};
 
 // Waits until `condition()` is true. Returns false only after kHangLimit.

@@ -1,4 +1,5 @@
-// A wide domain made of one storm, as of a regional model over a thousand kilometres.
+// A wide domain made of copies of one storm, like that of a regional model over a thousand
+// kilometres.
 #pragma once
 
 #include <memory>
@@ -7,8 +8,8 @@
 
 namespace thunderhead::support {
 
-// `storm` side by side, `across` by `along` times, of which every `stride`-th column is kept; the
-// cells grow by as much. Terrain is level, and statistics stay those of the storm.
+// Repeats `storm` `across` by `along` times. Keeps only every `stride`-th column, and enlarges the
+// cells by the same factor. The terrain is level, and the statistics stay those of the storm.
 inline std::shared_ptr<const volume::HydrometeorFields> WideDomain(
     const volume::HydrometeorFields& storm, int across, int along, int stride) {
   auto wide = std::make_shared<volume::HydrometeorFields>();
@@ -28,7 +29,7 @@ inline std::shared_ptr<const volume::HydrometeorFields> WideDomain(
     const std::size_t count = wide->grid.CellCount();
     tiled.concentration_kg_per_m3.assign(count, 0.0F);
     const bool sized = !field.sizes.Empty();
-    constexpr std::uint16_t kAnyRadius = 0x3c00;  // where there are no particles
+    constexpr std::uint16_t kAnyRadius = 0x3c00;  // used where there are no particles
     tiled.sizes.first_cell = 0;
     tiled.sizes.inverse_radius.assign(sized ? count : 0, kAnyRadius);
     std::size_t to = 0;

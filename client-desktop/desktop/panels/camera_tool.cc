@@ -1,4 +1,4 @@
-// Which camera, where it stands and where it looks, by numbers.
+// The kind of camera, its position and its direction, as numbers.
 #include <imgui.h>
 
 #include "desktop/controls.h"

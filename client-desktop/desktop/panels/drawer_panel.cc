@@ -1,4 +1,4 @@
-// Every parameter of the scene, from the messages' descriptors, group by group, with a search box.
+// All parameters of the scene, from the messages' descriptors, in groups, with a search box.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using client::Parameter;
 
-// Other panels set these.
+// Returns false for parameters that other panels set.
 bool IsListed(const Parameter& parameter) {
   return parameter.path != "storm_id" && parameter.path != "time_index" &&
          !absl::EndsWith(parameter.path, "].hydrometeor");
@@ -37,7 +37,7 @@ std::string TitleOf(std::string group) {
   return group;
 }
 
-// Elements of lists say whose they are.
+// Returns the label. The label of a list element names the element.
 std::string LabelOf(const Ui& ui, const Parameter& parameter) {
   const int index = parameter.steps.front().index;
   if (index < 0) return parameter.name;
@@ -81,7 +81,7 @@ void DrawerPanel(Ui& ui) {
   ImGui::InputTextWithHint("##query", "Search by name or meaning", &ui.choices.query);
   const std::string wanted = absl::AsciiStrToLower(absl::StripAsciiWhitespace(ui.choices.query));
   ImGui::BeginChild("settings");
-  // An edit changes the list.
+  // This copies the list because an edit changes it.
   const std::vector<Parameter> parameters = ui.parameters;
   std::string group;
   bool open = false;
@@ -91,13 +91,13 @@ void DrawerPanel(Ui& ui) {
     any = true;
     if (parameter.group != group) {
       group = parameter.group;
-      // A group that a search has opened is closed again when the search is empty.
+      // A group that a search has opened is closed again when the search text is empty.
       const std::string title = TitleOf(group);
       if (!wanted.empty()) ImGui::SetNextItemOpen(true);
       open = ImGui::CollapsingHeader((wanted.empty() ? title : title + "##found").c_str());
     }
     if (!open) continue;
-    // Who does not steer reads them.
+    // Viewers who do not steer can only read the settings.
     ImGui::BeginDisabled(!ui.state.Steers());
     DrawSetting(ui, parameter);
     ImGui::EndDisabled();

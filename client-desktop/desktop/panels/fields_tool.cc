@@ -1,5 +1,5 @@
-// A row for each field of the storm: on or off, its false colour where the picture shows it, its
-// amount, and where its particles' sizes come from.
+// One row for each field of the storm. It switches the field on or off, and sets its amount and the
+// source of its particle sizes. If the picture shows false colours, it also sets the colour.
 #include <imgui.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ v1::FieldParameters& MutableIn(v1::Scene& scene, v1::Hydrometeor hydrometeor) {
   return added;
 }
 
-// A button in the field's false colour, which opens a picker.
+// Draws a button in the field's false colour. The button opens a colour picker.
 void DrawColor(Ui& ui, const v1::FieldDescription& field, const v1::FieldParameters& now,
                const std::string& subject) {
   ScreenColor color =
@@ -75,7 +75,7 @@ void DrawField(Ui& ui, const v1::FieldDescription& field) {
   }
 }
 
-// For all fields at once.
+// Draws the choice of particle sizes for all fields at once.
 void DrawParticleSizes(Ui& ui) {
   const auto& fields = ui.storms.storm.fields();
   if (std::all_of(fields.begin(), fields.end(), IsExtinction)) return;

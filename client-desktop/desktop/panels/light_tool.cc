@@ -1,4 +1,4 @@
-// The sun, by the clock or by hand, and the air that its light comes through.
+// The sun, set by the clock or by hand, and the air through which its light passes.
 #include <imgui.h>
 
 #include "desktop/controls.h"
@@ -17,7 +17,7 @@ void LightTool(Ui& ui) {
       v1::Sun& sun = *scene.mutable_sun();
       sun.set_source(source == 0 ? v1::Sun::SOURCE_BY_TIME : v1::Sun::SOURCE_BY_HAND);
       if (source == 0) return;
-      // By hand it begins where it stands.
+      // A sun set by hand begins at its current position.
       sun.set_azimuth_deg(shown.azimuth_deg());
       sun.set_elevation_deg(shown.elevation_deg());
     });

@@ -1,5 +1,5 @@
-// Quality in words, what the picture misses, colours, exposure, sky and ground, the accuracy asked
-// for and the papers' modes.
+// Quality, what the picture does not simulate, colours, exposure, sky and ground, the requested
+// accuracy, and the papers' modes.
 #include <imgui.h>
 
 #include <algorithm>
@@ -56,7 +56,7 @@ void DrawQuality(Ui& ui, v1::Preset preset) {
   if (!missing.empty()) Quiet(missing + ".");
 }
 
-// The accuracy or the speed that the server is to reach.
+// Draws the choice of the accuracy or speed that the server must reach.
 void DrawGoal(Ui& ui) {
   int goal = ui.state.scene.accuracy().limit_case();
   if (Choice("Accuracy",
@@ -68,7 +68,7 @@ void DrawGoal(Ui& ui) {
       ChooseGoal(scene, static_cast<v1::Accuracy::LimitCase>(goal));
     });
   }
-  // One of them, or none.
+  // Only the parameter of the chosen goal exists, so at most one of these controls is drawn.
   Setting(ui, "accuracy.max_error", "Error");
   Setting(ui, "accuracy.max_milliseconds", "Time");
   if (ui.frame.accuracy().has_unmet()) Quiet(ui.frame.accuracy().unmet().message() + ".");
@@ -86,7 +86,7 @@ void DrawPapersModes(Ui& ui, v1::Preset preset) {
   }
 }
 
-// Each technique has these settings under its own name, or not at all.
+// Draws settings that are stored under each technique's name. A technique may lack them.
 void DrawTechniqueSettings(Ui& ui) {
   const v1::Rendering& rendering = ui.state.scene.rendering();
   const auto* const field =

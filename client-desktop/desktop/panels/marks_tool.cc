@@ -1,4 +1,4 @@
-// The pen and the pointer, which all in the session see.
+// The pen and the pointer. All people in the session see them.
 #include <imgui.h>
 
 #include "absl/strings/str_cat.h"

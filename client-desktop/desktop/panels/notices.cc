@@ -1,5 +1,5 @@
-// Below the bar at the right, beside a panel that is open there: how far the picture is off, and
-// what went wrong or happened.
+// Notices at the right, below the bar and next to an open panel. They show the picture's error, and
+// failures or events.
 #include <imgui.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How long a notice stays.
+// Time for which a notice is shown.
 constexpr std::chrono::seconds kStays{8};
 
 constexpr ImGuiWindowFlags kFlags =
@@ -40,7 +40,7 @@ std::string AccuracyText(const v1::Frame& frame) {
                       ErrorSource(accuracy));
 }
 
-// Its right upper corner is at `at`; the next one's is below it.
+// Draws a notice whose upper right corner is at `at`. Moves `at` below it for the next notice.
 void Notice(const Layout& layout, const char* id, const std::string& text, const ImVec4& color,
             ImVec2& at) {
   if (text.empty()) return;

@@ -1,4 +1,4 @@
-// Who is there, who steers, what viewers may, and the key for others.
+// The people in the session, who steers, what viewers may do, and the key for others to join.
 #include <imgui.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Figures of the pictures: rate, latency, bytes, error, and what each stage cost.
+// Figures of the pictures: rate, latency, bytes, error, and the time of each stage.
 #include <imgui.h>
 
 #include "absl/strings/ascii.h"

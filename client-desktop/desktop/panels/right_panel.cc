@@ -1,4 +1,4 @@
-// The panel at the right that is open: storms, people, figures, every setting or the keys.
+// The open panel at the right: storms, people, figures, every setting or the keys.
 #include <imgui.h>
 
 #include <array>
@@ -16,7 +16,7 @@ struct PanelText {
   const char* title;
   const char* key;
   void (*draw)(Ui&);
-  bool whole;  // takes the whole height
+  bool whole;  // the panel takes the whole height
 };
 
 constexpr std::array<PanelText, 5> kPanels{{

@@ -1,4 +1,5 @@
-// Who steers and the one button about it, above the time line; shown while that is of interest.
+// The bar above the time line. It shows who steers, with one button to ask for control or give it.
+// It is hidden while this is of no interest.
 #include <imgui.h>
 
 #include <algorithm>
@@ -47,7 +48,8 @@ void ControlButton(Ui& ui) {
   }
 }
 
-// Who asks to steer, for the one who answers: as many as fit into a line of `room`, then below.
+// Draws the people who ask to steer, for the person who answers. As many as fit are in a line of
+// width `room`; the others are below.
 void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;
   constexpr int kMaxShown = 3;
@@ -75,7 +77,7 @@ bool HasCompany(const client::SessionState& state) {
   return !state.Alone() || !state.Steers();
 }
 
-// Who steers, and what can be done about it, `room` wide.
+// Draws who steers and the possible actions, in a width of `room`.
 void People(Ui& ui, float room) {
   ImGui::TextUnformatted(Shortened(WhoSteers(ui.state), 0.6F * room).c_str());
   ImGui::SameLine();
@@ -91,8 +93,8 @@ void People(Ui& ui, float room) {
   if (AccentButton(kBack)) ui.session.Follow();
 }
 
-// Where the bar goes from left to right: between the rail, or a tool that is open, and a panel
-// that is open, where that leaves it room.
+// The bar's horizontal position. It lies between the tool rail or open tool and the open panel. If
+// that space is too narrow, it spans the window.
 struct Place {
   float middle;
   float width;

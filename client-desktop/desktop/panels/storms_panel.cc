@@ -1,4 +1,4 @@
-// Every storm that the server found.
+// The list of every storm that the server found.
 #include <imgui.h>
 
 #include "absl/strings/str_cat.h"

@@ -1,4 +1,5 @@
-// The times along the bottom: a tick each, those in the server's memory in blue, play and step.
+// The time line at the bottom. It has a tick for each time, in blue if the time is in the server's
+// memory, and buttons to play and step.
 #include <imgui.h>
 
 #include <algorithm>
@@ -30,7 +31,7 @@ struct Track {
   }
 };
 
-// "20:00" or "20:00:30".
+// Returns a text like "20:00" or "20:00:30".
 std::string ClockOf(const v1::StormTime& time) {
   const std::size_t at = time.valid_time().find('T');
   if (at == std::string::npos) return FormatElapsed(time.elapsed_s());

@@ -1,4 +1,4 @@
-// The times as a list, and how fast they play.
+// The list of times, and the playback speed.
 #include <imgui.h>
 
 #include <algorithm>

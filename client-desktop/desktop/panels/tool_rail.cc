@@ -1,4 +1,5 @@
-// Six tools, one open at a time, each with a key; and the panel of the one that is open.
+// The rail of six tools, of which one can be open at a time. Each has a key. This file also draws
+// the panel of the open tool.
 #include <imgui.h>
 
 #include <algorithm>
@@ -36,7 +37,8 @@ void DrawToolRail(Ui& ui, const Layout& layout) {
   const float padding = 7.0F * ui.scale;
   const float whole =
       kTools.size() * button_height + (kTools.size() - 1) * style.ItemSpacing.y + 2.0F * padding;
-  // It stands beside the time line; where even that is too little the wheel scrolls it.
+  // The rail stands next to the time line. If even that height is too small, the wheel scrolls the
+  // rail.
   const float height = std::min(whole, layout.window.y - layout.margin - layout.top());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {padding, padding});
   if (BeginPanel("tool rail", {layout.margin, layout.top()}, {layout.rail_width, height},
@@ -63,7 +65,7 @@ void DrawTool(Ui& ui, const Layout& layout) {
     const ImVec2 place(2.0F * layout.margin + layout.rail_width, layout.top());
     ImGui::SetNextWindowSizeConstraints({layout.tool_width, 0.0F},
                                         {layout.tool_width, layout.bottom() - layout.top()});
-    // As high as its controls.
+    // The height of 0 makes the panel as high as its controls.
     if (BeginPanel(each.title, place, {layout.tool_width, 0.0F})) {
       if (ui.choices.focuses_panel) GiveKeysToPanel();
       Title(each.title, each.key);

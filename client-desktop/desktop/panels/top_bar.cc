@@ -1,4 +1,4 @@
-// Storm and time at the left, the connection at the right.
+// The storm and the time at the left, the connection at the right.
 #include <imgui.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ std::string LinkText(const Ui& ui) {
   return "";
 }
 
-// `right` is where the connection begins. The time comes first, then the title, then how long after
-// the run's start that is, then the run.
+// Draws the storm and the time. `right` is where the connection begins. If the room is limited, the
+// time has priority, then the title, then the lead time, then the run.
 void DrawStorm(Ui& ui, float right) {
   const auto& storm = ui.storms.storm;
   const bool known = storm.id() == ui.state.scene.storm_id() && !storm.id().empty();
@@ -114,7 +114,8 @@ void DrawTopBar(Ui& ui, const Layout& layout) {
     const float buttons =
         ButtonWidth(people) + ButtonWidth("Settings") + ButtonWidth("?") + 3.0F * gap;
     const float inside = size.x - ImGui::GetStyle().WindowPadding.x - buttons;
-    // Storm and time come first; the lamp alone says how the connection is where there is no room.
+    // The storm and the time have priority. If the room is too small, only the lamp shows the state
+    // of the connection.
     std::string link = LinkText(ui);
     constexpr float kStormRoom = 230.0F;
     if (inside - ButtonWidth("    " + link) < kStormRoom * ui.scale) link.clear();

@@ -1,11 +1,12 @@
-// The token that a server with --auth asks for: kept for this tab alone, until it is closed.
+// The token that a server with --auth requires. The browser keeps it for this tab only, until the
+// tab is closed.
 import type { TextStore } from "./own_keys";
 
 const TOKEN_ITEM = "thunderhead.token";
 
 export class AccessToken {
   readonly #store: TextStore | undefined;
-  // Used where the browser denies storage.
+  // This is used if the browser denies access to its storage.
   #token: string | undefined;
 
   constructor(store: TextStore | undefined) {
@@ -22,12 +23,12 @@ export class AccessToken {
     try {
       this.#store?.setItem(TOKEN_ITEM, this.#token);
     } catch {
-      // No room: it lasts as long as the page.
+      // The storage is full, so the token lasts as long as the page.
     }
   }
 }
 
-// Of a token in printable ASCII, as a header can carry it.
+// Returns true for a token in printable ASCII, which an HTTP header can carry.
 export function isToken(text: string): boolean {
   return /^[\x21-\x7e]+$/.test(text.trim());
 }

@@ -1,5 +1,6 @@
-// Words, scales and rings over a picture: title, valid time, legend, scale bar, degrees along the horizon, rings of distance.
-// Shapes in pixels of the picture, by the frame's own camera; whoever draws them, in the window or into a file, draws the same.
+// Texts, scales and rings over a picture: title, valid time, legend, scale bar, degrees along the
+// horizon, distance rings. They are shapes in pixels of the picture, placed by the frame's own
+// camera. The window and files therefore draw the same shapes.
 import { type Pose, wrapDegrees } from "./camera";
 import { type PicturePoint, type Projection, project, projectLine, type Vec3 } from "./projection";
 import { compassPoint } from "./sun";
@@ -12,7 +13,7 @@ export interface AnnotationChoice {
   readonly scale: boolean;
   readonly compass: boolean;
   readonly rings: boolean;
-  // Into files; the window always has them.
+  // Applies only to files. The window always shows the marks.
   readonly marks: boolean;
 }
 
@@ -28,7 +29,7 @@ export const FIRST_ANNOTATIONS: AnnotationChoice = {
 
 export interface LegendEntry {
   readonly name: string;
-  // "#rrggbb".
+  // A colour like "#rrggbb".
   readonly color: string;
 }
 
@@ -37,7 +38,7 @@ export interface Annotated {
   readonly heightPx: number;
   // Pixels at each side that something else covers.
   readonly inset: Readonly<Record<"left" | "top" | "right" | "bottom", number>>;
-  // Height of letters.
+  // Height of the letters.
   readonly letterPx: number;
   readonly projection: Projection;
   readonly pose: Pose | undefined;
@@ -45,7 +46,7 @@ export interface Annotated {
   readonly groundM: number;
   readonly title: string;
   readonly time: string;
-  // Empty unless the picture has false colours.
+  // The legend is empty unless the picture has false colours.
   readonly legend: readonly LegendEntry[];
 }
 
@@ -69,15 +70,16 @@ export type Shape =
       readonly color: string;
     };
 
-// Height of letters in a window.
+// Height of the letters in a window.
 export const LETTER_PX = 13;
 
-// Height of letters in a file of a picture: as large in it as they are in a window, of a desktop or of a phone.
+// Returns the height of the letters in an image file. Their relative size is the same as in a
+// window, of a desktop or of a phone.
 export function letterPxOf(widthPx: number, heightPx: number): number {
   return Math.max(11, Math.round(Math.min(heightPx / 45, widthPx / 30)));
 }
 
-// The most width that a text may take in the picture; a longer one is squeezed.
+// Returns the maximum width of a text in the picture. A longer text is squeezed.
 export function widthForPx({ x, anchor }: TextShape, widthPx: number, letterPx: number): number {
   const [left, right] = [x - letterPx, widthPx - letterPx - x];
   if (anchor === "start") return right;
@@ -88,10 +90,11 @@ const FAR_M = 1e7;
 const RING_CORNERS = 96;
 const MAX_RINGS = 5;
 
-// Of a letter's height, its width on the average in a usual font.
+// Average width of a letter in a usual font, divided by its height.
 const WIDTH_OF_LETTER = 0.65;
 
-// Names of degrees and rings that would lie on another text are left out.
+// Returns the shapes of all chosen annotations. Leaves out names of degrees and rings that would
+// overlap another text.
 export function annotationsOf(picture: Annotated, choice: AnnotationChoice): Shape[] {
   const { inset, letterPx } = picture;
   const left = inset.left + letterPx;
@@ -141,7 +144,8 @@ function at(picture: Annotated, { x, y }: PicturePoint): readonly [number, numbe
   return [((x + 1) / 2) * picture.widthPx, ((1 - y) / 2) * picture.heightPx];
 }
 
-// Goes on in another column at the left where a low picture has no room for more rows.
+// Returns the legend. It continues in another column at the left if a low picture has too little
+// height for all rows.
 function legend({ legend: entries, inset, letterPx, widthPx, heightPx }: Annotated): Shape[] {
   const rowPx = 1.5 * letterPx;
   const roomPx = heightPx - inset.top - inset.bottom - 0.5 * letterPx;
@@ -158,8 +162,8 @@ function legend({ legend: entries, inset, letterPx, widthPx, heightPx }: Annotat
   });
 }
 
-// Metres that a pixel shows in the middle of the picture, at the target's distance; undefined for a spotter, to whom near
-// things are larger than far ones.
+// Returns the metres per pixel in the middle of the picture, at the target's distance. Returns
+// undefined for a spotter, because its scale depends on the distance.
 function metresPerPixel({ pose, projection, widthPx }: Annotated): number | undefined {
   if (pose?.kind === "topDown") return pose.widthM / widthPx;
   if (pose?.kind !== "orbit") return undefined;
@@ -186,12 +190,13 @@ function scaleBar(picture: Annotated): Shape[] {
         [right, y - up],
       ],
     },
-    // Clear of the bar's ends, over which longer words lie, as on a phone.
+    // The text is above the bar's ends, because a long text extends over them, for example on a
+    // phone.
     text(right, y - letterPx, words, "end"),
   ];
 }
 
-// Degrees between ticks such that some ten of them are in view.
+// Returns the degrees between ticks, such that about ten ticks are in view.
 function tickStepDeg(viewDeg: number): number {
   return [1, 2, 5, 10, 15, 30].find((step) => viewDeg / step <= 10) ?? 45;
 }
@@ -200,8 +205,8 @@ function azimuthName(deg: number): string {
   return deg % 45 === 0 ? compassPoint(deg) : `${String(deg).padStart(3, "0")}°`;
 }
 
-// A line with a tick every few degrees along the horizon, for who stands on the ground. The names stand below it, where they leave
-// the valid time its line.
+// Returns a line along the horizon with a tick every few degrees, for a camera on the ground. The
+// names are below the line if they do not collide with the valid time there.
 function horizon(picture: Annotated): Shape[] {
   const { projection, pose, widthPx, heightPx, inset, letterPx } = picture;
   if (pose?.kind !== "spotter") return [];
@@ -216,14 +221,14 @@ function horizon(picture: Annotated): Shape[] {
     if (place === undefined) continue;
     const [x, natural] = at(picture, place);
     if (x < 0 || x > widthPx) continue;
-    // Below the picture's edge, the line stays at the edge.
+    // If the horizon is below the picture's edge, the line stays at the edge.
     const y = Math.min(lowest, Math.max(inset.top + letterPx, natural));
     ticks.push({ x, y, name: azimuthName(wrapDegrees(deg)) });
   }
   const lowestY = Math.max(...ticks.map(({ y }) => y));
   const namesAreBelow = lowestY + 1.6 * letterPx < timeLineY(picture) - 1.3 * letterPx;
   const awayPx = (namesAreBelow ? 1.6 : -0.8) * letterPx;
-  // Half of a name.
+  // Half of the width of a name.
   const marginPx = 1.5 * letterPx;
   return [
     { kind: "line", points: ticks.map(({ x, y }) => [x, y] as const) },
@@ -251,7 +256,8 @@ function add(a: Vec3, b: Vec3): Vec3 {
   return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 }
 
-// Circles on the ground around what the camera turns around, stands at, or has in its middle.
+// Returns circles on the ground around the orbit target, the camera's position, or the map's
+// centre.
 function rings(picture: Annotated): Shape[] {
   const { pose, groundM } = picture;
   if (pose === undefined) return [];
@@ -288,7 +294,7 @@ function ringAround(
   const lines = projectLine(picture.projection, corners).map(
     (part): Shape => ({ kind: "line", points: part.map((point) => at(picture, point)) }),
   );
-  // Its distance stands where the ring is farthest to the right in the picture.
+  // The distance is written where the ring is farthest to the right in the picture.
   const visible = lines
     .flatMap((line) => (line.kind === "line" ? line.points : []))
     .filter(([px, py]) => px > 0 && px < picture.widthPx && py > 0 && py < picture.heightPx);

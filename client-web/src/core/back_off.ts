@@ -1,7 +1,8 @@
-// Exponential back-off with full jitter: a delay is drawn at random below a bound that doubles, so that a whole class does
-// not come back at once.
+// Exponential back-off with full jitter: each delay is random below a bound that doubles. A class
+// of clients therefore does not reconnect all at once.
 
-// Also after a delay that the server gave, which is the same for everybody.
+// The random delay is added even to a delay that the server requested, because the server requests
+// the same delay from all clients.
 export const FIRST_BOUND_MS = 1000;
 export const LONGEST_BOUND_MS = 8000;
 
@@ -9,7 +10,7 @@ export class BackOff {
   readonly #random: () => number;
   #attempts = 0;
 
-  // `random` draws from 0 to 1.
+  // Makes a back-off. `random` returns a number from 0 to 1.
   constructor(random: () => number = Math.random) {
     this.#random = random;
   }
@@ -18,14 +19,15 @@ export class BackOff {
     return this.#attempts;
   }
 
-  // The delay before the next attempt; not below `leastMs`, which the server asked for.
+  // Returns the delay before the next attempt. It is not below `leastMs`, which the server asked
+  // for.
   next(leastMs = 0): number {
     const bound = Math.min(LONGEST_BOUND_MS, FIRST_BOUND_MS * 2 ** Math.min(this.#attempts, 16));
     this.#attempts += 1;
     return leastMs + this.#random() * bound;
   }
 
-  // An attempt succeeded.
+  // Starts again with short delays after an attempt that succeeded.
   reset(): void {
     this.#attempts = 0;
   }

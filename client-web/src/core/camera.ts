@@ -1,5 +1,6 @@
 // Camera motions: how a drag in pixels moves and turns each kind of camera.
-// World axes as in proto/thunderhead/v1/scene.proto: x east, y north, z up, azimuth clockwise from north.
+// The world axes are those of proto/thunderhead/v1/scene.proto: x east, y north, z up, azimuth
+// clockwise from north.
 import { create } from "@bufbuild/protobuf";
 import {
   type Camera,
@@ -20,7 +21,7 @@ export interface OrbitPose {
   readonly fieldOfViewDeg: number;
 }
 
-// Stands on the ground and looks to azimuth and elevation.
+// A camera that stands on the ground and looks to an azimuth and an elevation.
 export interface SpotterPose {
   readonly kind: "spotter";
   readonly placeM: readonly [number, number];
@@ -30,14 +31,14 @@ export interface SpotterPose {
   readonly focalLengthMm: number;
 }
 
-// Looks straight down, north up.
+// A camera that looks straight down, with north up.
 export interface TopDownPose {
   readonly kind: "topDown";
   readonly centerM: readonly [number, number];
   readonly widthM: number;
 }
 
-// Under the pointer it is in the unit of the pointer's motions.
+// The picture's size, in the unit of the pointer's motions.
 export interface PictureSize {
   readonly widthPx: number;
   readonly heightPx: number;
@@ -69,16 +70,17 @@ const TARGET_X = limitsOf(PositionSchema.field.xM);
 const TARGET_Y = limitsOf(PositionSchema.field.yM);
 const TARGET_Z = limitsOf(PositionSchema.field.zM);
 
-// Dragging across the whole height of the picture turns the camera this far.
+// Angle by which a drag across the picture's whole height turns the camera.
 const DEGREES_PER_HEIGHT = 180;
 
-// Dragging across the whole height of the picture walks a spotter this far.
+// Distance that a spotter walks for a drag across the picture's whole height.
 const WALK_PER_HEIGHT_M = 20_000;
 
-// Height of the frame behind a spotter's lens.
+// Height of the image frame behind a spotter's lens.
 const FRAME_HEIGHT_MM = 24;
 
-// The pose of a camera with every value filled in by the server; undefined while some are missing.
+// Returns the pose of a camera whose values the server has filled in; undefined while some are
+// missing.
 export function poseOfCamera(camera: Camera | undefined): Pose | undefined {
   switch (camera?.kind.case) {
     case "orbit": {
@@ -160,25 +162,26 @@ function spotterMessage(pose: SpotterPose) {
   };
 }
 
-// A camera of that kind with nothing set: the server frames the whole storm.
+// Returns a camera of that kind with no values set, so that the server frames the whole storm.
 export function homeCamera(kind: CameraKind = "orbit"): Camera {
   return create(CameraSchema, { kind: { case: kind, value: {} } });
 }
 
-// The azimuth at which the camera stands, seen from what it looks at; undefined where it looks down.
+// Returns the azimuth of the camera's position, seen from its target; undefined for a camera that
+// looks straight down.
 export function standingAzimuthDeg(pose: Pose | undefined): number | undefined {
   if (pose?.kind === "orbit") return pose.azimuthDeg;
   return pose?.kind === "spotter" ? wrapDegrees(pose.azimuthDeg + 180) : undefined;
 }
 
-// The same azimuth between 0 and 360 degrees.
+// Returns the same azimuth between 0 and 360 degrees.
 export function wrapDegrees(degrees: number): number {
   const wrapped = degrees % 360;
   return wrapped < 0 ? wrapped + 360 : wrapped;
 }
 
-// The scene follows the pointer: an orbit camera goes around, a spotter turns its head, a map moves. Pixels count right
-// and down.
+// Turns or moves the camera so that the scene follows the pointer. An orbit camera turns around its
+// target, a spotter turns its head, and a map moves. Pixels count right and down.
 export function drag<P extends Pose>(
   pose: P,
   rightPx: number,
@@ -203,8 +206,8 @@ export function drag(pose: Pose, rightPx: number, downPx: number, picture: Pictu
   }
 }
 
-// Moves an orbit camera around its target, clockwise seen from above, and up; turns a spotter's head to the right and
-// up. A map cannot turn.
+// Turns an orbit camera around its target, clockwise as seen from above, and up. Turns a spotter's
+// head to the right and up. A map cannot turn.
 export function turn<P extends Pose>(pose: P, azimuthDeg: number, elevationDeg: number): P;
 export function turn(pose: Pose, azimuthDeg: number, elevationDeg: number): Pose {
   if (pose.kind === "topDown") return pose;
@@ -215,8 +218,9 @@ export function turn(pose: Pose, azimuthDeg: number, elevationDeg: number): Pose
   };
 }
 
-// Moves the camera across the line of sight, so that points at the target's distance follow the pointer. A spotter walks
-// instead: left for a drag to the right, backwards for a drag up.
+// Moves the camera perpendicular to the line of sight, so that points at the target's distance
+// follow the pointer. A spotter walks instead: left for a drag to the right, backwards for a drag
+// up.
 export function pan<P extends Pose>(
   pose: P,
   rightPx: number,
@@ -267,7 +271,8 @@ function panOrbit(pose: OrbitPose, rightPx: number, downPx: number, heightPx: nu
   };
 }
 
-// Below 1 shows things larger: an orbit camera comes nearer, a spotter takes a longer lens, a map shows less.
+// Zooms in if the factor is below 1. An orbit camera moves nearer, a spotter uses a longer lens,
+// and a map shows a smaller area.
 export function zoom<P extends Pose>(pose: P, factor: number): P;
 export function zoom(pose: Pose, factor: number): Pose {
   switch (pose.kind) {
@@ -283,7 +288,7 @@ export function zoom(pose: Pose, factor: number): Pose {
   }
 }
 
-// Unit vectors of the picture's right and up in the world.
+// Returns unit vectors of the picture's right and up directions in the world.
 export function pictureAxes(pose: OrbitPose): {
   right: [number, number, number];
   up: [number, number, number];

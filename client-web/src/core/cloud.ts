@@ -1,4 +1,5 @@
-// Parameters of a cloud for the server's generator as the panel edits them, and the request made of them.
+// Parameters of a cloud for the server's generator, as the panel edits them, and the request that
+// is made from them.
 import { create } from "@bufbuild/protobuf";
 import {
   type GenerateCloudRequest,
@@ -13,7 +14,7 @@ import { type Limits, limitsOf } from "./limits";
 export interface CloudDraft {
   readonly preset: Preset;
   readonly seed: number;
-  // False: the preset decides all that follows.
+  // False: the preset determines all values below.
   readonly ownShape: boolean;
   readonly octaves: number;
   readonly persistence: number;
@@ -22,8 +23,8 @@ export interface CloudDraft {
   readonly threshold: number;
   readonly dynamics: number;
   readonly waterKgPerM3: number;
-  // One ellipsoid a line, numbers separated by commas: center x, y, z, radii x, y, z in m, and optionally rotation about
-  // x, y, z in degrees. Empty: the preset's.
+  // One ellipsoid a line, as numbers separated by commas. They are center x, y, z, radii x, y, z in
+  // m, and optionally rotation about x, y, z in degrees. Empty: the preset's ellipsoids.
   readonly ellipsoids: string;
 }
 
@@ -53,7 +54,7 @@ export const CLOUD_LIMITS = {
   water: limitsOf(field.waterKgPerM3),
 } as const satisfies Record<string, Limits>;
 
-// Throws an Error that names the line if an ellipsoid is malformed.
+// Makes the request. Throws an Error that names the line if an ellipsoid is malformed.
 export function requestOfCloud(draft: CloudDraft): GenerateCloudRequest {
   const { preset, seed } = draft;
   if (!draft.ownShape) return create(GenerateCloudRequestSchema, { preset, seed });
@@ -87,7 +88,7 @@ function ellipsoidsOf(text: string): GenerateCloudRequest_Ellipsoid[] {
       numbers;
     const turned = numbers.length === 9 ? { rotationXDeg, rotationYDeg, rotationZDeg } : {};
     const shape = { xM, yM, zM, radiusXM, radiusYM, radiusZM, ...turned };
-    // The length was checked above.
+    // The cast is safe because the length was checked above.
     return [create(GenerateCloudRequest_EllipsoidSchema, shape as Required<typeof shape>)];
   });
 }

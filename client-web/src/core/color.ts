@@ -1,4 +1,5 @@
-// Conversion of colours between the scene (linear sRGB primaries) and a colour picker (#rrggbb, sRGB encoded; IEC 61966-2-1).
+// Converts colours between the scene (linear sRGB primaries) and a colour picker (#rrggbb, sRGB
+// encoded; IEC 61966-2-1).
 
 export interface LinearColor {
   readonly red: number;

@@ -1,4 +1,5 @@
-// The second picture of a comparison: the same view of another time, of another storm or run, or with the settings of a moment ago.
+// The second picture of a comparison. It shows the same view at another time, of another storm or
+// run, or with earlier settings.
 
 import type { Camera, Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
@@ -10,9 +11,9 @@ import { formatElapsed } from "./units";
 export interface ComparisonChoice {
   // Absent: the storm that is shown.
   readonly stormId: string | undefined;
-  // Absent: the time that is shown, or in another storm the time with the nearest date.
+  // Absent: the time that is shown. For another storm it is the time with the nearest date.
   readonly timeIndex: number | undefined;
-  // Settings kept for B while those of A change; absent: B has A's.
+  // Settings that B keeps while those of A change; absent: B uses A's settings.
   readonly settings: Scene | undefined;
   readonly layout: "swipe" | "side";
 }
@@ -20,17 +21,17 @@ export interface ComparisonChoice {
 export interface ComparedWith {
   readonly camera: Camera | undefined;
   readonly size: { readonly widthPx: number; readonly heightPx: number };
-  // The storm of A and, where it is known, that of B.
+  // The storm of A and, if it is known, the storm of B.
   readonly storm: StormDescription | undefined;
   readonly other: StormDescription | undefined;
 }
 
-// B's scene beside A's: its camera is always A's.
+// Returns B's scene. Its camera is always A's.
 export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWith): Scene {
   const stormId = choice.stormId ?? a.stormId;
   const base = choice.settings ?? a;
   const timeIndex = timeOfB(a, choice, w).index;
-  // Settings go along to another run of the same model.
+  // Another run of the same model keeps the settings.
   const related = base.stormId === stormId || isSameDomain(w.storm, w.other);
   const laterS = base.stormId === stormId ? 0 : laterByS(w.storm, w.other);
   const storm = related
@@ -40,10 +41,11 @@ export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWit
   return withOutput(seen, { ...w.size, jpegQuality: a.output?.jpegQuality });
 }
 
-// B's time, as an index into those of its storm, and its difference from A's.
+// B's time as an index into its storm's times, and its difference from A's time.
 export interface TimeOfB {
   readonly index: number;
-  // Positive where B is later; undefined where the dates cannot be compared and B has A's index.
+  // Positive if B is later. Undefined if the dates cannot be compared, in which case B has A's
+  // index.
   readonly awayS: number | undefined;
 }
 
@@ -56,14 +58,14 @@ export function timeOfB(
   const index = a.timeIndex ?? 0;
   const stormId = choice.stormId ?? a.stormId;
   if (stormId === a.stormId) return { index, awayS: 0 };
-  // Until B's storm is described, it is asked for the time of the same number.
+  // Until B's storm is described, B uses the same time index as A.
   if (w.other === undefined) return { index, awayS: undefined };
   const { times } = w.other;
   const validTime = w.storm?.times[index]?.validTime ?? "";
   return nearestTime(validTime, times) ?? { index: sameNumber(index, times), awayS: undefined };
 }
 
-// A sentence about B's time; undefined where it is A's, or one that was chosen.
+// Returns a sentence about B's time; undefined if it is A's time or was chosen explicitly.
 export function awayInWords({ awayS }: TimeOfB): string | undefined {
   if (awayS === 0) return undefined;
   if (awayS === undefined)

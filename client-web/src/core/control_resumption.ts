@@ -1,13 +1,14 @@
-// The way back to control for somebody who steered when the connection was lost: each presence after joining again decides. The server may
-// not know yet that the old connection is lost, and then sees it steer for some seconds.
+// Restores control to a person who steered when the connection was lost. Each presence after the
+// page has joined again decides. The server may not have noticed the loss yet, so the old
+// connection may appear to steer for some seconds.
 import { type Presence, Role } from "../gen/thunderhead/v1/interact_pb";
 
 export type Resumption =
-  // Control is to be taken again.
+  // The page should take control again.
   | "takes"
-  // Control is on its way back; edits are kept until then.
+  // Control is expected back; edits are kept until then.
   | "waits"
-  // Another steers.
+  // Another viewer steers.
   | "lost";
 
 export interface Before {
@@ -17,13 +18,14 @@ export interface Before {
 }
 
 export class ControlResumption {
-  // This person's ids in the connections since it steered; empty unless control is expected back.
+  // This person's ids in the connections since it steered. The set is empty unless control is
+  // expected back.
   readonly #ownIds = new Set<bigint>();
-  // The people who were there when the connection was lost.
+  // The people who were present when the connection was lost.
   #known: ReadonlySet<bigint> = new Set();
   #takes = false;
 
-  // Joined again; `before` is of the connection that was lost.
+  // Reports that the page has joined again. `before` describes the lost connection.
   rejoined({ viewerId, steered, people }: Before): void {
     if (!steered && this.#ownIds.size === 0) return;
     if (this.#ownIds.size === 0) this.#known = new Set(people.map((person) => person.viewerId));
@@ -31,25 +33,27 @@ export class ControlResumption {
     this.#takes = true;
   }
 
-  // Of a presence in which this person does not steer.
+  // Returns what to do after a presence in which this person does not steer.
   of(presence: Presence, presents: boolean): Resumption {
     if (this.#ownIds.size === 0 || !this.#awaits(presence, presents)) {
       this.end();
       return "lost";
     }
-    // Once: it may cross with a presence that is older, and must not take control from a colleague who came after it.
+    // Takes control only once. The request may cross with an older presence, and a second request
+    // could take control from a colleague who got it afterwards.
     const takes = presents && this.#takes;
     this.#takes = false;
     return takes ? "takes" : "waits";
   }
 
-  // This person steers, or no longer expects to.
+  // Ends the resumption because this person steers, or no longer expects to.
   end(): void {
     this.#ownIds.clear();
   }
 
-  // Where nobody steers or this person's lost connection does, and where a presenter got control for having come first to a
-  // server that started again. A colleague who was there and took it keeps it.
+  // Returns true if no viewer steers, or if this person's lost connection still steers. Also
+  // returns true if a new presenter got control because that presenter reached a restarted server
+  // first. A colleague who was present before and took control keeps it.
   #awaits({ steeringViewerId, people }: Presence, presents: boolean): boolean {
     if (steeringViewerId === 0n || this.#ownIds.has(steeringViewerId)) return true;
     const steerer = people.find(({ viewerId }) => viewerId === steeringViewerId);

@@ -1,15 +1,17 @@
-// The domain of a storm: the part of the world that its model covers. Runs over one domain are looked at from the same places.
+// The domain of a storm is the part of the world that its model covers. Runs over the same domain
+// share their named views.
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
 import { secondsBetween } from "./moment";
 
 type Placed = Pick<StormDescription, "grid" | "latitudeDeg" | "longitudeDeg">;
 
-// The same text for storms of one domain; empty where the storm is not known. Heights do not count: layers may move.
+// Returns the same text for all storms of one domain; empty if the storm is unknown. Heights are
+// ignored because a model's layers may move.
 export function domainOf(storm: Placed | undefined): string {
   const grid = storm?.grid;
   if (storm === undefined || grid === undefined) return "";
   const { nx, ny, dxM, dyM, low } = grid;
-  // Degrees to about a metre.
+  // Five decimals of a degree are about a metre.
   const place = [storm.latitudeDeg, storm.longitudeDeg].map((degrees) => degrees?.toFixed(5) ?? "");
   const lengths = [dxM, dyM, low?.xM ?? 0, low?.yM ?? 0].map((metres) => metres.toFixed(1));
   return [nx, ny, ...lengths, ...place].join(" ");
@@ -19,7 +21,8 @@ export function isSameDomain(a: Placed | undefined, b: Placed | undefined): bool
   return domainOf(a) !== "" && domainOf(a) === domainOf(b);
 }
 
-// Seconds from the first time of one run to that of another; 0 where their dates cannot be compared.
+// Returns the seconds from the first time of one run to that of another; 0 if their dates cannot be
+// compared.
 export function laterByS(
   from: Pick<StormDescription, "times"> | undefined,
   to: Pick<StormDescription, "times"> | undefined,

@@ -1,4 +1,4 @@
-// The encoding in which a frame's picture came.
+// The encoding of a frame's picture.
 import type { Frame } from "../gen/thunderhead/v1/frame_pb";
 
 export type Encoding = "jpeg" | "vp9" | "avif";
@@ -14,7 +14,7 @@ export function pictureBytes(frame: Encoded): number {
   return frame[encodingOf(frame)].byteLength;
 }
 
-// For people; `whyNoVideo` as PageState has it.
+// Returns the encoding's name for people. `whyNoVideo` is that of PageState.
 export function nameOfEncoding(encoding: Encoding, whyNoVideo: string | undefined): string {
   if (encoding === "vp9") return "VP9 video";
   const name = encoding === "avif" ? "AVIF, 10 bits" : "JPEG";

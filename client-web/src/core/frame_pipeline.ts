@@ -1,19 +1,21 @@
-// Decodes frames and paints them, dropping old ones: one frame is being decoded, one waits to be decoded, one waits to
-// be painted, and a newer frame replaces a waiting one. So the page holds at most three frames, and latency cannot grow
-// however slow decoding or painting is. The newest is the one that came last, whatever its number: the server sends a frame
-// again, in another size or to a page that is seen again.
+// Decodes frames and paints them, and drops old ones. One frame is being decoded, one waits to be
+// decoded, and one waits to be painted. A newer frame replaces a waiting one. The page therefore
+// holds at most three frames, and latency cannot grow however slow decoding or painting is. The
+// newest frame is the one that arrived last, whatever its number. The server may send a frame
+// again, for example in another size or when a hidden page becomes visible.
 
 export interface PipelineSteps<F, P> {
   decode(frame: F): Promise<P>;
-  // Requests one call at the next screen refresh; returns a function that cancels it.
+  // Requests one call at the next screen refresh. Returns a function that cancels it.
   onNextPaint(callback: () => void): () => void;
-  // Draws the picture; the frame counts as shown when this returns.
+  // Draws the picture. The frame counts as shown when this returns.
   paint(frame: F, picture: P): void;
   // Frees a picture that was replaced or never painted.
   release(picture: P): void;
-  // The frame could not be decoded; a later one may.
+  // Reports that the frame could not be decoded. A later frame may succeed.
   failed(frame: F, reason: unknown): void;
-  // A newer frame has replaced it, or the stream has ended, before it was decoded.
+  // Reports that the frame was replaced by a newer one, or that the stream ended, before it was
+  // decoded.
   skipped?(frame: F): void;
 }
 
@@ -31,12 +33,12 @@ export class FramePipeline<F, P> {
     this.#steps = steps;
   }
 
-  // Number of frames that were received but never painted, because a newer one was there.
+  // Returns the number of frames that were replaced by newer frames before they were painted.
   get dropped(): number {
     return this.#dropped;
   }
 
-  // Frames of the old stream are dropped.
+  // Drops the frames of the old stream.
   startStream(): void {
     this.#stream += 1;
     this.#decoding = undefined;

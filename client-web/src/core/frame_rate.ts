@@ -1,4 +1,4 @@
-// Frames and bytes over the last seconds.
+// Counts frames and bytes over the last seconds.
 
 const WINDOW_MS = 2000;
 
@@ -10,7 +10,7 @@ export class FrameRate {
     this.#forget(nowMs);
   }
 
-  // Frames a second; zero when nothing moves.
+  // Returns frames a second; zero when nothing moves.
   framesPerSecond(nowMs: number): number {
     this.#forget(nowMs);
     return (this.#frames.length * 1000) / WINDOW_MS;

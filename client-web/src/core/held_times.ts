@@ -1,12 +1,12 @@
 // The times of a storm that are in the server's memory, as stretches of a time line.
 
 export interface Stretch {
-  // 0 to 1.
+  // Positions from 0 to 1.
   readonly from: number;
   readonly to: number;
 }
 
-// One stretch for each row of neighbours. A time extends halfway to the times beside it.
+// Returns one stretch for each run of adjacent times. A time extends halfway to its neighbours.
 export function stretchesOf(indices: readonly number[], count: number): Stretch[] {
   const last = count - 1;
   const within = indices.filter((index) => index <= last);

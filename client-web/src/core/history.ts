@@ -1,5 +1,6 @@
-// Changes made on this page, to be undone and done again. A step knows what it changed and leaves the rest of the scene as it is by then,
-// which somebody else may have changed. Edits that follow each other closely, as of a slider or a drag, count as one.
+// Undo and redo of changes made on this page. A step contains what it changed, and leaves the rest
+// of the scene as it is by then, because other viewers may have changed it. Edits that closely
+// follow each other, such as those of a slider or a drag, are one step.
 import { computed, type Signal, signal } from "@preact/signals-core";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { type Change, changeBetween, withChange } from "./scene_change";
@@ -7,7 +8,7 @@ import { type Change, changeBetween, withChange } from "./scene_change";
 const ONE_GESTURE_MS = 700;
 const MAX_STEPS = 100;
 
-// The edits of one gesture, the first one first.
+// The edits of one gesture, the oldest first.
 type Step = readonly Change[];
 
 export class History {
@@ -23,7 +24,7 @@ export class History {
     this.#nowMs = nowMs;
   }
 
-  // The scene was edited.
+  // Records an edit of the scene.
   edited(before: Scene, after: Scene): void {
     const change = changeBetween(SceneSchema, before, after);
     if (change === undefined) return;
@@ -39,7 +40,7 @@ export class History {
         : [...past.slice(0, -1), [...last, change]];
   }
 
-  // The edit that takes the last step back; undefined if there is none.
+  // Returns the edit that undoes the last step; undefined if there is none.
   undo(): ((scene: Scene) => Scene) | undefined {
     const step = this.#move(this.#past, this.#future);
     return (
@@ -55,7 +56,7 @@ export class History {
     );
   }
 
-  // The steps belong to another storm's scene.
+  // Forgets the steps, because they belong to another storm's scene.
   clear(): void {
     this.#past.value = [];
     this.#future.value = [];

@@ -1,10 +1,11 @@
-// Arrows and letters as lines that a pen draws. A mark is one line for the session; where a corner is repeated, the pen is lifted
-// to the next one.
+// Arrows and letters as lines that a pen draws. A mark is one line for the session. A repeated
+// corner means that the pen is lifted to the next corner.
 import type { StrokePoint } from "./stroke";
 
 type Strokes = readonly (readonly StrokePoint[])[];
 
-// Each letter in lines between points of a grid, 0 to 4 to the right and 0 to 6 down, as two digits a point; a space lifts the pen.
+// The strokes of each letter on a grid, 0 to 4 to the right and 0 to 6 down, with two digits a
+// point. A space lifts the pen.
 const LETTERS: Readonly<Record<string, string>> = {
   A: "062046 1434",
   B: "0600304142331303 3344453606",
@@ -68,16 +69,16 @@ const LETTERS: Readonly<Record<string, string>> = {
 const ADVANCE = 6;
 const HEIGHT = 6;
 const LETTER_WIDTH = 4;
-// The most corners of a mark that the session takes.
+// Maximum number of corners of a mark that the session accepts.
 const MAX_CORNERS = 256;
-// Simple ones: others take more of the corners.
+// Maximum number of simple letters. Other letters use more of the corners.
 export const MAX_LETTERS = 40;
 
 interface Written {
   // The strokes of each letter, as in LETTERS.
   readonly letters: readonly string[];
   readonly unknown: readonly string[];
-  // Beyond the corners of one mark.
+  // The part of the text that exceeds the corners of one mark.
   readonly tooLong: string;
 }
 
@@ -87,13 +88,13 @@ function written(words: string): Written {
   let corners = 0;
   const all = [...words.normalize("NFC").toUpperCase()];
   for (const [at, letter] of all.entries()) {
-    // An accent goes before the letter does.
+    // A letter without strokes for its accent is written without the accent.
     const strokes = LETTERS[letter] ?? LETTERS[letter.normalize("NFD").charAt(0)];
     if (strokes === undefined) {
       unknown.push(letter);
       continue;
     }
-    // A lift of the pen repeats a corner.
+    // Each lift of the pen repeats a corner.
     corners += strokes.split(" ").reduce((sum, stroke) => sum + stroke.length / 2 + 1, 0);
     if (corners > MAX_CORNERS) return { letters, unknown, tooLong: all.slice(at).join("") };
     letters.push(strokes);
@@ -101,7 +102,7 @@ function written(words: string): Written {
   return { letters, unknown, tooLong: "" };
 }
 
-// Letters begin at `place`, `heightPx` high.
+// Returns the strokes of a text. The letters begin at `place` and are `heightPx` high.
 export function letterStrokes(words: string, place: StrokePoint, heightPx: number): Strokes {
   const unit = heightPx / HEIGHT;
   return written(words).letters.flatMap((letter, at) =>
@@ -115,13 +116,15 @@ export function letterStrokes(words: string, place: StrokePoint, heightPx: numbe
   );
 }
 
-// From the left of the first letter to the right of the last, in letters `heightPx` high.
+// Returns the distance from the left of the first letter to the right of the last, for letters that
+// are `heightPx` high.
 export function wordsWidthPx(words: string, heightPx: number): number {
   const count = written(words).letters.length;
   return count === 0 ? 0 : (heightPx / HEIGHT) * (ADVANCE * count - (ADVANCE - LETTER_WIDTH));
 }
 
-// A sentence about the letters that letterStrokes() leaves out; undefined where it writes everything.
+// Returns a sentence about the letters that letterStrokes() leaves out; undefined if it writes
+// everything.
 export function leftOutInWords(words: string): string | undefined {
   const { unknown, tooLong } = written(words);
   const said = [
@@ -153,7 +156,7 @@ export function ringStroke(middle: StrokePoint, radiusPx: number): readonly Stro
   }));
 }
 
-// One line of all strokes.
+// Joins all strokes to one line.
 export function joined<P>(strokes: readonly (readonly P[])[]): P[] {
   return strokes.flatMap((stroke, at) => {
     const last = stroke.at(-1);
@@ -161,7 +164,7 @@ export function joined<P>(strokes: readonly (readonly P[])[]): P[] {
   });
 }
 
-// The strokes of one line.
+// Splits one line into its strokes.
 export function parted<P>(line: readonly P[], same: (a: P, b: P) => boolean): P[][] {
   const strokes: P[][] = [[]];
   line.forEach((point, at) => {

@@ -1,5 +1,6 @@
-// Range, default and unit of each number and the defaults of switches and choices, read from the field options in proto/, and
-// the mapping between a value and its slider's position. Independent of widgets.
+// Range, default and unit of each number, and the defaults of switches and choices. They are read
+// from the field options in proto/. This file also maps values to slider positions. It does not
+// depend on widgets.
 import { type DescField, getOption, ScalarType } from "@bufbuild/protobuf";
 import {
   default_choice as defaultChoiceOption,
@@ -13,7 +14,7 @@ export interface Limits {
   readonly maximum: number;
   // Value of an absent field; undefined if it depends on the storm or the hydrometeor.
   readonly defaultValue: number | undefined;
-  // In UCUM notation.
+  // The unit in UCUM notation.
   readonly unit: string;
   readonly logarithmic: boolean;
   readonly integer: boolean;
@@ -44,7 +45,7 @@ export function limitsOf(field: DescField): Limits {
   };
 }
 
-// The value of an absent bool; false where it depends on the storm.
+// Returns the value of an absent bool; false if it depends on the storm.
 export function defaultOnOf(field: DescField): boolean {
   if (field.fieldKind !== "scalar" || field.scalar !== ScalarType.BOOL) {
     throw new Error(`${field.toString()} has no default in the schema`);
@@ -52,20 +53,22 @@ export function defaultOnOf(field: DescField): boolean {
   return getOption(field, defaultOnOption);
 }
 
-// The enumerator that an absent one stands for; 0, that of an absent one, where it depends on the storm or on other fields.
+// Returns the enumerator that an absent value stands for. If this depends on the storm or on other
+// fields, returns 0, the number of an absent value.
 export function defaultChoiceOf(field: DescField): number {
   if (field.fieldKind !== "enum") throw new Error(`${field.toString()} is no choice`);
   const name = getOption(field, defaultChoiceOption);
   return field.enum.values.find((value) => value.name === name)?.number ?? 0;
 }
 
-// Of a number whose default does not depend on the storm.
+// Returns the default of a number if the default does not depend on the storm. Otherwise throws an
+// Error.
 export function defaultNumberOf({ defaultValue }: Limits): number {
   if (defaultValue === undefined) throw new Error("the schema has no default of this number");
   return defaultValue;
 }
 
-// The most elements that a list may have.
+// Returns the maximum number of elements of a list.
 export function mostItemsOf(field: DescField): number {
   const most = getOption(field, maxItemsOption);
   if (field.fieldKind !== "list" || most < 1) {
@@ -74,8 +77,8 @@ export function mostItemsOf(field: DescField): number {
   return most;
 }
 
-// The nearest value that the server accepts. A 32-bit float next to a limit can round to outside of it (0.99
-// becomes 0.9900000095), so the limit itself is rounded inwards.
+// Returns the nearest value that the server accepts. A 32-bit float near a limit can round to a
+// value outside (0.99 becomes 0.9900000095), so the limit itself is rounded inwards.
 export function clampToLimits(value: number, limits: Limits): number {
   if (Number.isNaN(value)) return limits.defaultValue ?? limits.minimum;
   const rounded = limits.integer ? Math.round(value) : value;
@@ -87,7 +90,7 @@ export function clampToLimits(value: number, limits: Limits): number {
   return single;
 }
 
-// The next 32-bit float below (-1) or above (1) a finite one that is not zero.
+// Returns the next 32-bit float below (-1) or above (1) a finite number that is not zero.
 function neighbourTowards(single: number, direction: -1 | 1): number {
   const view = new DataView(new ArrayBuffer(4));
   view.setFloat32(0, single);
@@ -96,14 +99,15 @@ function neighbourTowards(single: number, direction: -1 | 1): number {
   return view.getFloat32(0);
 }
 
-// A logarithmic slider that may reach zero starts this many times below its end; its first position is zero.
+// A logarithmic slider that may reach zero starts at its end divided by this number. Its first
+// position is zero.
 const LOGARITHMIC_SPAN = 1e5;
 
 function logarithmicFloor(limits: Limits): number {
   return limits.minimum > 0 ? limits.minimum : limits.maximum / LOGARITHMIC_SPAN;
 }
 
-// The slider position of a value, 0 to 1.
+// Returns the slider position of a value, 0 to 1.
 export function positionOfValue(value: number, limits: Limits): number {
   const { minimum, maximum } = limits;
   if (!limits.logarithmic) return share((value - minimum) / (maximum - minimum));
@@ -112,7 +116,7 @@ export function positionOfValue(value: number, limits: Limits): number {
   return share(Math.log(value / floor) / Math.log(maximum / floor));
 }
 
-// The value at a slider position, 0 to 1, rounded to three digits between the ends.
+// Returns the value at a slider position, 0 to 1. Between the ends it is rounded to three digits.
 export function valueAtPosition(position: number, limits: Limits): number {
   const { minimum, maximum } = limits;
   const along = share(position);

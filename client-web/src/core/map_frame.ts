@@ -1,4 +1,5 @@
-// The inset map's place in the world: which metres it shows, and where a pixel of it is. North is up.
+// The area that the inset map shows, and the conversion between its pixels and world metres. North
+// is up.
 import type { Pose } from "./camera";
 
 export interface Extent {
@@ -9,17 +10,18 @@ export interface Extent {
 }
 
 export interface MapPlace {
-  // Shares of the map's width and height, from its north-west corner.
+  // Fractions of the map's width and height, from its north-west corner.
   readonly right: number;
   readonly down: number;
 }
 
-// Around the domain.
+// Width of the margin around the domain, as a fraction of its size.
 const MARGIN = 0.06;
 // A camera farther away than this many domains is shown at the edge.
 const FARTHEST = 1.2;
 
-// The domain with a margin, and with the camera's place where that is not far from it. As wide as high, so that it does not jump.
+// Returns the domain with a margin. The area includes the camera's position if that is not far from
+// the domain. The area is square, so that it does not change its shape abruptly.
 export function extentOf(domain: Extent, eye: readonly [number, number] | undefined): Extent {
   const size = Math.max(domain.eastM - domain.westM, domain.northM - domain.southM);
   const inReach =
@@ -55,7 +57,8 @@ export function worldOfMap(extent: Extent, { right, down }: MapPlace): [number, 
   ];
 }
 
-// Where the camera stands, and the azimuth it looks to; undefined for one that looks straight down.
+// Returns the camera's position and the azimuth to which it looks; undefined for a camera that
+// looks straight down.
 export function standOf(
   pose: Pose | undefined,
 ): { readonly placeM: readonly [number, number]; readonly lookDeg: number } | undefined {
@@ -70,7 +73,7 @@ export function standOf(
   };
 }
 
-// A place so far from another, in a direction of the compass.
+// Returns the place at a distance and an azimuth from another place.
 export function placeFrom(
   [xM, yM]: readonly [number, number],
   distanceM: number,
@@ -82,7 +85,7 @@ export function placeFrom(
   ];
 }
 
-// Degrees clockwise from north.
+// Returns the azimuth in degrees clockwise from north.
 export function azimuthTo(
   [fromX, fromY]: readonly [number, number],
   [toX, toY]: readonly [number, number],

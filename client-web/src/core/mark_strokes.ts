@@ -1,16 +1,18 @@
-// Marks in a picture: as strokes of ink or straight ones. Whoever draws them, in the window or into a file, draws the same.
+// Splits marks in a picture into strokes, which are ink or straight. The window and files draw the
+// same strokes.
 import { getStroke } from "perfect-freehand";
 import { parted } from "./lettering";
 import { type PicturePoint, type Projection, projectLine, type Vec3 } from "./projection";
 import type { StrokePoint } from "./stroke";
 
 export interface MarkStroke {
-  // A line drawn by hand swells and thins as ink does; arrows and letters are of straight strokes.
+  // True for a hand-drawn line, which varies in width like ink. Arrows and letters consist of
+  // straight strokes.
   readonly ink: boolean;
   readonly points: readonly PicturePoint[];
 }
 
-// Straight strokes have fewer corners.
+// A stroke with more corners than this was drawn by hand.
 const MAX_STRAIGHT_CORNERS = 4;
 const INK_PX = 6;
 
@@ -20,7 +22,7 @@ export function markStrokes(projection: Projection, pointsM: readonly Vec3[]): M
   return strokes.map((points) => ({ ink, points }));
 }
 
-// The outline of a stroke of ink; `scale` is 1 in a window.
+// Returns the outline of an ink stroke. `scale` is 1 in a window.
 export function inkOutline(places: readonly StrokePoint[], scale = 1): [number, number][] {
   const outline = getStroke(
     places.map(({ left, top }) => [left, top]),

@@ -1,4 +1,5 @@
-// The tools that show something to everybody: a pointer and a pen. They turn places in the picture into rays.
+// The tools that show something to all people in the session: a pointer, a pen, an arrow and a
+// text. They convert places in the picture to rays.
 import { signal } from "@preact/signals-core";
 import { arrowStrokes, joined, letterStrokes, ringStroke, wordsWidthPx } from "./lettering";
 import { type Later, Newest } from "./newest";
@@ -7,18 +8,18 @@ import { type Projection, pointOnRay, rayAt, type WorldRay } from "./projection"
 import type { PendingMark, SessionState, Tool } from "./session_state";
 import { type StrokePoint, simplifiedStroke, strokeLengthPx } from "./stroke";
 
-// A tool in the hand: places are in CSS pixels of the window.
+// An active tool. Places are in CSS pixels of the window.
 export interface PictureTool {
   hover(place: StrokePoint): void;
   press(place: StrokePoint): void;
   drag(place: StrokePoint): void;
   release(): void;
-  // The gesture became another one.
+  // Cancels the stroke because the gesture became another one.
   cancel(): void;
   leave(): void;
 }
 
-// The picture on the screen, and how far its middle is from the eye.
+// The picture on the screen, and the distance of its middle from the eye.
 export interface MarkedPicture {
   readonly box: Box;
   readonly projection: Projection;
@@ -27,24 +28,24 @@ export interface MarkedPicture {
 
 export interface MarkingSteps {
   picture(): MarkedPicture | undefined;
-  // Without a ray the pointer goes.
+  // Sends the pointer's ray. Without a ray the pointer is removed.
   point(ray: WorldRay | undefined): void;
-  // Returns the message's id; undefined if it could not be sent.
+  // Sends a mark. Returns the message's id; undefined if it could not be sent.
   addMark(rays: readonly WorldRay[]): bigint | undefined;
   later: Later;
 }
 
 const POINT_EVERY_MS = 34;
-// Attempts at sending a mark, while the server is busy with the one before.
+// Maximum number of attempts to send a mark while the server is busy with the previous one.
 const MAX_SENDINGS = 25;
 const MAX_REMEMBERED = 64;
 const MAX_CORNERS = 64;
 const LETTER_PX = 22;
-// Between words and the picture's edge.
+// Minimum distance between a text and the picture's edge.
 const EDGE_PX = 4;
 const RING_PX = 60;
 const ARROW_PX = 70;
-// Shorter strokes are clicks.
+// A shorter stroke counts as a click.
 const SHORTEST_STROKE_PX = 4;
 
 // A mark that was sent.
@@ -57,7 +58,7 @@ interface SentMark {
 export class Marking {
   // The line that is being drawn, in CSS pixels of the window.
   readonly stroke = signal<readonly StrokePoint[]>([]);
-  // The words that the text tool writes.
+  // The text that the text tool writes.
   readonly words = signal("");
   readonly #session: SessionState;
   readonly #steps: MarkingSteps;
@@ -116,7 +117,7 @@ export class Marking {
     };
   }
 
-  // The tool in the hand; undefined for the camera.
+  // Returns the active tool; undefined for the camera.
   tool(): PictureTool | undefined {
     if (!this.#session.mayMark.peek()) return undefined;
     const tool = this.#session.tool.peek();
@@ -124,8 +125,8 @@ export class Marking {
     return { pointer: this.#pointer, pen: this.#pen, arrow: this.#arrow, text: this.#text }[tool];
   }
 
-  // Writes the words to the right of a place, or with their middle on it. Where they would leave the picture they are moved, and
-  // where they are wider than it they are smaller.
+  // Writes the text to the right of a place, or centred on it. A text that would leave the picture
+  // is moved. A text that is wider than the picture is written smaller.
   write({ left, top }: StrokePoint, from: "start" | "middle" = "start"): void {
     const words = this.words.peek().trim();
     const box = this.#steps.picture()?.box;
@@ -142,7 +143,8 @@ export class Marking {
     this.#addMark(joined(letterStrokes(words, place, heightPx)));
   }
 
-  // For who has no mouse: a ring around the middle of the picture, an arrow to it, the words beside it, the pointer on it.
+  // Makes a mark without a mouse. It is a ring around the middle of the picture, an arrow to the
+  // middle, the text on it, or the pointer on it.
   markMiddle(tool: Exclude<Tool, "camera">): void {
     const box = this.#steps.picture()?.box;
     if (box === undefined) return;
@@ -162,7 +164,8 @@ export class Marking {
     this.#points.offer(undefined);
   }
 
-  // The server did not take a mark. True if it is sent again, after the delay where there is one.
+  // Handles a mark that the server refused. Returns true if the mark will be sent again after the
+  // delay.
   refused(requestId: bigint, afterMs: number | undefined): boolean {
     const mark = this.#sent.get(requestId);
     if (mark === undefined) return false;
@@ -177,7 +180,7 @@ export class Marking {
     pendingMarks.value = [...others, waiting];
     const withdraw = this.#steps.later(afterMs, () => {
       this.#resting.delete(withdraw);
-      // A person who has joined again begins without pending marks.
+      // After joining again a page has no pending marks, so it must not resend this one.
       if (pendingMarks.peek().includes(waiting)) this.#send({ ...mark, pending: waiting });
     });
     this.#resting.add(withdraw);
@@ -236,7 +239,8 @@ export class Marking {
     });
   }
 
-  // The last of those that are pending, as the server takes them in the order in which they come.
+  // Sends a mark and puts it last among the pending marks, because the server accepts marks in the
+  // order of arrival.
   #send({ pending, rays, sendings }: SentMark): void {
     const { pendingMarks } = this.#session;
     const others = pendingMarks.peek().filter(({ id }) => id !== pending.id);
@@ -247,7 +251,7 @@ export class Marking {
     }
     const sent = { ...pending, requestId };
     this.#sent.set(requestId, { pending: sent, rays, sendings: sendings + 1 });
-    // Those that were taken have no answer of their own.
+    // The server sends no response to an accepted mark, so the oldest sent marks are forgotten.
     for (const oldest of this.#sent.keys()) {
       if (this.#sent.size <= MAX_REMEMBERED) break;
       this.#sent.delete(oldest);

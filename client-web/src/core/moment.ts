@@ -1,19 +1,20 @@
-// A valid time as people read it: the day, the clock in UTC, and the local clock where the storm has a place.
+// A valid time for people: the day, the clock in UTC, and the local clock if the storm has a place.
 
 import { formatElapsed } from "./units";
 
 export interface Moment {
-  // "2013-05-20"; "day 1" of an idealised run, which starts in year 1; empty where only the elapsed time is known.
+  // A date like "2013-05-20", or "day 1" for an idealised run, which starts in year 1. It is empty
+  // if only the elapsed time is known.
   readonly date: string;
-  // "20:00Z".
+  // A time like "20:00Z".
   readonly clock: string;
-  // "15:00 CDT"; undefined where there is no place or no date.
+  // A time like "15:00 CDT"; undefined if there is no place or no date.
   readonly local: string | undefined;
 }
 
 const VALID_TIME = /^(\d{4,})-(\d\d)-(\d\d)[T_ ](\d\d):(\d\d)(?::(\d\d))?/;
 
-// The instant of a valid time; undefined for idealised runs, whose years have no meaning.
+// Returns the instant of a valid time; undefined for idealised runs, whose years have no meaning.
 export function instantOf(validTime: string): Date | undefined {
   const match = VALID_TIME.exec(validTime);
   if (match === null || Number(match[1]) < 100) return undefined;
@@ -23,14 +24,15 @@ export function instantOf(validTime: string): Date | undefined {
   );
 }
 
-// From one valid time to another of the same run, idealised or not; undefined where one is not known.
+// Returns the seconds between two valid times of the same run, idealised or not; undefined if one
+// is unknown.
 export function secondsBetween(from: string, to: string): number | undefined {
   const [start, end] = [from, to].map((each) => {
     const match = VALID_TIME.exec(each);
     const [year, month, day, hour, minute, second] = (match ?? [])
       .slice(1)
       .map((part) => Number(part ?? 0));
-    // Years below 100 would mean those of 1900.
+    // Date.UTC would interpret years below 100 as years after 1900.
     return match === null
       ? undefined
       : Date.UTC((year ?? 0) + 2000, (month ?? 1) - 1, day, hour, minute, second);
@@ -52,10 +54,10 @@ export function momentOf(validTime: string, elapsedText: string, zone: string | 
   };
 }
 
-// "15:00 CDT" in a time zone of the IANA database.
+// Returns a time like "15:00 CDT" in a time zone of the IANA database.
 export function localClock(instant: Date, zone: string | undefined): string | undefined {
   if (zone === undefined) return undefined;
-  // American English knows the names of American zones.
+  // The locale en-US has the abbreviations of American zones.
   return new Intl.DateTimeFormat("en-US", {
     hour: "2-digit",
     minute: "2-digit",
@@ -65,15 +67,16 @@ export function localClock(instant: Date, zone: string | undefined): string | un
   }).format(instant);
 }
 
-// The zone that the sun keeps at a longitude, without summer time: until the zone of a place is known.
+// Returns the nautical time zone of a longitude, without daylight-saving time. It is used until the
+// zone of a place is known.
 export function zoneOfLongitude(longitudeDeg: number): string {
   const hours = Math.round(longitudeDeg / 15);
   if (hours === 0) return "Etc/GMT";
-  // The database's names count westwards.
+  // The names in the database count westwards.
   return `Etc/GMT${hours > 0 ? "-" : "+"}${Math.abs(hours)}`;
 }
 
-// Minutes that a zone is ahead of UTC at an instant.
+// Returns the minutes by which a zone is ahead of UTC at an instant.
 export function minutesAhead(instant: Date, zone: string): number {
   const parts = new Intl.DateTimeFormat("en-GB", {
     year: "numeric",
@@ -95,7 +98,7 @@ export function minutesAhead(instant: Date, zone: string): number {
   return Math.round((local - instant.getTime()) / 60_000);
 }
 
-// "2000-05-20 21:40Z", or what the storm's file has in its place.
+// Returns a text like "2000-05-20 21:40Z", or the elapsed time if the file has no valid time.
 export function timeInWords(
   time: { readonly validTime: string; readonly elapsedS: number } | undefined,
 ): string {

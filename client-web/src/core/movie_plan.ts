@@ -1,4 +1,5 @@
-// The pictures of a movie: the storm's times one after the other, seen from where the camera is or along the named views.
+// The pictures of a movie. They show the storm's times one after another, from the present camera
+// or along the named views.
 
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
@@ -9,7 +10,7 @@ export interface MovieDraft {
   readonly from: number;
   readonly to: number;
   readonly picturesPerSecond: number;
-  // For the path of the named views.
+  // Used for the path along the named views.
   readonly picturesPerView: number;
   readonly alongViews: boolean;
   readonly widthPx: number;
@@ -46,7 +47,8 @@ interface PathPoint {
   readonly timeIndex: number;
 }
 
-// From view to view: each begins and ends slowly. Where the kind of camera changes, the picture cuts.
+// Returns a path from view to view, with slow beginnings and ends. If the kind of camera changes,
+// the picture cuts.
 export function cameraPath(views: readonly NamedView[], perView: number): PathPoint[] {
   const stops = views.flatMap(({ camera, timeIndex }) => {
     const pose = poseOfCamera(camera);
@@ -83,7 +85,7 @@ function mix(from: unknown, to: unknown, share: number, isAngle: boolean): unkno
   if (Array.isArray(from))
     return from.map((each, at) => mix(each, (to as unknown[])[at], share, false));
   if (typeof from !== "number" || typeof to !== "number") return from;
-  // Angles turn by the shorter arc.
+  // Angles turn along the shorter arc.
   const change = isAngle ? ((((to - from) % 360) + 540) % 360) - 180 : to - from;
   return from + share * change;
 }

@@ -1,5 +1,6 @@
-// Movies whose pictures jobs of the server draw, one of each storm, remembered for this tab: after a reload the page goes
-// on with that of the storm that it shows.
+// Movies whose pictures are drawn by jobs on the server, at most one for each storm. They are
+// remembered for this tab. After a reload the page continues with the movie of the storm that it
+// shows.
 import type { MovieDraft } from "./movie_plan";
 import type { TextStore } from "./own_keys";
 
@@ -7,7 +8,7 @@ export interface MovieWork {
   readonly jobId: string;
   readonly pictures: number;
   readonly draft: MovieDraft;
-  // The storm that the pictures' texts are of.
+  // The storm that the texts in the pictures describe.
   readonly stormId: string;
 }
 
@@ -20,7 +21,8 @@ export class RememberedMovies {
     this.#store = store;
   }
 
-  // False where the browser keeps nothing: a reload loses the movie.
+  // Remembers the movie. Returns false if the browser stores nothing, in which case a reload loses
+  // the movie.
   remember(work: MovieWork): boolean {
     return this.#set(work.stormId, JSON.stringify(work));
   }

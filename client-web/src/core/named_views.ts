@@ -9,7 +9,7 @@ import type { TextStore } from "./own_keys";
 export interface NamedView {
   readonly name: string;
   readonly camera: Camera;
-  // Of the time that it was kept at: what a storm's times are counted from may change.
+  // Valid time at which the view was kept. The indices of a storm's times may change.
   readonly validTime: string;
   readonly timeIndex: number;
   // A small picture as a data URL; may be empty.
@@ -24,20 +24,23 @@ export class NamedViews {
   readonly #domain: () => string;
   readonly all = signal<readonly NamedView[]>([]);
 
-  // `domain` tells which one is shown; empty while that is not known, when there are no views.
+  // Makes the list of views. `domain` returns the domain that is shown. It is empty while the
+  // domain is unknown, and there are no views then.
   constructor(storage: TextStore | undefined, domain: () => string) {
     this.#storage = storage;
     this.#domain = domain;
   }
 
-  // Another domain is shown, or another tab has kept or forgotten a view.
+  // Loads the views because another domain is shown, or because another tab has kept or removed a
+  // view.
   load(): void {
     const domain = this.#domain();
     const stored = domain === "" ? [] : this.#read()[domain];
     this.all.value = (Array.isArray(stored) ? stored.flatMap(viewOf) : []).reduce(withView, []);
   }
 
-  // A name that is taken gets a number; MAX_VIEWS are kept. False if the view will not outlast the page, for want of storage.
+  // Keeps a view. A duplicate name gets a number. Only the last MAX_VIEWS are kept. Returns false
+  // if the view will not outlast the page, because it could not be stored.
   keep(view: NamedView): boolean {
     return this.#write(withView(this.all.peek(), view).slice(-MAX_VIEWS));
   }
@@ -46,7 +49,7 @@ export class NamedViews {
     this.#write(this.all.peek().filter((view) => view.name !== name));
   }
 
-  // With their times as numbers of these.
+  // Returns the views with their times as indices into these times.
   at(times: readonly StormTime[]): readonly NamedView[] {
     return this.all.value.map((view) => ({
       ...view,
@@ -54,7 +57,7 @@ export class NamedViews {
     }));
   }
 
-  // "View 3".
+  // Returns an unused name like "View 3".
   freeName(): string {
     const taken = new Set(this.all.peek().map(({ name }) => name));
     let number = 1;
@@ -70,7 +73,7 @@ export class NamedViews {
       this.#storage?.setItem(VIEWS_ITEM, JSON.stringify(all));
       return this.#storage !== undefined;
     } catch {
-      // Full.
+      // The storage is full.
       return false;
     }
   }
@@ -92,7 +95,7 @@ function withView(views: readonly NamedView[], view: NamedView): readonly NamedV
   return [...views, { ...view, name }];
 }
 
-// Nothing for what another version of the page wrote.
+// Returns no view if another version of the page wrote an incompatible entry.
 function viewOf(stored: unknown): NamedView[] {
   const { name, camera, validTime, timeIndex, picture } = (stored ?? {}) as Record<string, never>;
   try {

@@ -18,7 +18,7 @@ import {
   Transport,
 } from "../gen/thunderhead/v1/scene_pb";
 
-// "ICE_COLUMNS" is "ice columns"; undefined for one that is not known.
+// Returns a name like "ice columns" for "ICE_COLUMNS"; undefined if the value is unknown.
 export function enumeratorInWords(description: DescEnum, value: number): string | undefined {
   return description.value[value]?.localName.toLowerCase().replaceAll("_", " ");
 }
@@ -32,7 +32,7 @@ export function nameOfHydrometeor(hydrometeor: Hydrometeor): string {
   return nameOfEnumerator(HydrometeorSchema, hydrometeor);
 }
 
-// Those that are not named as their enumerator.
+// Names that differ from those of their enumerators.
 const PHASE_NAMES: Readonly<Partial<Record<PhaseKind, string>>> = {
   [PhaseKind.HENYEY_GREENSTEIN]: "Henyey–Greenstein",
   [PhaseKind.CORNETTE_SHANKS]: "Cornette–Shanks",
@@ -40,7 +40,7 @@ const PHASE_NAMES: Readonly<Partial<Record<PhaseKind, string>>> = {
   [PhaseKind.WATER_NARROW]: "Water droplets, all of 5 µm",
 };
 
-// Each phase function with its name.
+// Returns each phase function with its name.
 export function namesOfPhases(): [PhaseKind, string][] {
   return PhaseKindSchema.values
     .map(({ number }): PhaseKind => number)
@@ -56,7 +56,8 @@ const TECHNIQUE_NAMES: Readonly<Record<string, string>> = {
   [ReferenceSchema.typeName]: "Monte Carlo reference",
 };
 
-// `name` is that of TechniqueDescription. Techniques that the server was extended by have no other name.
+// Returns a technique's display name. `name` is that of TechniqueDescription. Techniques of server
+// extensions have no other name.
 export function nameOfTechnique(name: string): string {
   const field = RenderingSchema.fields.find((each) => each.name === name);
   return TECHNIQUE_NAMES[field?.message?.typeName ?? ""] ?? name;

@@ -1,4 +1,4 @@
-// The time of a storm with the nearest date.
+// Finds the time of a storm with the nearest date.
 import { secondsBetween } from "./moment";
 
 interface Dated {
@@ -7,14 +7,15 @@ interface Dated {
 
 export interface NearestTime {
   readonly index: number;
-  // Positive where it is later.
+  // Positive if the found time is later.
   readonly awayS: number;
 }
 
-// Runs farther apart have no times in common, such as an idealised one and a real one.
+// Runs that are farther apart than this have no times in common. An example is an idealised and a
+// real run.
 const FARTHEST_S = 2 * 86_400;
 
-// Undefined where no date is near, or where dates cannot be compared.
+// Returns the nearest time; undefined if no date is near or the dates cannot be compared.
 export function nearestTime(validTime: string, times: readonly Dated[]): NearestTime | undefined {
   let nearest: NearestTime | undefined;
   times.forEach((time, index) => {
@@ -25,12 +26,12 @@ export function nearestTime(validTime: string, times: readonly Dated[]): Nearest
   return nearest;
 }
 
-// The same number, as far as there are times.
+// Returns the same index, limited to the available times.
 export function sameNumber(index: number, times: readonly Dated[]): number {
   return Math.min(index, Math.max(0, times.length - 1));
 }
 
-// Of the nearest date, else of the same number.
+// Returns the index of the nearest date. If there is none, returns the same index.
 export function timeLike(validTime: string, index: number, times: readonly Dated[]): number {
   return nearestTime(validTime, times)?.index ?? sameNumber(index, times);
 }

@@ -1,6 +1,6 @@
 // Sends the newest of many values, at most one an interval. The last value is always sent.
 
-// Calls back after that time; returns a function that withdraws the call.
+// Calls `callback` after the delay. Returns a function that cancels the call.
 export type Later = (delayMs: number, callback: () => void) => () => void;
 
 export class Newest<T> {

@@ -1,7 +1,8 @@
-// The storage that the page uses in the browser: the presenters' keys of its own sessions, by viewer key, and the person's name. A
-// presenter's key is in no address but that of the presenter's link, which the page takes it out of at once.
+// The browser storage that the page uses. It holds the person's name and, by viewer key, the
+// presenter keys of this browser's sessions. Only the presenter's link contains a presenter key in
+// its address, and the page removes it from the address at once.
 
-// The part of the DOM's Storage that is used.
+// The part of the DOM's Storage that the page uses.
 export interface TextStore {
   getItem(name: string): string | null;
   setItem(name: string, text: string): void;
@@ -16,7 +17,7 @@ type Entry = readonly [viewerKey: string, presenterKey: string];
 
 export class OwnKeys {
   readonly #store: TextStore | undefined;
-  // Used where the browser denies storage.
+  // These are used if the browser denies access to its storage.
   #name = "";
   #entries: readonly Entry[] = [];
 
@@ -70,12 +71,12 @@ export class OwnKeys {
     try {
       this.#store?.setItem(item, text);
     } catch {
-      // Storage is full or denied: kept until the page is closed.
+      // The storage is full or denied, so the text lasts as long as the page.
     }
   }
 }
 
-// Counted in code points, as the server does.
+// The length is counted in code points, as on the server.
 export function trimmedName(name: string): string {
   return [...name.trim()].slice(0, LONGEST_NAME).join("");
 }

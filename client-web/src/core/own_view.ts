@@ -1,4 +1,5 @@
-// The view of a person who looks around: its camera, and the messages that begin, move and end it.
+// The own view of a person who looks around: its camera, and the messages that begin, move and end
+// it.
 import { type Signal, signal } from "@preact/signals-core";
 import type { Camera } from "../gen/thunderhead/v1/scene_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
@@ -20,7 +21,7 @@ export class OwnView {
   readonly #moves: Newest<Camera>;
   #camera: Camera | undefined;
 
-  // `active` is true while the person looks around.
+  // Makes the view. `active` is true while the person looks around.
   constructor(active: Signal<boolean>, steps: OwnViewSteps) {
     this.active = active;
     this.#steps = steps;
@@ -31,7 +32,8 @@ export class OwnView {
     return this.#pose.value;
   }
 
-  // A motion relative to the own pose, or to the pose that is shown when looking around begins.
+  // Moves the camera relative to its own pose. When looking around begins, moves it relative to the
+  // pose that is shown.
   move(motion: (pose: Pose) => Pose, shown: Pose | undefined): void {
     const from = this.active.peek() ? (this.#pose.peek() ?? shown) : shown;
     if (from !== undefined) this.show(cameraOfPose(motion(from)));
@@ -48,19 +50,19 @@ export class OwnView {
     this.#steps.detach(camera);
   }
 
-  // Where the server placed a camera that left that open.
+  // Takes the pose that the server chose for a camera without values.
   placed(camera: Camera | undefined): void {
     if (this.#pose.peek() === undefined) this.#pose.value = poseOfCamera(camera);
   }
 
-  // The button that ends it.
+  // Ends the view at the person's request, and tells the server.
   follow(): void {
     if (!this.active.peek()) return;
     this.end();
     this.#steps.follow();
   }
 
-  // It has ended, and the server knows.
+  // Ends the view without telling the server, which already knows.
   end(): void {
     this.#moves.clear();
     this.active.value = false;
@@ -68,7 +70,8 @@ export class OwnView {
     this.#pose.value = undefined;
   }
 
-  // Joined again: the server does not know of it.
+  // Begins the view again after the page has joined again, because the server does not know about
+  // it.
   resume(): void {
     if (this.active.peek() && this.#camera !== undefined) this.#steps.detach(this.#camera);
   }

@@ -1,5 +1,6 @@
-// Every parameter of a scene, read from the messages' descriptors: a field that is added to scene.proto is in this list without
-// a line of code. Values are read and changed by their path of fields.
+// Every parameter of a scene, read from the messages' descriptors. A field that is added to
+// scene.proto appears in this list without a change of code. Values are read and changed by their
+// path of fields.
 import {
   create,
   type DescField,
@@ -13,18 +14,18 @@ import { enumeratorInWords } from "./names";
 
 interface Step {
   readonly field: DescField;
-  // In a list.
+  // Index in a list.
   readonly index?: number;
 }
 
 interface Common {
-  // Such as "sun.azimuth_deg" or "fields[0].scale".
+  // A path such as "sun.azimuth_deg" or "fields[0].scale".
   readonly path: string;
-  // The field in the schema, such as "thunderhead.v1.Sun.azimuth_deg".
+  // The field's name in the schema, such as "thunderhead.v1.Sun.azimuth_deg".
   readonly fullName: string;
-  // In words, without its unit.
+  // The name for people, without the unit.
   readonly name: string;
-  // The part of the scene that it belongs to, such as "sun" or "fields".
+  // The part of the scene that contains the parameter, such as "sun" or "fields".
   readonly group: string;
   readonly steps: readonly Step[];
 }
@@ -45,7 +46,8 @@ export interface ParameterOption {
 
 type Fields = Record<string, unknown>;
 
-// The parameters that the scene has now: of a oneof only the case that is set, of a list its elements.
+// Returns the parameters that the scene has now. They include only the set case of a oneof, and
+// each element of a list.
 export function parametersOf(scene: Scene): Parameter[] {
   return SceneSchema.fields.flatMap((field) => ofField(scene, field, [], "", field.name));
 }
@@ -120,7 +122,7 @@ function nameOf(field: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
-// Undefined if it is absent.
+// Returns the parameter's value; undefined if it is absent.
 export function parameterValue(scene: Scene, { steps }: Parameter): unknown {
   let at: unknown = scene;
   for (const step of steps) {
@@ -138,7 +140,7 @@ function valueAt(owner: Message, { field, index }: Step): unknown {
   return index === undefined ? value : (value as unknown[])[index];
 }
 
-// A scene with another value of it; undefined leaves it to the server.
+// Returns the scene with another value of the parameter. Undefined leaves the value to the server.
 export function withParameter(scene: Scene, { steps }: Parameter, value: unknown): Scene {
   return changed(scene, steps, value) as Scene;
 }

@@ -1,4 +1,4 @@
-// The rectangle that a picture takes in a canvas: as large as fits, in the middle.
+// The rectangle of a picture in a canvas: centred, and as large as fits.
 import type { PicturePoint } from "./projection";
 
 export interface Box {
@@ -24,7 +24,7 @@ export function pictureBox(canvas: Size, picture: Size): Box {
   };
 }
 
-// Undefined outside the picture.
+// Returns the point in the picture; undefined outside the picture.
 export function picturePointAt(box: Box, left: number, top: number): PicturePoint | undefined {
   const x = (2 * (left - box.left)) / box.width - 1;
   const y = 1 - (2 * (top - box.top)) / box.height;

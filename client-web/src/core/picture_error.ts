@@ -1,15 +1,16 @@
-// The error of a picture in words.
+// Describes the error of a picture as text.
 import type { AccuracyReport } from "../gen/thunderhead/v1/frame_pb";
 import { formatNumber } from "./units";
 
-// "measured: 8.1 to 9.4 %", or where the figure comes from until it is.
+// Returns a text like "measured: 8.1 to 9.4 %". Before the error is measured, it names the source
+// of the estimate instead.
 export function errorSource(report: AccuracyReport): string {
   if (report.errorLow === undefined || report.errorHigh === undefined)
     return "from a table, until measured";
   return `measured: ${formatNumber(100 * report.errorLow)} to ${formatNumber(100 * report.errorHigh)} %`;
 }
 
-// "2 % too dark"; empty where it is not measured.
+// Returns a text like "2 % too dark"; empty if the bias is not measured.
 export function biasInWords(report: AccuracyReport): string {
   if (report.bias === undefined) return "";
   const amount = formatNumber(100 * Math.abs(report.bias));

@@ -1,14 +1,15 @@
-// Plays a storm's times at a chosen rate, and waits for the picture of one time before it goes on to the next.
+// Plays a storm's times at a chosen rate. It waits for the picture of one time before it continues
+// with the next.
 import { type ReadonlySignal, type Signal, signal } from "@preact/signals-core";
 
 export interface PlaybackSteps {
   timeCount(): number;
   timeIndex(): number;
-  // True once the picture of this time is on the screen.
+  // Returns true once the picture of this time is on the screen.
   isShown(index: number): boolean;
-  // `plays` where nobody has asked for this very time.
+  // Shows a time. `plays` is true if playback rather than the person chose it.
   showTime(index: number, plays: boolean): void;
-  // Requests one call at the next screen refresh; returns a function that cancels it.
+  // Requests one call at the next screen refresh. Returns a function that cancels it.
   onNextPaint(callback: (nowMs: number) => void): () => void;
 }
 
@@ -18,7 +19,7 @@ export class Playback {
   readonly #steps: PlaybackSteps;
   readonly #playing = signal(false);
   readonly timesPerSecond: Signal<number> = signal(2);
-  // False: play ends at the last time.
+  // False: playback stops at the last time.
   readonly loops: Signal<boolean> = signal(true);
   #lastStepMs: number | undefined;
   #withdrawPaint: (() => void) | undefined;
@@ -50,7 +51,8 @@ export class Playback {
     this.#withdrawPaint = undefined;
   }
 
-  // One time forward or back, wrapping around at the ends. Ends play: this time is to stay.
+  // Goes one time forward or back, and wraps around at the ends. Stops playback so that this time
+  // stays.
   step(by: number): void {
     this.pause();
     this.#step(by, false);

@@ -1,11 +1,12 @@
-// A text inside a PNG file, in an iTXt chunk (PNG specification, third edition, 11.3.3.4): programs that do not know it keep or
-// skip it.
+// A text inside a PNG file, in an iTXt chunk (PNG specification, third edition, 11.3.3.4). Programs
+// that do not know this text keep it or skip it.
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
-// Length and type before a chunk's data, its checksum after them.
+// Size of a chunk's length and type, which precede its data, and of its checksum, which follows.
 const CHUNK_BYTES = 12;
 
-// The file with the text in it, before its first picture data. Undefined if it is no PNG.
+// Returns the file with the text inserted before its first image data; undefined if it is not a
+// PNG.
 export function withPngText(
   file: Uint8Array,
   keyword: string,
@@ -21,13 +22,13 @@ export function withPngText(
   return result;
 }
 
-// The text under that keyword; undefined if there is none, or the file is no PNG.
+// Returns the text with that keyword; undefined if there is none or the file is not a PNG.
 export function pngText(file: Uint8Array, keyword: string): string | undefined {
   for (const { type, data } of chunksOf(file) ?? []) {
     if (type !== "iTXt") continue;
     const end = data.indexOf(0);
     if (new TextDecoder().decode(data.subarray(0, end)) !== keyword) continue;
-    // Not compressed; language and translated keyword are skipped.
+    // Only uncompressed texts are read. The language and the translated keyword are skipped.
     if (data[end + 1] !== 0) continue;
     const language = data.indexOf(0, end + 3);
     const translated = data.indexOf(0, language + 1);
@@ -57,7 +58,7 @@ function chunksOf(file: Uint8Array): Chunk[] | undefined {
 }
 
 function itxtChunk(keyword: string, text: string): Uint8Array {
-  // No compression, no language, no translated keyword.
+  // The zero bytes mean no compression, no language and no translated keyword.
   const data = new TextEncoder().encode(`iTXt${keyword}\0\0\0\0\0${text}`);
   const chunk = new Uint8Array(data.length + 8);
   const view = new DataView(chunk.buffer);
@@ -67,7 +68,7 @@ function itxtChunk(keyword: string, text: string): Uint8Array {
   return chunk;
 }
 
-// Of ISO 3309, as PNG has it.
+// Computes the CRC of ISO 3309, which PNG uses.
 export function crc32(bytes: Uint8Array): number {
   let crc = 0xffffffff;
   for (const byte of bytes) {

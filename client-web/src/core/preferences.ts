@@ -1,4 +1,4 @@
-// A person's own choices, kept in the browser's storage: units, and the texts over the picture.
+// A person's preferences, kept in the browser's storage: units, and the texts over the picture.
 import type { Signal } from "@preact/signals-core";
 import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
 import type { TextStore } from "./own_keys";
@@ -23,7 +23,7 @@ export function loadPreferences(store: TextStore | undefined, { units, annotatio
   };
 }
 
-// The signals' values, into the storage. Reads them, to be called from an effect.
+// Stores the signals' values. It reads the signals, so an effect must call it.
 export function keepPreferences(
   store: TextStore | undefined,
   { units, annotations }: Preferred,
@@ -32,7 +32,7 @@ export function keepPreferences(
   try {
     store?.setItem(ITEM, text);
   } catch {
-    // Full or denied: they last as long as the page.
+    // The storage is full or denied, so the choices last as long as the page.
   }
 }
 

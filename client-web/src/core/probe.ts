@@ -3,7 +3,7 @@ import type { ProbeRayResponse, RayPlace } from "../gen/thunderhead/v1/probe_pb"
 import type { WorldRay } from "./projection";
 
 export interface Probed {
-  // The picture that was clicked on: B is the one that is compared with A.
+  // The picture that was clicked. In a comparison, B is the picture that is compared with A.
   readonly picture: "A" | "B";
   readonly stormId: string;
   readonly ray: WorldRay;
@@ -12,10 +12,10 @@ export interface Probed {
 
 // The displacement from one place to another.
 export interface Displacement {
-  // Along the ground.
+  // Distance along the ground.
   readonly distanceM: number;
   readonly heightM: number;
-  // Clockwise from north.
+  // Azimuth clockwise from north.
   readonly azimuthDeg: number;
 }
 
@@ -34,7 +34,7 @@ export function displacementBetween(
   };
 }
 
-// A mixing ratio, a mass or an extinction in the unit that people read it in.
+// Returns the display unit of a mixing ratio, a mass or an extinction.
 export function readable(units: string): { readonly factor: number; readonly symbol: string } {
   switch (units) {
     case "kg kg-1":
@@ -46,7 +46,7 @@ export function readable(units: string): { readonly factor: number; readonly sym
   }
 }
 
-// "35.21° N 97.44° W".
+// Returns a text like "35.21° N 97.44° W".
 export function placeInWords(latitudeDeg: number, longitudeDeg: number): string {
   const part = (deg: number, positive: string, negative: string) =>
     `${Math.abs(deg).toFixed(2)}° ${deg < 0 ? negative : positive}`;

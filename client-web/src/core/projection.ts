@@ -1,5 +1,6 @@
-// Where world points are in a picture, and which rays its pixels stand for, by Frame.view. x and y are -1 at the picture's
-// left and bottom edge, 1 at the right and top.
+// Projects world points into a picture by Frame.view, and returns the rays of its pixels. The
+// coordinate x is -1 at the picture's left edge and 1 at the right edge. The coordinate y is -1 at
+// the bottom and 1 at the top.
 import type { View } from "../gen/thunderhead/v1/frame_pb";
 
 export type Vec3 = readonly [number, number, number];
@@ -22,7 +23,7 @@ export interface WorldRay {
   readonly direction: Vec3;
 }
 
-// Points nearer than this to the plane of a perspective eye have no place in the picture.
+// Minimum depth in front of a perspective eye. Nearer points have no position in the picture.
 const NEAR_M = 1;
 
 export function projectionOf(view: View | undefined): Projection | undefined {
@@ -49,14 +50,14 @@ export function pointOnRay({ originM, direction }: WorldRay, times: number): Vec
   return add(originM, scaled(direction, times));
 }
 
-// Undefined for a point behind the eye.
+// Returns the position in the picture; undefined for a point behind the eye.
 export function project(projection: Projection, pointM: Vec3): PicturePoint | undefined {
   const depthM = depthOf(projection, pointM);
   if (!projection.parallel && depthM < NEAR_M) return undefined;
   return place(projection, pointM, depthM);
 }
 
-// The visible parts of a line: what is behind the eye is cut off.
+// Returns the visible parts of a line, without those behind the eye.
 export function projectLine(projection: Projection, pointsM: readonly Vec3[]): PicturePoint[][] {
   if (projection.parallel) return [pointsM.map((point) => place(projection, point, 1))];
   const parts: PicturePoint[][] = [];

@@ -1,5 +1,5 @@
-// Scene.rendering: a technique with its own settings, or a preset that stands for one. The settings that a technique has
-// are read from its message in the schema.
+// Scene.rendering is a technique with its own settings, or a preset that stands for one. This file
+// reads a technique's settings from its message in the schema.
 import {
   create,
   type DescField,
@@ -28,7 +28,8 @@ export type Settings = Exclude<Rendering["technique"]["value"], Preset | undefin
 
 type FieldsOf<T extends Message> = Omit<T, keyof Message>;
 
-// Settings that several techniques have. Undefined: the technique's default, or not one of its settings.
+// Settings that several techniques share. Undefined means the technique's default, or a setting
+// that the technique does not have.
 export type SharedSettings = Partial<FieldsOf<LightVolume>>;
 
 export type SettingsChange = SharedSettings &
@@ -36,20 +37,22 @@ export type SettingsChange = SharedSettings &
   Partial<FieldsOf<Cumulus>> &
   Partial<FieldsOf<OtherTechnique>>;
 
-// The presets that trade speed for accuracy, fastest first. The others are the papers'.
+// The presets that trade speed for accuracy, fastest first. The other presets are the papers'
+// settings.
 export const QUALITY_PRESETS: readonly Preset[] = [Preset.FAST, Preset.BALANCED, Preset.TRUE];
 
 const TECHNIQUES: readonly (DescField & { readonly message: DescMessage })[] =
   RenderingSchema.fields.flatMap((field) => (field.fieldKind === "message" ? [field] : []));
 
-// Settings kept when the technique changes. The others have another default in each technique, for a reason.
+// Settings that are kept when the technique changes. The other settings are reset because each
+// technique has different defaults for them.
 const KEPT = ["slices", "thetaFDeg", "perFieldPhase", "falseColors"] as const;
 
 function fieldOf(settings: Settings) {
   return TECHNIQUES.find((field) => field.message.typeName === settings.$typeName);
 }
 
-// Undefined for a preset.
+// Returns the technique's settings; undefined for a preset.
 export function settingsOf(rendering: Rendering | undefined): Settings | undefined {
   const value = rendering?.technique.value;
   return typeof value === "object" ? value : undefined;
@@ -64,7 +67,7 @@ export function renderingOf(settings: Settings): Rendering {
   return { ...create(RenderingSchema), technique: technique as Rendering["technique"] };
 }
 
-// The technique's name, as in TechniqueDescription.
+// Returns the technique's name, as in TechniqueDescription.
 export function techniqueNameOf(settings: Settings): string {
   if (isMessage(settings, OtherTechniqueSchema)) return settings.name;
   return fieldOf(settings)?.name ?? "";
@@ -74,13 +77,14 @@ export function hasSetting(settings: Settings, name: keyof SharedSettings): bool
   return fieldOf(settings)?.message.field[name] !== undefined;
 }
 
-// Undefined where the technique has no such setting.
+// Returns a setting's limits; undefined if the technique does not have the setting.
 export function settingLimits(settings: Settings, name: keyof SharedSettings): Limits | undefined {
   const field = fieldOf(settings)?.message.field[name];
   return field === undefined ? undefined : limitsOf(field);
 }
 
-// A switch of the technique's; false where it has no such setting.
+// Returns whether a switch of the technique is on; false if the technique does not have the
+// setting.
 export function isSettingOn(
   settings: Settings,
   name: "detail" | "falseColors" | "perFieldPhase",
@@ -89,7 +93,7 @@ export function isSettingOn(
   return field !== undefined && (sharedSettingsOf(settings)[name] ?? defaultOnOf(field));
 }
 
-// Undefined for a technique without a choice of transport.
+// Returns the transport; undefined for a technique without a choice of transport.
 export function transportOf(
   settings: Settings,
   technique: TechniqueDescription | undefined,
@@ -100,7 +104,7 @@ export function transportOf(
   return field === undefined ? undefined : defaultChoiceOf(field);
 }
 
-// True if the setting `traced_light` has an effect.
+// Returns true if the setting `traced_light` has an effect.
 export function tracesLight(settings: Settings, technique: TechniqueDescription): boolean {
   return (
     technique.showsTracedLight &&
@@ -109,13 +113,13 @@ export function tracesLight(settings: Settings, technique: TechniqueDescription)
   );
 }
 
-// True if the picture shows the fields' turbulent detail.
+// Returns true if the picture shows the fields' turbulent detail.
 export function drawsDetail(settings: Settings, technique: TechniqueDescription): boolean {
   const asked = !hasSetting(settings, "detail") || isSettingOn(settings, "detail");
   return technique.showsDetail && asked;
 }
 
-// True if the picture shows the fields' false colours.
+// Returns true if the picture shows the fields' false colours.
 export function drawsFalseColors(settings: Settings, technique: TechniqueDescription): boolean {
   return technique.showsFieldOptics && isSettingOn(settings, "falseColors");
 }
@@ -125,7 +129,8 @@ export function withSettings(rendering: Rendering, change: SettingsChange): Rend
   return settings === undefined ? rendering : renderingOf({ ...settings, ...change } as Settings);
 }
 
-// Changes the transport, and leaves it to the server when to trace light: not all transports are corrected by it.
+// Changes the transport, and lets the server decide when to trace paths, because path tracing does
+// not correct every transport.
 export function withTransport(rendering: Rendering, transport: Transport): Rendering {
   const settings = settingsOf(rendering);
   const traces = settings !== undefined && hasSetting(settings, "tracedLight");
@@ -133,7 +138,7 @@ export function withTransport(rendering: Rendering, transport: Transport): Rende
   return withSettings(rendering, { transport, ...rest });
 }
 
-// Changes the technique. Shared settings are kept; the server fills in the others.
+// Changes the technique. Shared settings are kept, and the server fills in the others.
 export function withTechnique(rendering: Rendering, name: string): Rendering {
   const field = TECHNIQUES.find((other) => other.name === name);
   if (field === undefined) return renderingOf(create(OtherTechniqueSchema, { name }));
@@ -150,7 +155,8 @@ export function renderingOfPreset(preset: Preset): Rendering {
   return create(RenderingSchema, { technique: { case: "preset", value: preset } });
 }
 
-// Replaces a preset by the technique and settings that it stands for; undefined if the server has not sent them.
+// Replaces a preset by the technique and settings that it stands for. Returns undefined if the
+// server has not sent them.
 export function resolved(
   rendering: Rendering | undefined,
   presets: readonly PresetDescription[],
@@ -160,7 +166,7 @@ export function resolved(
   return presets.find(({ preset }) => preset === value)?.rendering;
 }
 
-// The preset with exactly this technique and these settings, if there is one.
+// Returns the preset with exactly this technique and these settings, if there is one.
 export function presetOf(
   rendering: Rendering | undefined,
   presets: readonly PresetDescription[],

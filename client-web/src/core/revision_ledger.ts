@@ -1,5 +1,6 @@
-// Matches the scenes sent with the frames shown: the latency from sending a scene to showing a frame of it or of a later
-// one, and the storm's time that is on the screen.
+// Matches the scenes that were sent with the frames that were shown. It gives the latency from
+// sending a scene to showing that scene or a later one. It also gives the storm's time that is on
+// the screen.
 
 interface Sent {
   readonly sentAtMs: number;
@@ -7,7 +8,8 @@ interface Sent {
   revision: bigint | undefined;
 }
 
-// Sent scenes that may await their frame at a time; older ones are dropped without a latency.
+// Maximum number of sent scenes that wait for their frame. Older ones are dropped without a
+// latency.
 const MAX_OPEN = 64;
 const MAX_LATENCIES = 60;
 
@@ -18,12 +20,12 @@ export class RevisionLedger {
   #newestShown = -1n;
   #shownTimeIndex: number | undefined;
 
-  // The time index of our newest revision on the screen.
+  // Returns the time index of the newest recorded revision on the screen.
   get shownTimeIndex(): number | undefined {
     return this.#shownTimeIndex;
   }
 
-  // The median of recent latencies.
+  // Returns the median of the recent latencies.
   get latencyMs(): number | undefined {
     const sorted = [...this.#latenciesMs].sort((a, b) => a - b);
     return sorted[Math.floor(sorted.length / 2)];
@@ -33,7 +35,7 @@ export class RevisionLedger {
     return this.#latenciesMs[this.#latenciesMs.length - 1];
   }
 
-  // Revisions restart with a new session.
+  // Forgets all revisions, because they restart with a new session.
   startSession(): void {
     this.#open = [];
     this.#recentlyShown = [];
@@ -41,7 +43,7 @@ export class RevisionLedger {
     this.#shownTimeIndex = undefined;
   }
 
-  // A scene is sent; returns the functions to call with the server's answer.
+  // Records that a scene is sent. Returns the functions to call with the server's response.
   sent(timeIndex: number, nowMs: number): { accepted(revision: bigint): void; refused(): void } {
     const entry: Sent = { sentAtMs: nowMs, timeIndex, revision: undefined };
     this.#open.push(entry);
@@ -54,21 +56,22 @@ export class RevisionLedger {
     };
   }
 
-  // A scene by somebody else is in force; it has no latency here.
+  // Records a scene that another viewer has set. It counts for the shown time but not for the
+  // latency.
   told(timeIndex: number, revision: bigint): void {
     this.#open.push({ sentAtMs: Number.POSITIVE_INFINITY, timeIndex, revision });
     if (this.#open.length > MAX_OPEN) this.#open.shift();
     this.#close();
   }
 
-  // A frame of this revision is on the screen.
+  // Records that a frame of this revision is on the screen.
   shown(revision: bigint, nowMs: number): void {
     this.#recentlyShown.push({ revision, atMs: nowMs });
     if (this.#recentlyShown.length > MAX_OPEN) this.#recentlyShown.shift();
     this.settled(revision);
   }
 
-  // This revision will get no more: it has a frame, or a problem in its place.
+  // Records that this revision is finished: it was shown, or it has a problem instead of a frame.
   settled(revision: bigint): void {
     if (revision > this.#newestShown) this.#newestShown = revision;
     this.#close();
@@ -79,7 +82,8 @@ export class RevisionLedger {
     this.#close();
   }
 
-  // Called by both ends, as a frame may arrive before the reply that names its revision.
+  // Closes the scenes that were shown. Both accepted() and shown() call it, because a frame may
+  // arrive before the response that names its revision.
   #close(): void {
     const stillOpen: Sent[] = [];
     for (const entry of this.#open) {

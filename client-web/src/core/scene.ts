@@ -1,5 +1,5 @@
-// Scenes as immutable values: a change returns a new scene that shares unchanged parts, so `===` detects changes. Absent
-// values mean their defaults, as in proto/thunderhead/v1/scene.proto.
+// Scenes as immutable values. A change returns a new scene that shares the unchanged parts, so
+// `===` detects changes. Absent values mean their defaults, as in proto/thunderhead/v1/scene.proto.
 import {
   create,
   type DescMessage,
@@ -97,7 +97,7 @@ export const LIMITS = {
   maxMilliseconds: limitsOf(AccuracySchema.field.maxMilliseconds),
 } as const satisfies Record<string, Limits>;
 
-// Of absent switches and choices.
+// Defaults of absent switches and choices.
 export const DEFAULTS = {
   visible: defaultOnOf(FieldParametersSchema.field.visible),
   borders: defaultOnOf(GroundSchema.field.borders),
@@ -137,7 +137,8 @@ export function withSunClock(scene: Scene, change: Change<SunClock>): Scene {
   });
 }
 
-// The lights besides the sun. All of them, so that an edit that is applied again changes nothing.
+// Sets all lights except the sun. It replaces the whole list, so that applying an edit twice has no
+// further effect.
 export function withLights(scene: Scene, lights: readonly DirectionalLight[]): Scene {
   return changed(scene, { lights: [...lights] });
 }
@@ -160,7 +161,8 @@ export function withRendering(scene: Scene, rendering: Rendering | undefined): S
   return changed(scene, { rendering });
 }
 
-// The scene with rendering and fields as the server completed them: every setting filled in. Itself where nothing was missing.
+// Returns the scene with rendering and fields as the server completed them, with every setting
+// filled in. Returns the same scene if nothing was missing.
 export function withCompleted(scene: Scene, { rendering, fields }: Scene): Scene {
   const sameRendering =
     rendering === undefined || isSame(RenderingSchema, scene.rendering, rendering);
@@ -179,8 +181,8 @@ function isSame<T extends DescMessage>(
   return a !== undefined && equals(schema, a, b);
 }
 
-// Replaces technique and settings by a preset, which also stands for where particles' sizes come from. Also drops an
-// accuracy goal, for which the server would choose other settings.
+// Replaces technique and settings by a preset, which also determines the source of the particle
+// sizes. Drops an accuracy goal, for which the server would choose other settings.
 export function withPreset(scene: Scene, preset: Preset): Scene {
   return changed(scene, {
     rendering: renderingOfPreset(preset),
@@ -201,7 +203,7 @@ export function withAccuracy(scene: Scene, accuracy: Accuracy | undefined): Scen
   return changed(scene, { accuracy });
 }
 
-// Changes one field's settings; a field that the scene does not list yet is added.
+// Changes one field's settings. Adds the field if the scene does not list it yet.
 export function withField(
   scene: Scene,
   hydrometeor: Hydrometeor,
@@ -232,15 +234,16 @@ export function withDetail(scene: Scene, hydrometeor: Hydrometeor, change: Chang
   return withField(scene, hydrometeor, { detail });
 }
 
-// Shows one of another storm's times. Settings that belong to the old one (fields, time, camera, clock) are dropped; light, rendering and
-// picture stay.
+// Shows one of another storm's times. Drops the settings that belong to the old storm: fields,
+// time, camera and clock. Keeps light, rendering and picture.
 export function withStorm(scene: Scene, stormId: string, timeIndex: number): Scene {
   const next = changed(scene, { stormId, timeIndex, camera: undefined, fields: [] });
   return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 
-// Shows a time of another run of the same model, from the same place and with the same settings. Its first time is `laterS` after that
-// of the run before, and so is the sun's clock there, which counts from it.
+// Shows a time of another run of the same model, from the same place and with the same settings.
+// The new run's first time is `laterS` later. The sun's clock counts from the first time, so it
+// moves by the same amount.
 export function withRun(scene: Scene, stormId: string, timeIndex: number, laterS: number): Scene {
   const next = changed(scene, { stormId, timeIndex });
   const first = Date.parse(scene.sun?.clock?.dateTime ?? "");
@@ -248,14 +251,14 @@ export function withRun(scene: Scene, stormId: string, timeIndex: number, laterS
   return withSunClock(next, { dateTime: firstDateTime(new Date(first), -laterS) });
 }
 
-// Where the sizes of a field's particles come from: a radius that is given comes first, then the field's own choice,
-// then the scene's.
+// Returns the source of a field's particle sizes. A given radius has priority, then the field's own
+// choice, then the scene's.
 function sizesOf(scene: Scene, set: FieldParameters | undefined): ParticleSizes {
   if (set?.radiusM !== undefined) return ParticleSizes.GIVEN;
   return set?.sizes || scene.particleSizes || ParticleSizes.MODEL;
 }
 
-// Chooses where all particles' sizes come from. Fields no longer say so themselves.
+// Sets the source of all particle sizes, and clears that of each single field.
 export function withParticleSizes(scene: Scene, particleSizes: ParticleSizes): Scene {
   return changed(scene, {
     particleSizes,
@@ -265,7 +268,7 @@ export function withParticleSizes(scene: Scene, particleSizes: ParticleSizes): S
   });
 }
 
-// Chooses where one field's sizes come from; `radiusM` is for sizes that are given.
+// Sets the source of one field's particle sizes. `radiusM` applies to given sizes.
 export function withFieldSizes(
   scene: Scene,
   hydrometeor: Hydrometeor,
@@ -276,7 +279,7 @@ export function withFieldSizes(
   return withField(scene, hydrometeor, { sizes, radiusM: given ? radiusM : undefined });
 }
 
-// A field's settings as drawn: the scene's, else the defaults of the storm's description.
+// Returns a field's settings as drawn: the scene's, or the defaults of the storm's description.
 export function effectiveField(
   scene: Scene,
   hydrometeor: Hydrometeor,
@@ -307,7 +310,7 @@ export function effectiveField(
   });
 }
 
-// Picture size for a canvas in device pixels, scaled by `resolution`.
+// Returns the picture size for a canvas in device pixels, scaled by `resolution`.
 export function outputSize(
   widthPx: number,
   heightPx: number,
@@ -338,7 +341,8 @@ export function sceneToUrlText(scene: Scene): string {
   return text;
 }
 
-// Undefined if the text is not a scene, for example in a truncated link.
+// Reads a scene from the text of an address. Returns undefined if the text is not a scene, for
+// example in a truncated link.
 export function sceneFromUrlText(text: string): Scene | undefined {
   const bytes = new Uint8Array(Math.floor((text.length * 3) / 4));
   let bits = 0;

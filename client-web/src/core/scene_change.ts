@@ -1,4 +1,5 @@
-// The difference of two messages, member by member, to be applied to a third one that differs elsewhere.
+// The difference of two messages, member by member. It can be applied to a third message that may
+// differ elsewhere.
 import { create, type DescMessage, equals, type Message } from "@bufbuild/protobuf";
 
 export type Side = "before" | "after";
@@ -20,7 +21,7 @@ interface Parts {
   readonly parts: ReadonlyMap<string, Change>;
 }
 
-// The same number of messages on both sides.
+// Lists with the same number of messages on both sides.
 interface Items {
   readonly kind: "list";
   readonly items: readonly (Change | undefined)[];
@@ -36,7 +37,7 @@ export function changeBetween(
   return changeOfMessage(schema, membersOf(before), membersOf(after));
 }
 
-// The message with the changed members as they are on that side.
+// Returns the message with the changed members as they are on that side.
 export function withChange<T extends Message>(message: T, change: Change, side: Side): T {
   return applied(message, change, side) as T;
 }
@@ -88,7 +89,7 @@ function applied(present: unknown, change: Change, side: Side): unknown {
     case "value":
       return change[side];
     case "list":
-      // A list of another length is somebody else's.
+      // A list with a different length was changed by another viewer.
       if (!Array.isArray(present) || present.length !== change.items.length) return present;
       return present.map((item, at) => {
         const part = change.items[at];
@@ -106,7 +107,7 @@ function appliedToMessage(
 ): Members | undefined {
   const { schema, parts } = change;
   const base = present ?? (create(schema) as unknown as Members);
-  // Absent again, unless somebody else has put something into it.
+  // The message was absent before, so it is removed, unless another viewer has set something in it.
   const other = change[side === "before" ? "after" : "before"];
   if (change[side] === undefined && isSame(schema, base, other)) return undefined;
   const changed = [...parts].map(([name, part]) => [name, applied(base[name], part, side)]);

@@ -1,4 +1,4 @@
-// A scene as a file: JSON by protobuf's mapping, by itself or inside a picture.
+// A scene as a file: JSON by protobuf's mapping, alone or inside a PNG.
 import { fromJson, toJson } from "@bufbuild/protobuf";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { pngText, withPngText } from "./png_text";
@@ -9,7 +9,7 @@ export function sceneToText(scene: Scene): string {
   return JSON.stringify(toJson(SceneSchema, scene), null, 2);
 }
 
-// Throws an Error for people if the text is no scene.
+// Reads a scene from JSON. Throws an Error with a message for people if the text is not a scene.
 export function sceneOfText(text: string): Scene {
   try {
     return fromJson(SceneSchema, JSON.parse(text), { ignoreUnknownFields: true });
@@ -22,7 +22,8 @@ export function withScene(png: Uint8Array, scene: Scene): Uint8Array<ArrayBuffer
   return withPngText(png, KEYWORD, sceneToText(scene));
 }
 
-// Throws an Error for people if there is no scene in the file.
+// Reads a scene from a file. Throws an Error with a message for people if the file contains no
+// scene.
 export function sceneOfFile(bytes: Uint8Array): Scene {
   const inside = pngText(bytes, KEYWORD);
   if (inside !== undefined) return sceneOfText(inside);

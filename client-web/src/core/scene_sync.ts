@@ -1,6 +1,7 @@
-// Keeps the page's scene and the session's the same. Edits are functions of a scene: they are applied to the page's at once,
-// sent at most once a screen refresh, a few at a time, and applied again to the server's scene where somebody else changed
-// that meanwhile.
+// Synchronizes the page's scene with the session's. Edits are functions of a scene. They are
+// applied to the page's scene at once. They are then sent as scenes, at most one a screen refresh
+// and only a few in flight. If another viewer has changed the session's scene meanwhile, the edits
+// are applied again to that scene.
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { Later } from "./newest";
 
@@ -8,34 +9,36 @@ export type Edit = (scene: Scene) => Scene;
 
 export type SceneVerdict =
   | { readonly kind: "taken"; readonly revision: bigint }
-  // The session's scene is another one than the edits were made to.
+  // The edits were made to another scene than the session's current one.
   | { readonly kind: "stale" }
-  // The server has too much to do; the same scene may be taken later.
+  // The server has too much to do. It may accept the same scene later.
   | { readonly kind: "busy"; readonly message: string }
   | { readonly kind: "refused"; readonly message: string };
 
 export interface SyncSteps {
-  // The page's scene, with every edit.
+  // Returns the page's scene, with every edit.
   scene(): Scene;
   // Shows a scene in the controls.
   adopt(scene: Scene): void;
-  // The server's completed version of the page's own scene.
+  // Takes the server's completed version of the page's own scene.
   complete(scene: Scene): void;
-  // Somebody else's scene is in force.
+  // Reports that another viewer's scene is in force.
   changedByOthers(scene: Scene, revision: bigint): void;
-  // Rejects if the connection is lost.
+  // Sends a scene. Rejects if the connection is lost.
   send(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict>;
   taken(): void;
-  // The revision on which page and server agree may have changed: SceneSync.agreed.
+  // Reports that the revision on which page and server agree may have changed. See
+  // SceneSync.agreed.
   agreed?(revision: bigint | undefined): void;
-  // A scene was refused, or is sent again later as the server is busy.
+  // Reports that a scene was refused, or that it will be sent again because the server is busy.
   refused(message: string): void;
-  // Requests one call at the next screen refresh; returns a function that cancels it.
+  // Requests one call at the next screen refresh. Returns a function that cancels it.
   onNextPaint(callback: () => void): () => void;
   later: Later;
 }
 
-// Over a far link a drag does not wait for each answer: 26 scenes a second leave where an answer takes 150 ms.
+// Several scenes may be in flight, so that a drag over a slow link need not wait for each response.
+// At a round trip of 150 ms the page sends 26 scenes a second.
 const MAX_IN_FLIGHT = 4;
 const BUSY_REST_MS = 500;
 const STALE_REST_MS = 1000;
@@ -43,23 +46,24 @@ const STALE_REST_MS = 1000;
 export class SceneSync {
   readonly #steps: SyncSteps;
   #edits: Edit[] = [];
-  // Scenes without an answer.
+  // Number of unanswered scenes.
   #inFlight = 0;
-  // Edits were made after the last of them.
+  // Edits were made after the last scene was sent.
   #unsent = false;
-  // The revision that the last of them becomes, if all are taken.
+  // The revision that the last sent scene gets if all in flight are accepted.
   #awaited = -1n;
-  // One was not taken, so the others will not be: nothing is sent before all are answered.
+  // One scene was refused, so those in flight will be refused, too. Nothing is sent before all are
+  // answered.
   #drains = false;
   #revision = -1n;
-  // The newest revision whose scene the server has told, with its defaults filled in.
+  // The newest revision whose scene the server has sent with its defaults filled in.
   #completed = -1n;
   #told: { readonly scene: Scene; readonly revision: bigint } | undefined;
   #mayEdit = false;
   // Nothing is sent before the newer scene is known.
   #stale = false;
   #openingEdits = 0;
-  // Another steers: called when edits are given up.
+  // Another viewer steers. This is called when edits are discarded.
   #onLost: (() => void) | undefined;
   #withdrawPaint: (() => void) | undefined;
   #withdrawRest: (() => void) | undefined;
@@ -68,39 +72,39 @@ export class SceneSync {
     this.#steps = steps;
   }
 
-  // The revision that the page's scene was made from.
+  // Returns the revision that the page's scene is based on.
   get revision(): bigint {
     return this.#revision;
   }
 
-  // True while the server has not taken every edit.
+  // Returns true while the server has not accepted every edit.
   get unsettled(): boolean {
     return this.#edits.length > 0;
   }
 
-  // The revision on which page and server agree: the server has taken every edit and has told the scene that they became.
-  // Undefined until then.
+  // Returns the revision on which page and server agree. The server has then accepted every edit
+  // and has sent the resulting scene. Returns undefined until then.
   get agreed(): bigint | undefined {
     const known = this.#revision >= 0n && this.#completed >= this.#revision;
     return known && this.#inFlight === 0 && !this.unsettled ? this.#revision : undefined;
   }
 
-  // The page's scene was edited.
+  // Records an edit of the page's scene.
   edited(edit: Edit): void {
     this.#edits.push(edit);
     this.#unsent = true;
-    // A hand may be faster than the controls, which cannot be used while another steers.
+    // A person may edit before the controls are disabled because another viewer steers.
     this.#giveUp();
     this.#schedule();
     this.#tellAgreed();
   }
 
-  // The page's scene is about to open a session.
+  // Records that the page's scene is about to open a session.
   opening(): void {
     this.#openingEdits = this.#edits.length;
   }
 
-  // A session was opened with that scene, completed by the server.
+  // Records that a session was opened with that scene, which the server completed.
   opened(completed: Scene, revision: bigint): void {
     this.#edits.splice(0, this.#openingEdits);
     this.#told = undefined;
@@ -109,7 +113,7 @@ export class SceneSync {
     this.#tellAgreed();
   }
 
-  // Joined, again or another session: its next scene is taken whatever its revision.
+  // Forgets the revisions after joining a session. Its next scene is adopted whatever its revision.
   forget(): void {
     this.#revision = -1n;
     this.#completed = -1n;
@@ -118,22 +122,23 @@ export class SceneSync {
     this.#tellAgreed();
   }
 
-  // This page steers and is connected.
+  // Allows sending, because this page steers and is connected.
   allow(): void {
     this.#mayEdit = true;
     this.#onLost = undefined;
     this.#schedule();
   }
 
-  // The connection is lost, or another steers. Edits are kept.
+  // Stops sending, because the connection is lost or another viewer steers. Edits are kept.
   hold(): void {
     this.#mayEdit = false;
     this.#withdrawPaint?.();
     this.#withdrawPaint = undefined;
   }
 
-  // Another steers: until allow(), gives edits up that the server does not take, and calls `onLost` if there are any. Those that
-  // were sent await their answer, as they may have come before the other took control.
+  // Discards edits while another viewer steers, until allow(). Calls `onLost` if edits are
+  // discarded. Scenes in flight wait for their response, because they may have arrived before the
+  // other viewer took control.
   discard(onLost: () => void): void {
     this.#onLost = onLost;
     this.#giveUp();
@@ -148,7 +153,7 @@ export class SceneSync {
     this.#onLost();
   }
 
-  // The session's scene.
+  // Takes the session's scene from the server.
   told(scene: Scene, revision: bigint): void {
     this.#told = { scene, revision };
     if (revision > this.#completed) this.#completed = revision;
@@ -191,7 +196,7 @@ export class SceneSync {
   #maySend(): boolean {
     if (!this.#mayEdit || this.#stale || this.#edits.length === 0) return false;
     if (this.#inFlight === 0) return true;
-    // The revision that a further one is made from is known only where the session's is.
+    // The expected revision of a further scene is known only if the session's revision is known.
     const knows = this.#revision >= 0n && !this.#drains;
     return knows && this.#unsent && this.#inFlight < MAX_IN_FLIGHT;
   }
@@ -215,12 +220,12 @@ export class SceneSync {
     try {
       const verdict = await this.#steps.send(scene, expected);
       this.#inFlight -= 1;
-      // It follows one that was not taken, which said why.
+      // An earlier refusal already gave the reason.
       const follows = this.#drains && verdict.kind === "stale";
       if (verdict.kind !== "taken" || verdict.revision !== expected + 1n) this.#drains = true;
       if (!follows) this.#judge(verdict, sent, scene);
     } catch {
-      // The connection is lost: allow() is called once it is back.
+      // The connection is lost. allow() is called after it is restored.
       this.#inFlight -= 1;
       this.#drains = true;
       this.#onLost = undefined;
@@ -242,16 +247,18 @@ export class SceneSync {
       case "taken":
         this.#drop(sent);
         if (verdict.revision > this.#revision) this.#revision = verdict.revision;
-        // The scene that a later refusal goes back to: the server tells its scene only a few times a second.
+        // A later refusal returns to this scene, because the server sends its own scene only a few
+        // times a second.
         if (this.#told === undefined || this.#told.revision < verdict.revision)
           this.#told = { scene, revision: verdict.revision };
         this.#steps.taken();
         break;
       case "stale":
-        // The newer scene is known already, and adopted once all are answered.
+        // The newer scene is already known. It is adopted once all scenes are answered.
         if (this.#told !== undefined && this.#told.revision > this.#revision) break;
         this.#stale = true;
-        // Nothing newer is told if the change that was on its way turns out not to be drawable.
+        // No newer scene arrives if the change that was in flight cannot be drawn, so the wait is
+        // limited.
         this.#withdrawRest ??= this.#steps.later(STALE_REST_MS, () => {
           this.#withdrawRest = undefined;
           this.#stale = false;

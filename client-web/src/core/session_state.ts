@@ -1,5 +1,5 @@
-// The session as signals: who is there, who steers, the rules, pointers and marks; and what follows from them for the person
-// at this page. Independent of network and document.
+// The session as signals: the people, who steers, the rules, pointers and marks, and what they mean
+// for the person at this page. It does not depend on network or document.
 import { create } from "@bufbuild/protobuf";
 import { batch, computed, signal } from "@preact/signals-core";
 import {
@@ -20,11 +20,11 @@ export interface Me {
   readonly role: Role;
 }
 
-// A line that was drawn here and is not among the server's marks yet.
+// A line that was drawn on this page and is not yet among the server's marks.
 export interface PendingMark {
-  // Counts those of this page.
+  // Number of the mark on this page.
   readonly id: number;
-  // Of the message that it was sent with last; undefined while it waits to be sent again.
+  // Id of the last message that contained the mark; undefined while it waits to be sent again.
   readonly requestId: bigint | undefined;
   readonly pointsM: readonly Vec3[];
 }
@@ -36,18 +36,18 @@ export class SessionState {
   readonly viewerKey = signal<string | undefined>(undefined);
   // Why the session is over; undefined while it is not.
   readonly ended = signal<string | undefined>(undefined);
-  // Kept while the connection is lost.
+  // This person. The value is kept while the connection is lost.
   readonly me = signal<Me | undefined>(undefined);
   readonly people = signal<readonly Person[]>([]);
   readonly steeringId = signal(0n);
   readonly rules = signal<SessionRules>(create(SessionRulesSchema));
   readonly presenterAway = signal(false);
-  // The one who steered and is gone, for whom control waits some seconds.
+  // The person who steered and left, and for whom control is reserved for some seconds.
   readonly awaited = signal<Person | undefined>(undefined);
   readonly pointers = signal<readonly Pointer[]>([]);
   readonly marks = signal<readonly Mark[]>([]);
   readonly pendingMarks = signal<readonly PendingMark[]>([]);
-  // True while this page shows a view of its own.
+  // True while this page shows its own view.
   readonly lookingAround = signal(false);
   readonly tool = signal<Tool>("camera");
 
@@ -59,14 +59,14 @@ export class SessionState {
   readonly steerer = computed(() => this.person(this.steeringId.value));
   readonly asking = computed(() => this.people.value.filter((person) => person.asksControl));
   readonly iAsk = computed(() => this.asking.value.some((person) => this.isMe(person.viewerId)));
-  // Nobody steers, and whoever asks gets control at once.
+  // True if no viewer steers and a viewer who asks gets control at once.
   readonly steersWhoAsks = computed(() => {
     const { viewersMaySteer, controlLocked } = this.rules.value;
     const kept = this.presenterAway.value || this.awaited.value !== undefined;
     const free = this.steeringId.value === 0n && !kept;
     return free && viewersMaySteer === true && controlLocked !== true;
   });
-  // True for the people who answer those who ask.
+  // True for people who answer requests for control.
   readonly answersAsking = computed(() => this.steering.value || this.presenting.value);
   readonly mayLookAround = computed(
     () => this.presenting.value || this.rules.value.followingLocked !== true,
@@ -76,7 +76,7 @@ export class SessionState {
       this.me.value !== undefined &&
       (this.presenting.value || this.steering.value || this.rules.value.viewersMayMark === true),
   );
-  // Others who get pictures of a view of their own; the server draws for each of them singly.
+  // Number of other people with an own view. The server draws each of these views separately.
   readonly othersLookingAround = computed(
     () =>
       this.people.value.filter(
@@ -84,16 +84,17 @@ export class SessionState {
       ).length,
   );
   readonly alone = computed(() => this.people.value.length < 2);
-  // Nothing about who steers need be said.
+  // True if nothing about who steers needs to be shown.
   readonly steersAlone = computed(
     () => this.steering.value && this.presenting.value && this.alone.value,
   );
-  // There is something to say about who steers, or that this page shows a view of its own.
+  // True if the bar is needed, to show who steers or that this page shows an own view.
   readonly hasBar = computed(
     () => this.me.value !== undefined && (this.lookingAround.value || !this.steersAlone.value),
   );
 
-  // Why the scene cannot be changed from here; undefined where it can. A scene may be set before the session is there.
+  // Why the scene cannot be changed from here; undefined if it can. A scene may be changed before
+  // the session exists.
   readonly editBlock = computed((): string | undefined => {
     if (this.ended.value !== undefined) return "This session has ended.";
     if (this.steering.value) return undefined;
@@ -121,13 +122,14 @@ export class SessionState {
     return person.role === Role.PRESENTER ? "Presenter" : `Viewer ${person.viewerId}`;
   }
 
-  // The person who points or drew; who has left has no name.
+  // Returns the name of a person who points or drew; empty for a person who has left.
   nameOfId(viewerId: bigint): string {
     const person = this.person(viewerId);
     return person === undefined ? "" : this.nameOf(person);
   }
 
-  // A person who steered before the connection was lost is taken to steer until the next presence, so that controls stay usable.
+  // Handles joining. If this person steered before the connection was lost, it is assumed to steer
+  // until the next presence, so that controls stay usable.
   joined(joined: Joined): void {
     const steered = this.steering.peek();
     batch(() => {
@@ -151,7 +153,7 @@ export class SessionState {
     });
   }
 
-  // Each new mark of one's own takes the place of the pending one that was sent first.
+  // Takes the marks from the server. Each new mark of this person replaces the oldest pending mark.
   takeMarks(told: Marks): void {
     const before = this.marks.value;
     const known = new Set(before.map((mark) => mark.markId));

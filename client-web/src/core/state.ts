@@ -1,5 +1,6 @@
-// The page's state as signals: the scene being edited, the server's descriptions of itself and its storms, the frame on
-// the screen, the connection, and notices. Independent of network and document.
+// The page's state as signals: the scene being edited, the server's descriptions of itself and its
+// storms, the frame on the screen, the connection, and notices. It does not depend on network or
+// document.
 
 import { create } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
@@ -69,16 +70,17 @@ import { describePose, describeSun } from "./words";
 export type Connection =
   | { readonly kind: "connecting" }
   | { readonly kind: "live" }
-  // `attempts` since the connection was lost; `retryInMs` is the wait before the next.
+  // `attempts` counts since the connection was lost. `retryInMs` is the delay before the next
+  // attempt.
   | {
       readonly kind: "lost";
       readonly reason: string;
       readonly attempts: number;
       readonly retryInMs: number;
     }
-  // The server wants a token, or another one.
+  // The server requires a token, or another token.
   | { readonly kind: "locked"; readonly reason: string }
-  // The session has ended; SessionState says why.
+  // The session has ended. SessionState has the reason.
   | { readonly kind: "gone" };
 
 export interface ShownFrame {
@@ -91,10 +93,10 @@ export interface ShownFrame {
   readonly encoding: Encoding;
   readonly stages: readonly StageCost[];
   readonly modelled: Modelled | undefined;
-  // Only of pictures by the reference.
+  // Set only for pictures by the reference.
   readonly refinement: Refinement | undefined;
   readonly accuracy: AccuracyReport | undefined;
-  // How far the picture is reduced for this page's link or window.
+  // The level by which the picture is reduced for this page's link or window.
   readonly tier: number;
   readonly ownView: boolean;
   readonly pose: Pose | undefined;
@@ -118,7 +120,7 @@ const UNKNOWN_COLOR = { red: 0.5, green: 0.5, blue: 0.5 };
 
 export class PageState {
   readonly #scene = signal<Scene>(create(SceneSchema));
-  // The camera pose of the frame on the screen, used while the scene leaves it open.
+  // The camera pose of the frame on the screen. It is used while the scene has no camera values.
   readonly #shownPose = signal<Pose | undefined>(undefined);
   // The sun of the frame on the screen.
   readonly #shownSun = signal<Sun | undefined>(undefined);
@@ -131,40 +133,40 @@ export class PageState {
   readonly storms = signal<readonly StormSummary[]>([]);
   readonly storm = signal<StormDescription | undefined>(undefined);
   readonly frame = signal<ShownFrame | undefined>(undefined);
-  // The times of the session's storm that are in the server's memory, as the server told last.
+  // The times of the session's storm that are in the server's memory, as last reported.
   readonly timesInMemory = signal<TimesInMemory | undefined>(undefined);
-  // The indices of the times of the storm shown that are drawn without being read.
+  // The indices of the shown storm's times that can be drawn without reading files.
   readonly heldTimes = computed((): readonly number[] => {
     const held = this.timesInMemory.value;
     return held?.stormId === this.stormId.value ? held.timeIndices : [];
   });
-  // Why this browser is sent no video; undefined where it can be.
+  // Why the server sends no video to this browser; undefined if it can.
   readonly whyNoVideo = signal<string | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
-  // The picture's width and height over the canvas's, in device pixels.
+  // The picture's width and height relative to the canvas, in device pixels.
   readonly resolution = signal(1);
-  // The tool that is open, and whether it takes the focus: it was opened by a key.
+  // The open tool, and whether it takes the focus because it was opened by a key.
   readonly tool = signal<ToolName | undefined>(undefined);
   toolTakesFocus = false;
-  // True while every setting is listed at the side.
+  // True while the drawer with every setting is open.
   readonly drawerOpen = signal(false);
-  // The panel of the top bar that is open.
+  // The open panel of the top bar.
   readonly popover = signal<PanelName | undefined>(undefined);
-  // The storm from above, and why there is none.
+  // The storm from above, and the reason if there is no map.
   readonly stormMap = signal<GetStormMapResponse | undefined>(undefined);
   readonly mapProblem = signal<string | undefined>(undefined);
-  // The last two clicks with the probe, and why the last one was not answered.
+  // The places of the last two clicks with the probe, and the reason if the last one failed.
   readonly probes = signal<readonly Probed[]>([]);
   readonly probing = signal(false);
   readonly probeProblem = signal<string | undefined>(undefined);
-  // Title, scales and rings over the picture, each shown or not.
+  // The annotations over the picture, such as title, scales and rings, each shown or not.
   readonly annotations = signal<AnnotationChoice>(FIRST_ANNOTATIONS);
-  // The time zone of the storm's place, or one chosen; undefined for a storm without a place.
+  // The time zone of the storm's place, or a chosen zone; undefined for a storm without a place.
   readonly zone = signal<string | undefined>(undefined);
   // The time zone in which the sun's clock is shown.
   readonly sunZone = signal("Etc/GMT");
-  // Where the picture lies in the window, in CSS pixels.
+  // The picture's rectangle in the window, in CSS pixels.
   readonly pictureBox = signal<Box | undefined>(undefined);
   // The cloud set in the panel, and whether the server is making it.
   readonly cloud = signal<CloudDraft>(FIRST_CLOUD);
@@ -178,11 +180,11 @@ export class PageState {
     return this.#scene;
   }
 
-  // Parts of the scene that change only when they are edited themselves.
+  // These parts of the scene change only when they are edited themselves.
   readonly fields = computed(() => this.#scene.value.fields);
   readonly particleSizes = computed(() => this.#scene.value.particleSizes);
   readonly sun = computed(() => this.#scene.value.sun);
-  // The sun's direction: as set by hand, or as the server computed it from the clock.
+  // The sun's direction as set by hand, or as the server computed it from the clock.
   readonly sunDirection = computed((): SunDirection => {
     const sun = this.#scene.value.sun;
     const byTime = sun?.source === Sun_Source.BY_TIME ? this.#shownSun.value : undefined;
@@ -195,13 +197,15 @@ export class PageState {
   readonly lights = computed(() => this.#scene.value.lights);
   readonly sky = computed(() => this.#scene.value.sky);
   readonly ground = computed(() => this.#scene.value.ground);
-  // The scene's technique and settings, with presets resolved; undefined until the server has sent them.
+  // The scene's technique and settings, with presets resolved; undefined until the server has sent
+  // them.
   readonly rendering = computed(() =>
     resolved(this.#scene.value.rendering, this.server.value?.presets ?? []),
   );
   readonly settings = computed(() => settingsOf(this.rendering.value));
   readonly technique = computed(() => this.#describe(this.settings.value));
-  // The preset that the scene's rendering equals; undefined if there is none, or while an accuracy goal overrides it.
+  // The preset that the scene's rendering equals; undefined if there is none, or while an accuracy
+  // goal overrides it.
   readonly preset = computed((): Preset | undefined =>
     this.goal.value === undefined
       ? presetOf(this.rendering.value, this.server.value?.presets ?? [])
@@ -209,9 +213,10 @@ export class PageState {
   );
   readonly display = computed(() => this.#scene.value.display);
   readonly accuracy = computed(() => this.#scene.value.accuracy);
-  // The kind of accuracy goal; while there is one the server picks technique and settings.
+  // The kind of accuracy goal. While there is one the server chooses technique and settings.
   readonly goal = computed(() => this.#scene.value.accuracy?.limit.case);
-  // The technique that draws (the scene's own, or the one picked for the goal), and what it shows of the fields.
+  // The technique that draws, and what it shows of the fields. It is the scene's own technique, or
+  // the one chosen for the goal.
   readonly drawnTechnique = computed(() => this.#describe(this.#drawnSettings.value));
   readonly detailShown = computed(() => this.#isDrawn(drawsDetail));
   readonly falseColorsShown = computed(() => this.#isDrawn(drawsFalseColors));
@@ -222,12 +227,12 @@ export class PageState {
   readonly output = computed(() => this.#scene.value.output);
   readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
   readonly stormId = computed(() => this.#scene.value.stormId);
-  // The description of the storm shown, not of the one before it.
+  // The description of the storm shown, not that of the previous storm.
   readonly #describedStorm = computed(() => {
     const storm = this.storm.value;
     return storm?.id === this.stormId.value ? storm : undefined;
   });
-  // Which domain is shown; empty until its storm is described.
+  // The domain that is shown; empty until its storm is described.
   readonly domain = computed(() => domainOf(this.#describedStorm.value));
   readonly timeCount = computed(() => this.#describedStorm.value?.times.length ?? 0);
   // The camera of the frame on the screen.
@@ -235,7 +240,8 @@ export class PageState {
     const pose = this.frame.value?.pose;
     return pose === undefined ? undefined : cameraOfPose(pose);
   });
-  // The camera's pose: the scene's, or where the scene leaves it open that of the frame on the screen.
+  // The camera's pose. If the scene has no camera values, it is the pose of the frame on the
+  // screen.
   readonly pose = computed(() => {
     const { camera } = this.#scene.value;
     const shown = this.#shownPose.value;
@@ -244,7 +250,7 @@ export class PageState {
       poseOfCamera(camera) ?? (asked === undefined || asked === shown?.kind ? shown : undefined)
     );
   });
-  // As `pose`, but of the own view while this page looks around.
+  // The pose of the own view while this page looks around, otherwise `pose`.
   readonly viewPose = computed(() => {
     const frame = this.frame.value;
     return this.session.lookingAround.value && frame?.ownView ? frame.pose : this.pose.value;
@@ -253,12 +259,12 @@ export class PageState {
     () => this.#scene.value.camera?.kind.case ?? this.#shownPose.value?.kind ?? "orbit",
   );
 
-  // A description of the picture.
+  // The title of the picture.
   readonly title = computed(() => {
     const known = this.storms.value.find(({ id }) => id === this.stormId.value);
     return known?.title || this.stormId.value || "Thunderhead";
   });
-  // The model run: when it began.
+  // The model run, named by its start.
   readonly run = computed(() => {
     return nameOfRun(this.#describedStorm.value?.runStart ?? "");
   });
@@ -280,7 +286,7 @@ export class PageState {
       this.shownTime.value?.elapsedS ?? 0,
     ),
   );
-  // Time since the run began; since the first time, where its beginning is not known.
+  // Time since the run's start. If the start is unknown, it counts from the first time.
   readonly leadS = computed(() => {
     const time = this.shownTime.value;
     if (time === undefined) return 0;
@@ -288,7 +294,7 @@ export class PageState {
       secondsBetween(this.#describedStorm.value?.runStart ?? "", time.validTime) ?? time.elapsedS
     );
   });
-  // The picture for who does not see it.
+  // A description of the picture for people who cannot see it.
   readonly description = computed(() => {
     const { date, clock } = this.moment.value ?? { date: "", clock: "" };
     const when = `${date} ${clock}`.trim();
@@ -299,7 +305,8 @@ export class PageState {
     ].join(". ");
   });
 
-  // A field's colour in false colours, charts and tables, as "#rrggbb": the scene's, else the server's.
+  // Returns a field's colour in false colours, charts and tables, as "#rrggbb". It is the scene's
+  // colour, or the server's default.
   colorOf(hydrometeor: Hydrometeor): string {
     void this.fields.value;
     const field = this.storm.value?.fields.find((each) => each.hydrometeor === hydrometeor);
@@ -307,13 +314,13 @@ export class PageState {
     return hexOfColor(falseColor ?? UNKNOWN_COLOR);
   }
 
-  // The listener is called with each edit by the user, after it was applied.
+  // Sets the listener, which is called with each edit by the user after the edit was applied.
   onEdit(listener: (edit: Edit) => void): void {
     this.#onEdit = listener;
   }
 
-  // An edit by the user; sent to the server. Ignored while the scene cannot be changed from this page. Can be undone, unless
-  // it is the page's own doing.
+  // Applies an edit and sends it to the server. Ignored while the scene cannot be changed from this
+  // page. "unrecorded" is for edits that the page makes itself, which cannot be undone.
   edit(change: Edit, record: "recorded" | "unrecorded" = "recorded"): void {
     if (this.session.editBlock.peek() !== undefined) return;
     const before = this.#scene.value;
@@ -341,36 +348,37 @@ export class PageState {
     );
   }
 
-  // An edit of the technique; ignored until the server has sent the present one.
+  // Edits the technique. Ignored until the server has sent the present technique.
   editRendering(change: (rendering: Rendering) => Rendering): void {
     const rendering = this.rendering.peek();
     if (rendering !== undefined) this.edit((scene) => withRendering(scene, change(rendering)));
   }
 
-  // An edit of the technique's settings.
+  // Edits the technique's settings.
   editSettings(change: SettingsChange): void {
     this.editRendering((rendering) => withSettings(rendering, change));
   }
 
-  // An edit of the camera, relative to its present pose.
+  // Edits the camera relative to its present pose.
   move(motion: (pose: Pose) => Pose): void {
     const pose = this.pose.value;
     if (pose !== undefined) this.edit((scene) => withCamera(scene, cameraOfPose(motion(pose))));
   }
 
-  // A scene from the server; not sent back to it.
+  // Takes a scene from the server, without sending it back.
   adoptScene(scene: Scene): void {
     const before = this.#scene.peek().stormId;
     if (before !== "" && scene.stormId !== before) this.history.clear();
     this.#scene.value = scene;
   }
 
-  // The page's own scene as the server completed it.
+  // Takes the page's own scene as the server completed it.
   adoptCompleted(scene: Scene): void {
     this.#scene.value = withCompleted(this.#scene.peek(), scene);
   }
 
-  // The camera of the frame on the screen. Fills in a camera that the scene leaves open.
+  // Takes the camera of the frame on the screen. Fills in a camera for which the scene has no
+  // values.
   adoptCamera(camera: Camera | undefined): void {
     const pose = poseOfCamera(camera);
     if (pose === undefined) return;

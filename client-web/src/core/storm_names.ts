@@ -1,8 +1,9 @@
-// Names of storms: runs of one storm by when they began.
+// Names of storms. Runs of one storm are named by their start.
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
 import { momentOf } from "./moment";
 
-// "run 2013-05-20 06:00Z"; of an idealised run, which has no date, "run 06:00Z"; empty where the files do not tell.
+// Returns a text like "run 2013-05-20 06:00Z". For an idealised run, which has no date, it is like
+// "run 06:00Z". It is empty if the files do not contain the start.
 export function nameOfRun(runStart: string): string {
   if (runStart === "") return "";
   const { date, clock } = momentOf(runStart, "", undefined);

@@ -1,4 +1,4 @@
-// Fewer corners for a line drawn by hand: Ramer, Douglas and Peucker's algorithm.
+// Reduces the corners of a hand-drawn line by the algorithm of Ramer, Douglas and Peucker.
 
 export interface StrokePoint {
   readonly left: number;
@@ -8,7 +8,8 @@ export interface StrokePoint {
 const FINEST_TOLERANCE_PX = 0.75;
 const COARSER = 1.5;
 
-// At most `most` of the points, with both ends: those that keep the line within the smallest tolerance that is enough.
+// Returns at most `most` of the points, with both ends. The tolerance is the smallest that is
+// sufficient.
 export function simplifiedStroke<P extends StrokePoint>(points: readonly P[], most: number): P[] {
   for (let tolerancePx = FINEST_TOLERANCE_PX; ; tolerancePx *= COARSER) {
     const kept = withinTolerance(points, tolerancePx);

@@ -1,25 +1,27 @@
-// The sky dome: the sun's direction as a point in a disc with the zenith in its middle and north at its top.
+// The sky dome: the sun's direction as a point in a disc with the zenith at its centre and north at
+// its top.
 
 export interface SunDirection {
   readonly azimuthDeg: number;
   readonly elevationDeg: number;
 }
 
-// The end of civil twilight: lower, and pictures are nearly black.
+// End of civil twilight. If the sun is lower, pictures are nearly black.
 export const NIGHT_BELOW_DEG = -6;
 
-// A sun that lights what the camera sees: behind the left shoulder of who stands in this direction from the storm.
+// Returns a sun that lights what the camera sees. It is behind the left shoulder of a viewer who
+// stands in this direction from the storm.
 export function daylight(standingAzimuthDeg: number): SunDirection {
   return { azimuthDeg: (standingAzimuthDeg + 45) % 360, elevationDeg: 35 };
 }
 
-// The disc ends this far below the horizon, so that twilight can be dragged too.
+// Elevation at the disc's edge. It is below the horizon so that twilight can be set by dragging.
 export const DOME_LOWEST_DEG = -18;
 
-// Radius of the horizon; 1 is the disc's edge.
+// Radius of the horizon, where 1 is the disc's edge.
 export const DOME_HORIZON = 90 / (90 - DOME_LOWEST_DEG);
 
-// Offset from the middle, in radii of the disc.
+// Returns the offset from the centre, in radii of the disc.
 export function domePointOfSun(sun: SunDirection): { right: number; down: number } {
   const elevation = Math.max(DOME_LOWEST_DEG, sun.elevationDeg);
   const radius = (90 - elevation) / (90 - DOME_LOWEST_DEG);
@@ -43,7 +45,8 @@ export function compassPoint(azimuthDeg: number): string {
   return COMPASS[Math.round(points) % COMPASS.length] ?? "N";
 }
 
-// A date and time of the schema, UTC, as an input of type datetime-local takes it, and back.
+// Converts a date and time of the schema, in UTC, to the value of an input of type datetime-local.
+// The next function converts back.
 export function inputOfDateTime(dateTime: string): string {
   return /^\d{4}-\d\d-\d\dT\d\d:\d\d(:\d\d)?/.exec(dateTime)?.[0] ?? "";
 }

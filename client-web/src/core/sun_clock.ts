@@ -1,5 +1,5 @@
-// The sun's clock at the time that is shown. A scene's clock is set at the storm's first time and goes on with the storm; people
-// set it for the picture before them, in local time.
+// The sun's clock at the time that is shown. A scene's clock is set at the storm's first time and
+// advances with the storm. People set it for the picture that they see, in local time.
 import { getPosition, getTimes } from "suncalc";
 import type { SunClock } from "../gen/thunderhead/v1/scene_pb";
 import { minutesAhead } from "./moment";
@@ -13,7 +13,8 @@ export interface ClockHere {
   readonly longitudeDeg: number;
 }
 
-// The clock of the picture: the scene's if it has one, else the storm's. Undefined while neither is known.
+// Returns the clock of the picture: the scene's if it has one, otherwise the storm's. Returns
+// undefined while neither is known.
 export function clockHere(
   set: SunClock | undefined,
   storm: SunClock | undefined,
@@ -27,28 +28,28 @@ export function clockHere(
   return { instant: new Date(first + 1000 * elapsedS), latitudeDeg, longitudeDeg };
 }
 
-// The clock's setting at the storm's first time, such that it shows `instant` now.
+// Returns the clock's setting at the storm's first time for which it shows `instant` now.
 export function firstDateTime(instant: Date, elapsedS: number): string {
   return new Date(instant.getTime() - 1000 * elapsedS).toISOString().replace(/\.\d+Z$/, "Z");
 }
 
-// Minutes since midnight, local time.
+// Returns minutes since midnight, local time.
 export function minuteOfDay(instant: Date, zone: string): number {
   const minutes = Math.floor(instant.getTime() / MINUTE_MS) + minutesAhead(instant, zone);
   return ((minutes % DAY_MINUTES) + DAY_MINUTES) % DAY_MINUTES;
 }
 
-// The same local day at another minute.
+// Returns the instant of the same local day at another minute.
 export function atMinute(instant: Date, minute: number, zone: string): Date {
   return new Date(instant.getTime() + (minute - minuteOfDay(instant, zone)) * MINUTE_MS);
 }
 
-// Minutes of the local day at which the sun rises and sets; undefined where it does not.
+// Returns the minutes of the local day at which the sun rises and sets; undefined if it does not.
 export function sunriseAndSunset(
   { instant, latitudeDeg, longitudeDeg }: ClockHere,
   zone: string,
 ): { readonly sunrise: number | undefined; readonly sunset: number | undefined } {
-  // Noon, as it belongs to the same solar day in every time zone.
+  // Noon is used because it belongs to the same solar day in every time zone.
   const noon = atMinute(instant, DAY_MINUTES / 2, zone);
   const { sunrise, sunset } = getTimes(noon, latitudeDeg, longitudeDeg);
   return {
@@ -57,7 +58,7 @@ export function sunriseAndSunset(
   };
 }
 
-// Sunrise and sunset of the local day: "Sunrise 06:12 · sunset 20:29".
+// Returns sunrise and sunset of the local day, like "Sunrise 06:12 · sunset 20:29".
 export function dayInWords(here: ClockHere, zone: string): string {
   const { sunrise, sunset } = sunriseAndSunset(here, zone);
   if (sunrise !== undefined && sunset !== undefined)
@@ -68,7 +69,8 @@ export function dayInWords(here: ClockHere, zone: string): string {
   return noonDeg > 0 ? "The sun does not set" : "The sun does not rise";
 }
 
-// The sun's height over the local day, from its first midnight to its last, at evenly spaced times.
+// Returns the sun's height at evenly spaced times over the local day, from its first midnight to
+// its last.
 export function sunHeightsDeg(here: ClockHere, zone: string, steps: number): number[] {
   return Array.from({ length: steps + 1 }, (_, at) => {
     const then = atMinute(here.instant, (at * DAY_MINUTES) / steps, zone);
@@ -76,7 +78,7 @@ export function sunHeightsDeg(here: ClockHere, zone: string, steps: number): num
   });
 }
 
-// "18:30".
+// Returns a text like "18:30".
 export function clockOfMinute(minute: number): string {
   const whole = Math.round(minute) % DAY_MINUTES;
   return `${String(Math.floor(whole / 60)).padStart(2, "0")}:${String(whole % 60).padStart(2, "0")}`;

@@ -1,14 +1,14 @@
-// The seven tools of the rail, each for one question that people ask of a storm.
+// The seven tools of the rail. Each answers one question that people have about a storm.
 
 export const TOOL_NAMES = ["map", "time", "light", "look", "fields", "probe", "marks"] as const;
 export type ToolName = (typeof TOOL_NAMES)[number];
 
 export interface ToolText {
-  // On the rail.
+  // Text on the rail.
   readonly label: string;
-  // Over its controls.
+  // Text over the tool's controls.
   readonly title: string;
-  // Opens and closes it.
+  // Key that opens and closes the tool.
   readonly key: string;
 }
 
@@ -25,7 +25,7 @@ export const TOOL_TEXTS: Readonly<Record<ToolName, ToolText>> = {
 // Panels that a button of the top bar opens.
 export type PanelName = "storms" | "share" | "people" | "keep" | "compare" | "help";
 
-// The tool that a key opens: its letter, or its place on the rail.
+// Returns the tool that a key opens. The key is the tool's letter or its number on the rail.
 export function toolOfKey(key: string): ToolName | undefined {
   const place = Number(key);
   if (Number.isInteger(place) && place > 0) return TOOL_NAMES[place - 1];

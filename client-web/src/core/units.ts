@@ -1,15 +1,15 @@
-// Numbers and units as people read them.
+// Formats numbers and units for people.
 import { signal } from "@preact/signals-core";
 import type { Limits } from "./limits";
 
-// Lengths in metres and kilometres, or in feet and nautical miles as pilots have them.
+// Units of length: metres and kilometres, or feet and nautical miles as pilots use them.
 export type LengthUnits = "metric" | "aviation";
 export const lengthUnits = signal<LengthUnits>("metric");
 
 const FOOT_M = 0.3048;
 const NAUTICAL_MILE_M = 1852;
 
-// A distance, or a height: which unit pilots have for it.
+// Whether a length is a distance or a height, because pilots use different units for them.
 export type LengthKind = "distance" | "height";
 
 interface LengthUnit {
@@ -25,13 +25,13 @@ function unitOfLength(lengthM: number, kind: LengthKind): LengthUnit {
   return Math.abs(lengthM) < 1000 ? { metres: 1, symbol: "m" } : { metres: 1000, symbol: "km" };
 }
 
-// "8.4 km", "27600 ft".
+// Returns a text like "8.4 km" or "27600 ft".
 export function formatLength(lengthM: number, kind: LengthKind): string {
   const { metres, symbol } = unitOfLength(lengthM, kind);
   return `${formatNumber(lengthM / metres)} ${symbol}`;
 }
 
-// The nearest length below that is 1, 2 or 5 times a power of ten in the unit that it is shown in.
+// Returns the nearest smaller length that is 1, 2 or 5 times a power of ten in its display unit.
 export function roundLength(lengthM: number): number {
   const { metres } = unitOfLength(lengthM, "distance");
   const value = lengthM / metres;
@@ -41,7 +41,7 @@ export function roundLength(lengthM: number): number {
 }
 
 export interface DisplayUnit {
-  // Multiply a value in the schema's unit by this.
+  // A value in the schema's unit is multiplied by this.
   readonly factor: number;
   // Printed after the number; empty for a pure number.
   readonly symbol: string;
@@ -49,8 +49,8 @@ export interface DisplayUnit {
 
 const SYMBOLS: Readonly<Record<string, string>> = { "1": "", deg: "°", "kg/m3": "kg/m³", m: "m" };
 
-// The unit to show a number in: lengths that never exceed a metre are shown in millimetres, those that reach
-// farther than any storm in kilometres.
+// Returns the unit in which a number is shown. Lengths that never exceed a metre are in
+// millimetres. Lengths that may exceed the size of any storm are in kilometres.
 export function displayUnitOf(limits: Limits): DisplayUnit {
   if (limits.unit === "m" && limits.maximum <= 1) return { factor: 1e3, symbol: "mm" };
   if (limits.unit === "m" && limits.maximum > 1 && lengthUnits.value === "aviation")
@@ -61,7 +61,8 @@ export function displayUnitOf(limits: Limits): DisplayUnit {
   return { factor: 1, symbol: SYMBOLS[limits.unit] ?? limits.unit };
 }
 
-// Three significant digits, without trailing zeros or an exponent where the number is readable without.
+// Formats a number with three significant digits, without trailing zeros. Uses no exponent if the
+// number is readable without it.
 export function formatNumber(value: number): string {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
@@ -88,14 +89,14 @@ export function formatBytes(bytes: number): string {
   return `${formatNumber(value)} ${steps[step]}`;
 }
 
-// "1.4 Mbit/s".
+// Returns a text like "1.4 Mbit/s".
 export function formatBitRate(bytesPerSecond: number): string {
   const kbit = (bytesPerSecond * 8) / 1000;
   return kbit >= 999.5 ? `${formatNumber(kbit / 1000)} Mbit/s` : `${Math.round(kbit)} kbit/s`;
 }
 
-// "0001-01-01T00:20:00Z" as "00:20 · day 1" for idealised runs, which start in year 1, and as
-// "2013-05-20 20:00 UTC" for real dates.
+// Returns a text like "2013-05-20 20:00 UTC". For idealised runs, which start in year 1,
+// "0001-01-01T00:20:00Z" becomes "00:20 · day 1".
 export function formatValidTime(validTime: string, elapsedS: number): string {
   const match = /^(\d{4,})-(\d\d)-(\d\d)[T_ ](\d\d):(\d\d)(?::(\d\d))?/.exec(validTime);
   if (!match) return validTime === "" ? formatElapsed(elapsedS) : validTime;
@@ -105,7 +106,7 @@ export function formatValidTime(validTime: string, elapsedS: number): string {
   return `${year}-${month}-${day} ${hour}:${minute}${seconds} UTC`;
 }
 
-// "+1 h 20 min" since the storm's first time.
+// Returns a text like "+1 h 20 min" since the storm's first time.
 export function formatElapsed(elapsedS: number): string {
   const minutes = Math.floor(elapsedS / 60);
   const hours = Math.floor(minutes / 60);

@@ -1,4 +1,4 @@
-// A view in words: where the camera is, where the sun stands.
+// Describes a view as text: the position of the camera and of the sun.
 import { type Pose, wrapDegrees } from "./camera";
 import { azimuthTo } from "./map_frame";
 import { compassPoint, type SunDirection } from "./sun";
@@ -24,10 +24,10 @@ export function describePose(pose: Pose | undefined): string {
   }
 }
 
-// From here on a direction says more than that it is near.
+// A position nearer to the middle than this has no meaningful direction.
 const NEAR_MIDDLE_M = 100;
 
-// "20 km SE of the middle", which is the origin of the world.
+// Returns a text like "20 km SE of the middle". The middle is the origin of the world.
 function placeInDomain(placeM: readonly [number, number]): string {
   const distanceM = Math.hypot(...placeM);
   if (distanceM < NEAR_MIDDLE_M) return "the middle";

@@ -1,11 +1,12 @@
-// The ways to the server that served the page: gRPC-Web, binary, and a WebSocket for the call that stays.
+// The transports to the server that served the page: binary gRPC-Web, and a WebSocket for the
+// long-lived call.
 import type { Interceptor, Transport } from "@connectrpc/connect";
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { ThunderheadService } from "../gen/thunderhead/v1/thunderhead_pb";
 import { openBidi, type Socket, type SocketFactory } from "./interact_socket";
 import type { OpenInteract } from "./session_client";
 
-// The token that calls show; undefined for none.
+// Returns the token that calls send; undefined for none.
 export type TokenSource = () => string | undefined;
 
 export function createSameOriginTransport(pageUrl: string, token: TokenSource): Transport {

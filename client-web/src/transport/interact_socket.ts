@@ -1,5 +1,6 @@
-// A bidirectional rpc over one WebSocket, as the gateway bridges it: each WebSocket message is a kind and then a message of
-// the rpc, or at the end the status as trailers. Knows no message type.
+// A bidirectional rpc over one WebSocket, as the gateway bridges it. Each WebSocket message is a
+// kind followed by a message of the rpc. The last one has the status as trailers. This code does
+// not depend on any message type.
 import {
   create,
   type DescMessage,
@@ -11,7 +12,7 @@ import {
 import { Code } from "@connectrpc/connect";
 import { retryAfterMsOfTrailer } from "./retry_info";
 
-// The part of the DOM's WebSocket that is used.
+// The part of the DOM's WebSocket that this code uses.
 export interface Socket {
   binaryType: string;
   readonly readyState: number;
@@ -24,7 +25,7 @@ export interface Socket {
 
 export type SocketFactory = (url: string, protocols: string[]) => Socket;
 
-// A bidirectional rpc: its name and messages, as generated descriptors have them.
+// A bidirectional rpc: its name and messages, as in the generated descriptors.
 export interface BidiMethod<I extends DescMessage, O extends DescMessage> {
   readonly name: string;
   readonly parent: { readonly typeName: string };
@@ -38,7 +39,7 @@ export type CallEnd =
       readonly kind: "status";
       readonly code: Code | 0;
       readonly message: string;
-      // 0: the server gives no time to try again.
+      // 0 means that the server gives no time to retry.
       readonly retryAfterMs: number;
     }
   // The connection failed, or was never made.
@@ -47,14 +48,14 @@ export type CallEnd =
 export interface BidiListener<O extends DescMessage> {
   opened(): void;
   message(message: MessageShape<O>): void;
-  // The last call; never after cancel().
+  // Reports the end of the call. This is the last callback, and it is never called after cancel().
   ended(end: CallEnd): void;
 }
 
 export interface BidiCall<I extends DescMessage> {
-  // Dropped while the connection is not open.
+  // Sends a message. Drops the message while the connection is not open.
   send(message: MessageInitShape<I>): void;
-  // Ends the call without a word from the server.
+  // Ends the call without waiting for the server's status.
   cancel(): void;
 }
 
@@ -74,7 +75,7 @@ export function openBidi<I extends DescMessage, O extends DescMessage>(
   makeSocket: SocketFactory,
   listener: BidiListener<O>,
 ): BidiCall<I> {
-  // Browsers let a page set no other header of a WebSocket.
+  // The token is a subprotocol because browsers let a page set no other header of a WebSocket.
   const protocols = token === undefined ? [PROTOCOL] : [PROTOCOL, TOKEN_PREFIX + base64Url(token)];
   const socket = makeSocket(addressOf(method, baseUrl), protocols);
   socket.binaryType = "arraybuffer";

@@ -1,4 +1,4 @@
-// How calls end that the network cut; some failures of servers have the same codes.
+// Status codes of calls that the network cut. Some server failures have the same codes.
 import { Code } from "@connectrpc/connect";
 
 export const NETWORK_CODES: ReadonlySet<Code> = new Set([

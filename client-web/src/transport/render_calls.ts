@@ -1,4 +1,4 @@
-// Calls for pictures that are kept: one with its progress, or a job of many.
+// Calls for pictures that are saved: one picture with its progress, or a job of many.
 import { type Client, Code, ConnectError, createClient, type Transport } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
 import {
@@ -11,7 +11,7 @@ import { ImageFormat, ThunderheadService } from "../gen/thunderhead/v1/thunderhe
 import { NETWORK_CODES } from "./network_codes";
 import { retryAfterMs } from "./retry_info";
 
-// Some minutes without a single picture.
+// Maximum number of attempts without a new picture. They take some minutes.
 const MAX_ATTEMPTS = 60;
 
 export interface DrawnPicture {
@@ -28,7 +28,7 @@ export class RenderCalls {
     this.#jobs = createClient(RenderJobService, transport);
   }
 
-  // `progress` is the share of the light that is traced.
+  // Requests one picture. `progress` reports the fraction of the paths that is traced.
   async picture(
     scene: Scene,
     format: ImageFormat,
@@ -48,13 +48,14 @@ export class RenderCalls {
     throw new ConnectError("the server ended without a picture", Code.Internal);
   }
 
-  // The scenes' pictures in their order, one after the other.
+  // Requests the scenes' pictures in order, one after another.
   async *pictures(scenes: readonly Scene[], signal: AbortSignal): AsyncGenerator<DrawnPicture> {
     for (const scene of scenes)
       yield await this.picture(scene, ImageFormat.JPEG, signal, () => undefined);
   }
 
-  // The id of a job that draws the scenes, and goes on if this page is closed; undefined where the server keeps no jobs.
+  // Begins a job that draws the scenes and continues if this page is closed. Returns the job's id;
+  // undefined if the server keeps no jobs.
   async beginJob(
     scenes: readonly Scene[],
     label: string,
@@ -70,7 +71,7 @@ export class RenderCalls {
     }
   }
 
-  // The job's pictures in their order. A lost connection only delays them.
+  // Returns the job's pictures in order. A lost connection only delays them.
   async *picturesOfJob(
     jobId: string,
     count: number,
@@ -93,7 +94,7 @@ export class RenderCalls {
     }
   }
 
-  // Ends the job if it still draws, and drops its pictures.
+  // Cancels the job if it is still running, and deletes its pictures.
   async forgetJob(jobId: string): Promise<void> {
     await this.#jobs.cancelRenderJob({ jobId, forget: true }).catch(() => undefined);
   }

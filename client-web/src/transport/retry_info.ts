@@ -1,11 +1,11 @@
-// When the server asks to try again, and the reason that it gives programs, from the details of its errors.
+// Reads the details of the server's errors: the delay before a retry, and the reason for programs.
 import { fromBinary } from "@bufbuild/protobuf";
 import { anyUnpack, type Duration } from "@bufbuild/protobuf/wkt";
 import type { ConnectError } from "@connectrpc/connect";
 import { ErrorInfoSchema, RetryInfoSchema } from "../gen/google/rpc/error_details_pb";
 import { type Status, StatusSchema } from "../gen/google/rpc/status_pb";
 
-// 0 if the server gives no time.
+// Returns the delay; 0 if the server gives none.
 export function retryAfterMs(failure: ConnectError): number {
   return milliseconds(failure.findDetails(RetryInfoSchema)[0]?.retryDelay);
 }
@@ -18,7 +18,7 @@ export function retryAfterMsOfStatus(status: Status | undefined): number {
   return 0;
 }
 
-// Empty if the server gives none.
+// Returns the reason; empty if the server gives none.
 export function reasonOfStatus(status: Status | undefined): string {
   for (const detail of status?.details ?? []) {
     const info = anyUnpack(detail, ErrorInfoSchema);
@@ -27,7 +27,7 @@ export function reasonOfStatus(status: Status | undefined): string {
   return "";
 }
 
-// Of the trailer grpc-status-details-bin.
+// Reads the delay from the trailer grpc-status-details-bin.
 export function retryAfterMsOfTrailer(base64: string | undefined): number {
   if (base64 === undefined) return 0;
   try {

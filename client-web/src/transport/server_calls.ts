@@ -1,4 +1,4 @@
-// The calls that ask once and are answered once, by gRPC-Web.
+// The unary calls, by gRPC-Web.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { type Client, createClient, type Transport } from "@connectrpc/connect";
 import type { GenerateCloudRequest } from "../gen/thunderhead/v1/cloud_pb";
@@ -16,7 +16,7 @@ import {
 } from "../gen/thunderhead/v1/thunderhead_pb";
 
 const CALL_TIMEOUT_MS = 10_000;
-// The server must read the storm before it can place a camera that the scene leaves open.
+// The server must read the storm before it can choose a camera for a scene without camera values.
 const SCENE_TIMEOUT_MS = 120_000;
 const CLOUD_TIMEOUT_MS = 120_000;
 

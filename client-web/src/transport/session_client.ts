@@ -1,5 +1,6 @@
-// One person's place in a session: opens or joins it, sends and receives its messages, and comes back to the same session
-// when the connection is lost. Independent of widgets and of a scene's contents.
+// One person's connection to a session. It opens or joins the session, and sends and receives its
+// messages. After a connection loss it joins the same session again. It does not depend on widgets
+// or on a scene's contents.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
@@ -26,29 +27,31 @@ import type { ServerCalls } from "./server_calls";
 export interface OpenedSession {
   readonly presenterKey: string;
   readonly viewerKey: string;
-  // The scene that was sent with the server's defaults filled in, and its revision.
+  // The scene that was sent, with the server's defaults filled in, and its revision.
   readonly completed: Scene;
   readonly revision: bigint;
-  // False if the server could not save it; undefined if the server does not say.
+  // False if the server could not save the session; undefined if the server does not say.
   readonly durable: boolean | undefined;
 }
 
 export interface SessionListener {
-  // The scene that a new session is to start with.
+  // Returns the first scene of a new session.
   sceneToOpen(): Scene;
-  // The server refuses to open a session with that scene; sceneToOpen() is called again after a delay.
+  // Reports that the server refused to open a session with that scene. sceneToOpen() is called
+  // again after a delay.
   openingRefused(message: string): void;
   opened(session: OpenedSession): void;
-  // The name and window to join with.
+  // Returns the name and the window with which to join.
   joining(): JoinDetails;
-  // A new call has begun: sequence numbers restart.
+  // Reports that a new call has begun. Its sequence numbers restart.
   joined(joined: Joined): void;
   connection(connection: Connection): void;
-  // Anything else that the session says.
+  // Reports any other message of the session.
   message(message: InteractResponse["message"]): void;
-  // A message was not obeyed.
+  // Reports that a message was refused.
   refused(refusal: Refusal): void;
-  // The session is gone. Returns true if a new one is to be opened with the page's scene.
+  // Reports that the session no longer exists. Returns true to open a new one with the page's
+  // scene.
   gone(why: { readonly message: string; readonly forgotten: boolean }): boolean;
 }
 
@@ -57,9 +60,9 @@ export interface Refusal {
   readonly requestId: bigint;
   readonly code: Code;
   readonly message: string;
-  // For programs; empty if the server gives none.
+  // The reason for programs; empty if the server gives none.
   readonly reason: string;
-  // 0 if the server gives no time to try again.
+  // 0 means that the server gives no time to retry.
   readonly retryAfterMs: number;
 }
 
@@ -79,21 +82,22 @@ export type OpenInteract = (
   listener: BidiListener<typeof InteractResponseSchema>,
 ) => BidiCall<typeof InteractRequestSchema>;
 
-// After this long without a message the connection is checked: it may have been lost without an error.
+// After this long without a message the connection is checked, because it may have been lost
+// without an error.
 export const SILENCE_MS = 15_000;
 const FAILED_CHECKS = 2;
 const CHECK_TIMEOUT_MS = 4_000;
 const JOIN_TIMEOUT_MS = 10_000;
-// A call that lasted this long resets the back-off; one that breaks sooner lengthens the next wait.
+// A call that lasted this long resets the back-off. A shorter call lengthens the next delay.
 const SOUND_MS = 2_000;
-// Requests whose refusal can be told apart.
+// Maximum number of requests whose refusal can be assigned to them.
 const MAX_REMEMBERED = 256;
 
 type Outcome =
-  // Come back: after the server's delay, if it gave one.
+  // The client joins again, after the server's delay if it gave one.
   | { readonly kind: "lost"; readonly reason: string; readonly leastMs: number }
   | { readonly kind: "gone"; readonly message: string; readonly forgotten: boolean }
-  // Waits for retryNow().
+  // The client waits for retryNow().
   | { readonly kind: "locked"; readonly reason: string }
   | { readonly kind: "disposed" };
 
@@ -114,17 +118,17 @@ export class SessionClient {
   #call: Call | undefined;
   #joined = false;
   #lastRequestId = 0n;
-  // A session was opened in place of another, and has not been joined yet.
+  // True after a session was opened in place of another, until it is joined.
   #reopened = false;
-  // Waits for openNew().
+  // True while the client waits for openNew().
   #gone = false;
   #disposed = false;
   #wake: (() => void) | undefined;
-  // Of the wait that goes on.
+  // These functions change the wait that is in progress.
   #reschedule: ((delayMs: number) => void) | undefined;
   #shortenWait: (() => void) | undefined;
 
-  // Joins the session of `sessionKey`, or without one opens a new session.
+  // Joins the session of `sessionKey`. Without a key it opens a new session.
   constructor(
     calls: ServerCalls,
     openInteract: OpenInteract,
@@ -168,23 +172,24 @@ export class SessionClient {
     }
   }
 
-  // Opens a new session in place of one that is gone.
+  // Opens a new session in place of one that no longer exists.
   openNew(): void {
     if (this.#gone) this.#wake?.();
   }
 
-  // Ends the wait before the next attempt, if there is one.
+  // Ends the delay before the next attempt, if there is one.
   retryNow(): void {
     if (!this.#gone) this.#wake?.();
   }
 
-  // Waits only a little longer, and as long as the server asked for. Whoever lost the same network has it back at the same
-  // moment, so that the attempts are spread again.
+  // Shortens the delay, but not below the delay that the server asked for. The new delay is random
+  // again, because other clients got the same network back at the same moment.
   networkIsBack(): void {
     this.#shortenWait?.();
   }
 
-  // Rejects if the connection is lost; the caller must send the scene again after joined().
+  // Sends a scene. Rejects if the connection is lost. The caller must then send the scene again
+  // after joined().
   updateScene(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict> {
     return new Promise((taken, lost) => {
       const requestId = this.send({ case: "updateScene", value: { scene, expectedRevision } });
@@ -193,14 +198,14 @@ export class SessionClient {
     });
   }
 
-  // Returns the message's id; undefined if there is no connection, and it is not sent.
+  // Sends a message. Returns its id; undefined if it was not sent because there is no connection.
   send(message: RequestMessage): bigint | undefined {
     const call = this.#call;
     if (call === undefined || !this.#joined) return undefined;
     return this.#sendBy(call, message);
   }
 
-  // The frame is on the screen, or will never be.
+  // Acknowledges a frame that is on the screen or will never be shown.
   acknowledge(sequence: bigint, ownView: boolean, videoLost = false): void {
     this.send({ case: "acknowledge", value: { sequence, ownView, videoLost } });
   }
@@ -211,7 +216,8 @@ export class SessionClient {
     this.#wake?.();
   }
 
-  // At once, but where no new session could be joined since the last time, later and later.
+  // Reopens a session at once. If the previous new session could not be joined, the delay grows
+  // with each attempt.
   async #reopenSlowly(): Promise<void> {
     const { attempts } = this.#backOff;
     const delayMs = this.#backOff.next();
@@ -256,7 +262,7 @@ export class SessionClient {
     }
   }
 
-  // Ends with the call.
+  // Resolves when the call ends.
   #interact(sessionKey: string): Promise<Outcome> {
     return new Promise((resolve) => {
       const silence: SilenceWatch = new SilenceWatch(() => this.#check(call, silence));
@@ -346,7 +352,7 @@ export class SessionClient {
     this.#listener.refused({ subject, requestId, code, message, reason, retryAfterMs });
   }
 
-  // False if the message was no scene.
+  // Returns false if the message was not a scene.
   #answerScene(call: Call, requestId: bigint, verdict: SceneVerdict): boolean {
     const scene = call.scenes.get(requestId);
     call.scenes.delete(requestId);
@@ -354,7 +360,7 @@ export class SessionClient {
     return scene !== undefined;
   }
 
-  // Ends the call if the server cannot be reached twice in a row and nothing is heard meanwhile.
+  // Ends the call if the server cannot be reached twice in a row and no message arrives meanwhile.
   async #check(call: Call, silence: SilenceWatch): Promise<void> {
     const heardBefore = silence.heardCount;
     for (let failures = 0; failures < FAILED_CHECKS; failures += 1) {
@@ -362,7 +368,7 @@ export class SessionClient {
         await this.#calls.serverInfo(CHECK_TIMEOUT_MS);
         return;
       } catch (error) {
-        // A server that refuses is there.
+        // A server that refuses a call can be reached.
         if (!NETWORK_CODES.has(ConnectError.from(error).code)) return;
       }
       if (silence.heardCount !== heardBefore) return;
@@ -370,7 +376,8 @@ export class SessionClient {
     call.finish({ kind: "lost", reason: UNREACHABLE, leastMs: 0 });
   }
 
-  // Where the server answers other calls, something between lets no WebSocket through.
+  // Finds the reason why the call did not open. If the server answers other calls, something in
+  // between blocks WebSockets.
   async #whyNotOpened(lost: Outcome & { kind: "lost" }): Promise<Outcome> {
     try {
       await this.#calls.serverInfo(CHECK_TIMEOUT_MS);
@@ -380,7 +387,8 @@ export class SessionClient {
     }
   }
 
-  // Waits for `delayMs`; once the network is back, for a short time, which does not end before `leastMs` of it.
+  // Waits for `delayMs`. When the network is back, the wait becomes shorter, but not shorter than
+  // `leastMs`.
   async #waitFor(delayMs: number, leastMs: number): Promise<void> {
     const startedAtMs = performance.now();
     this.#shortenWait = () => {
@@ -393,7 +401,7 @@ export class SessionClient {
     this.#shortenWait = undefined;
   }
 
-  // For ever, without a time.
+  // Waits for a time. Without a time it waits until it is woken.
   async #wait(delayMs?: number): Promise<void> {
     await new Promise<void>((resolve) => {
       let timer = delayMs === undefined ? undefined : setTimeout(resolve, delayMs);
@@ -415,7 +423,7 @@ const UNREACHABLE = "The server cannot be reached";
 const NO_WEBSOCKET =
   "The server answers, but no WebSocket to it opens: a proxy or a filter may block it";
 
-// The server does not know who this is, or that role may not.
+// The server does not accept the token, or its role is not allowed.
 const LOCKED_CODES = new Set<Code>([Code.Unauthenticated, Code.PermissionDenied]);
 
 function outcomeOfEnd(end: End): Outcome {
@@ -445,7 +453,7 @@ function verdictOf(code: Code, message: string): SceneVerdict {
   return { kind: "refused", message };
 }
 
-// Calls back whenever SILENCE_MS pass without a message.
+// Calls `onSilence` whenever SILENCE_MS pass without a message.
 class SilenceWatch {
   readonly #onSilence: () => Promise<void>;
   #timer: ReturnType<typeof setTimeout> | undefined;
@@ -477,7 +485,7 @@ class SilenceWatch {
   }
 }
 
-// The server's message, if it sent one; messages of network errors do not help a reader.
+// Returns the server's message, if it sent one. Messages of network errors do not help a reader.
 function reasonOf(failure: ConnectError): string {
   return NETWORK_CODES.has(failure.code) ? UNREACHABLE : failure.rawMessage;
 }

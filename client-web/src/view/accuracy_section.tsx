@@ -1,5 +1,5 @@
-// The accuracy or speed that the server is to reach, and its report on the picture shown: technique and settings,
-// their cost, and the estimated error.
+// The accuracy or speed that the server must reach, and its report on the picture shown: technique
+// and settings, their cost, and the estimated error.
 import { create, isMessage } from "@bufbuild/protobuf";
 import { nameOfTechnique, nameOfTransport } from "../core/names";
 import { biasInWords, errorSource } from "../core/picture_error";
@@ -27,7 +27,8 @@ const GOALS = [
   ["maxMilliseconds", "At most this time a frame"],
 ] as const;
 
-// Initial values of the sliders: an error within reach for every view, and a time per frame that still moves smoothly.
+// First values of the sliders: an error that every view can reach, and a time per frame that still
+// gives smooth motion.
 const FIRST_ERROR = 0.5;
 const FIRST_MILLISECONDS = 100;
 
@@ -127,7 +128,7 @@ function drawnBy(state: PageState, report: AccuracyReport) {
   return { settings, name, technique, hasSlices: technique?.hasSlices ?? false };
 }
 
-// How the picture was drawn, in the renderers' words, and what its error is made of.
+// Describes in technical terms how the picture was drawn, and the parts of its error.
 export function DrawnBy({ state }: { state: PageState }) {
   const report = state.frame.value?.accuracy;
   if (report === undefined) return null;
@@ -149,7 +150,7 @@ export function DrawnBy({ state }: { state: PageState }) {
   );
 }
 
-// The settings that decide the error, a few words each.
+// Lists the settings that determine the error, in a few words each.
 function settingsInWords(
   settings: Settings | undefined,
   technique: TechniqueDescription | undefined,

@@ -1,12 +1,13 @@
-// The links of a session, and the address of the presenter's page, which always opens the session, or in place of one that has
-// ended a new one with the same scene.
+// The links of a session, and the address of the presenter's page. That address opens the session.
+// If the session has ended, it opens a new one with the same scene.
 import { effect } from "@preact/signals-core";
 import type { OwnKeys } from "../core/own_keys";
 import type { PageState } from "../core/state";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import { isLoopback, linkTo, linkToView, presentersLinkTo, readLink } from "./link";
 
-// The address has the scene of at least so long ago; browsers limit how often it changes.
+// Delay before a changed scene is written into the address, because browsers limit how often it may
+// change.
 const REST_MS = 1000;
 
 export class Addresses {
@@ -25,7 +26,8 @@ export class Addresses {
     });
   }
 
-  // With the scene it can open a new session when this one has ended.
+  // Returns the viewers' link. With the scene, the link can open a new session after this one has
+  // ended.
   viewersLink(withScene = false): string | undefined {
     const viewerKey = this.#state.session.viewerKey.value;
     if (viewerKey === undefined) return undefined;
@@ -33,12 +35,13 @@ export class Addresses {
     return linkTo(this.#window.location.href, viewerKey, scene);
   }
 
-  // Shows that scene to whoever opens it, in a session of their own.
+  // Returns a link that shows the scene in a new session.
   viewLink(scene: Scene): string {
     return linkToView(this.#window.location.href, scene);
   }
 
-  // For another person or device that is to present too; undefined where this page does not.
+  // Returns a link for another person or device to present; undefined if this page does not
+  // present.
   presentersLink(): string | undefined {
     const { viewerKey, presenting } = this.#state.session;
     if (viewerKey.value === undefined || !presenting.value) return undefined;
@@ -47,14 +50,15 @@ export class Addresses {
     return presentersLinkTo(this.#window.location.href, viewerKey.value, presenterKey);
   }
 
-  // The host's name where links of this page mean the machine of whoever opens them; undefined where others reach it.
+  // Returns the host's name if the page's links only work on this machine; undefined if others can
+  // reach it.
   get loopbackHost(): string | undefined {
     const { href } = this.#window.location;
     return isLoopback(href) ? new URL(href).hostname : undefined;
   }
 
-  // Keeps the key of a presenter's link and takes it out of the address. False for any other address. A key that is kept
-  // already stays: a link must not take it away.
+  // Keeps the key of a presenter's link and removes it from the address. Returns false for any
+  // other address. An existing key stays, so that a link cannot take it away.
   adoptPresentersLink(): boolean {
     const { viewerKey, presenterKey, scene } = readLink(this.#window.location.href);
     if (viewerKey === undefined || presenterKey === undefined) return false;
@@ -64,7 +68,8 @@ export class Addresses {
     return true;
   }
 
-  // False where the browser denies the clipboard, as to pages without HTTPS or without focus.
+  // Copies the link. Returns false if the browser denies the clipboard, for example to pages
+  // without HTTPS or without focus.
   async copy(link: string): Promise<boolean> {
     try {
       await this.#window.navigator.clipboard.writeText(link);

@@ -1,4 +1,4 @@
-// Title, time, scales and rings over the picture in the window, or drawn into a picture that is saved.
+// Title, time, scales and rings over the picture in the window, or in a picture that is saved.
 import {
   type Annotated,
   type AnnotationChoice,
@@ -17,21 +17,22 @@ import { effectiveField } from "../core/scene";
 import type { PageState } from "../core/state";
 import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
 
-// The part that the page's own bars cover; at the top also the names of compared pictures.
+// Sizes of the areas that the page's own bars cover. The second top value includes the names of
+// compared pictures.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
 const TOP_WITH_NAMES_PX = 166;
-// With a tool beside the rail, with the drawer at the right.
+// Size of the left area with a tool next to the rail, and of the right area with the drawer.
 const TOOL_LEFT_PX = 374;
 const DRAWER_RIGHT_PX = 344;
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
 const NARROW_TOP_WITH_NAMES_PX = 236;
 const SESSION_BAR_PX = 72;
 const NARROW_PX = 900;
-// Lower ones leave the picture under an open tool.
+// If the window is lower than this, an open tool covers the picture instead of moving it.
 const TALL_PX = 600;
-// Between the bars.
+// Minimum height between the bars.
 const MIN_ROOM_LETTERS = 4;
-// Of the window's height, at most, by a tool's sheet.
+// Maximum height of a tool's sheet, relative to the window's height.
 const SHEET_SHARE = 0.42;
 
 export function Annotations(props: { state: PageState; comparing: boolean }) {
@@ -40,10 +41,10 @@ export function Annotations(props: { state: PageState; comparing: boolean }) {
   const content = annotated(labelsOf(state), state.frame.value ?? {}, state.shownTime.value);
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
-  // It covers the picture.
+  // The drawer covers the picture.
   if (narrow && state.drawerOpen.value) return null;
   const bars = narrow ? narrowBars(state, comparing) : wideBars(state, comparing);
-  // Little is left of the picture, such as of a phone's that is held across.
+  // Too little of the picture is visible, for example on a phone in landscape orientation.
   const leftPx = window.innerHeight - bars.top - bars.bottom;
   if (narrow && leftPx < MIN_ROOM_LETTERS * LETTER_PX) return null;
   const shapes = annotationsOf(
@@ -59,7 +60,7 @@ export function Annotations(props: { state: PageState; comparing: boolean }) {
       },
       letterPx: LETTER_PX,
     },
-    // The bar above has the title.
+    // The bar above shows the title.
     { ...state.annotations.value, title: false },
   );
   return (
@@ -126,7 +127,7 @@ function Drawn({ shape }: { shape: Shape }) {
 
 type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
 
-// Words that all pictures of a storm and its settings share.
+// Texts that all pictures of a storm and its settings share.
 export interface Labels {
   readonly title: string;
   readonly times: readonly StormTime[];
@@ -135,7 +136,8 @@ export interface Labels {
   readonly legend: readonly LegendEntry[];
 }
 
-// Of what is shown now. A file that takes a while keeps those of its beginning: another storm may be shown before it is done.
+// Returns the labels of what is shown now. A file that takes long keeps the labels of its
+// beginning, because another storm may be shown before it is finished.
 export function labelsOf(state: PageState): Labels {
   return {
     title: [state.title.value, state.run.value].filter((part) => part !== "").join(" · "),
@@ -145,7 +147,7 @@ export function labelsOf(state: PageState): Labels {
   };
 }
 
-// Texts over a picture of that camera and time; none without a camera.
+// Returns the annotations of a picture with that camera and time; undefined without a camera.
 export function annotated(
   { title, groundM, legend }: Labels,
   { projection, pose }: { readonly projection?: Projection; readonly pose?: Pose },
@@ -165,7 +167,7 @@ function legendOf(state: PageState): LegendEntry[] {
 
 type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
-// Draws them into a picture, as large in it as they are in a window.
+// Draws the annotations into a picture. Their relative size is the same as in a window.
 export function drawAnnotations(
   context: Context,
   content: Content,

@@ -1,4 +1,5 @@
-// The whole page: the storm fills the window; a top bar, a rail of tools, one open panel and the time line lie over its edges.
+// The whole page. The storm fills the window. A top bar, a rail of tools, one open panel and the
+// time line lie over its edges.
 import { useEffect, useRef } from "preact/hooks";
 import { Annotations } from "./annotations";
 import { CompareView } from "./compare/compare_view";

@@ -1,4 +1,4 @@
-// Which camera, where it stands and where it looks.
+// The kind of camera, its position and its direction.
 import {
   type CameraKind,
   type Pose,

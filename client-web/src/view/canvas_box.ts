@@ -1,4 +1,4 @@
-// Where a canvas lies in the window, and a picture on it.
+// The rectangles of a canvas in the window, and of a picture on the canvas.
 import type { Box } from "../core/picture_box";
 import { pictureBox } from "../core/picture_box";
 
@@ -7,7 +7,8 @@ export interface PixelSize {
   readonly heightPx: number;
 }
 
-// The canvas's size in physical pixels, of which the window has `ratio` in each of CSS.
+// Returns the canvas's size in physical pixels. The window has `ratio` physical pixels per CSS
+// pixel.
 export function pixelsOf(canvas: HTMLCanvasElement, ratio: number): PixelSize {
   return {
     widthPx: Math.max(1, Math.round(canvas.clientWidth * ratio)),
@@ -15,7 +16,7 @@ export function pixelsOf(canvas: HTMLCanvasElement, ratio: number): PixelSize {
   };
 }
 
-// Where a picture on the canvas lies in the window, in CSS pixels.
+// Returns the rectangle of a picture on the canvas, in CSS pixels of the window.
 export function boxOnCanvas(canvas: HTMLCanvasElement, picture: PixelSize): Box {
   const { left, top, width, height } = canvas.getBoundingClientRect();
   const box = pictureBox({ width, height }, { width: picture.widthPx, height: picture.heightPx });

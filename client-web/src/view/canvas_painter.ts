@@ -1,8 +1,8 @@
-// Draws the newest picture into a canvas, as large as fits and in the middle, and draws it again when the
-// canvas changes size. Owns the picture on the screen.
+// Draws the newest picture into a canvas, centred and as large as fits. Draws it again when the
+// canvas changes size. It owns the picture on the screen.
 import { pictureBox } from "../core/picture_box";
 
-// A decoded picture: of a file or of video.
+// A decoded picture, from an image file or from video.
 export type Picture = ImageBitmap | VideoFrame;
 
 function sizeOf(picture: Picture): { width: number; height: number } {
@@ -23,7 +23,7 @@ export class CanvasPainter {
     this.#context = context;
   }
 
-  // Takes ownership of the picture.
+  // Draws the picture, and takes ownership of it.
   paint(picture: Picture): void {
     this.#picture?.close();
     this.#picture = picture;

@@ -1,4 +1,4 @@
-// The canvas in the window: its size in physical pixels, and what happens on it.
+// The canvas in the window: its size in physical pixels, and the input on it.
 import type { Box } from "../core/picture_box";
 import { boxOnCanvas, type PixelSize, pixelsOf } from "./canvas_box";
 import type { PictureFlow } from "./picture_flow";
@@ -6,7 +6,7 @@ import { attachPointer, type PointerSteps } from "./pointer";
 
 export interface CanvasPlaceSteps extends PointerSteps {
   resized(): void;
-  // The canvas has had its size for a while.
+  // Reports that the canvas's size has not changed for a while.
   resizeRested(): void;
 }
 
@@ -29,17 +29,17 @@ export class CanvasPlace {
     return this.#canvas;
   }
 
-  // In physical pixels.
+  // Returns the canvas's size in physical pixels.
   get size(): PixelSize {
     return this.#size;
   }
 
-  // Where a picture lies in the window, in CSS pixels.
+  // Returns the rectangle of a picture in the window, in CSS pixels.
   boxOf(picture: PixelSize): Box | undefined {
     return this.#canvas === undefined ? undefined : boxOnCanvas(this.#canvas, picture);
   }
 
-  // Returns the function that detaches it.
+  // Attaches the canvas. Returns the function that detaches it.
   attach(canvas: HTMLCanvasElement): () => void {
     const painter = this.#flow.attach(canvas);
     this.#canvas = canvas;

@@ -6,7 +6,7 @@ import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
 import { Icon } from "./icons";
 
 const SLIDER_STEPS = 400;
-// A slider whose change costs seconds reports it after being still for this long.
+// If a change of a slider costs seconds, the slider reports it after this long without motion.
 const SLIDER_REST_MS = 500;
 
 interface SliderProps {
@@ -14,19 +14,21 @@ interface SliderProps {
   readonly limits: Limits;
   // Undefined until the server has sent it.
   readonly value: number | undefined;
-  // The value that the reset button restores; absent is the schema's default.
+  // The value that the reset button restores; absent means the schema's default.
   readonly initial?: number | undefined;
-  // Of a value that the server may choose: it can be set while it is not known, and given back.
+  // Resets a value that the server may choose. With this function the value can also be set while
+  // it is unknown.
   readonly giveBack?: (() => void) | undefined;
   readonly testId: string;
-  // True if a change costs seconds: reported when the slider is released or rests, not at each step.
+  // True if a change costs seconds. The change is then reported when the slider is released or
+  // rests, not at each step.
   readonly afterRest?: boolean;
-  // On one line, beside what names it on the screen.
+  // True to put the slider on the line of its visible label.
   readonly inLine?: boolean;
   readonly onChange: (value: number) => void;
 }
 
-// The value that a slider was dragged to but has not reported yet. It is reported on release, or after a rest.
+// Holds the value to which a slider was dragged, until it is reported on release or after a rest.
 function useHeld(onChange: (value: number) => void) {
   const [held, setHeld] = useState<number | undefined>(undefined);
   const tellLater = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
@@ -46,8 +48,9 @@ function useHeld(onChange: (value: number) => void) {
   return { held, hold, release: () => tell.current() };
 }
 
-// The value and events of an input that keeps what is being typed in it when the page is drawn anew meanwhile, as it is by
-// each frame. `tell` gets the input on Enter, or when it is left; false if that is nothing to be told, such as half a date.
+// Returns the value and events of an input that keeps what is being typed. Without it, each frame
+// would redraw the page and lose the text. `tell` gets the input on Enter or when the input is
+// left. It returns false if the input is incomplete, such as half a date.
 export function useTyped(value: string, tell: (input: HTMLInputElement) => boolean) {
   const [typed, setTyped] = useState<string | undefined>(undefined);
   return {
@@ -161,7 +164,7 @@ interface ChoiceProps<T extends string | number> {
   readonly onChange: (value: T) => void;
 }
 
-// One of a few named values.
+// A choice of one of a few named values.
 export function Choice<T extends string | number>(props: ChoiceProps<T>) {
   const { label, value, options, testId, onChange } = props;
   const id = useId();
@@ -193,13 +196,14 @@ interface SegmentsProps<T extends string | number> {
   readonly value: T | undefined;
   // Value, name and explanation.
   readonly options: readonly (readonly [T, string, string])[];
-  // Shown in place of an explanation while none is chosen.
+  // Shown instead of an explanation while none is chosen.
   readonly otherwise: string;
   readonly testId: string;
   readonly onChange: (value: T) => void;
 }
 
-// A few options side by side, with the explanation of the chosen one below. Screen readers get each one's.
+// A few options side by side, with the explanation of the chosen option below. Screen readers read
+// the explanation of each option.
 export function Segments<T extends string | number>(props: SegmentsProps<T>) {
   const { label, value, options, otherwise, testId, onChange } = props;
   const id = useId();
@@ -278,7 +282,7 @@ export function TextInput({ label, value, testId, onChange }: TextInputProps) {
 
 interface TimeInputProps {
   readonly label: string;
-  // As an input of type datetime-local has it; empty while it is not known.
+  // The value of an input of type datetime-local; empty while it is unknown.
   readonly value: string;
   readonly testId: string;
   readonly onChange: (value: string) => void;
@@ -330,7 +334,7 @@ interface SectionProps {
   readonly children: ComponentChildren;
 }
 
-// A section of the panel that folds.
+// A section of the panel that can be folded.
 export function Section({ title, open, testId, children }: SectionProps) {
   return (
     <details class="section" open={open} data-testid={testId}>

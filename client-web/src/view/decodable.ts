@@ -1,10 +1,11 @@
-// The encodings besides JPEG that this browser decodes, and why not video.
+// Finds the encodings in addition to JPEG that this browser decodes, and the reason if it cannot
+// decode video.
 import { Codec } from "../gen/thunderhead/v1/interact_pb";
 import { VIDEO_CONFIG } from "./video_pictures";
 
 export interface Decodable {
   readonly codecs: Codec[];
-  // Undefined where video is decoded.
+  // Undefined if video can be decoded.
   readonly whyNoVideo: string | undefined;
 }
 
@@ -19,7 +20,7 @@ export async function learnDecodable(window: Probed): Promise<Decodable> {
 }
 
 async function whyNotVideo(window: Probed): Promise<string | undefined> {
-  // Browsers hide it there.
+  // Browsers hide WebCodecs in an insecure context.
   if (!window.isSecureContext) return "video needs HTTPS or localhost";
   if (typeof VideoDecoder === "undefined") return "this browser has no WebCodecs";
   try {
@@ -30,7 +31,7 @@ async function whyNotVideo(window: Probed): Promise<string | undefined> {
   }
 }
 
-// Four grey pixels of 10 bits.
+// An AVIF image of four grey pixels with 10 bits a channel.
 const AVIF =
   "AAAAIGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZk1BMUEAAADybWV0YQAAAAAAAAAoaGRscgAAAAAAAAAAcGljdAAAAAAAAAAAAAAA" +
   "AGxpYmF2aWYAAAAADnBpdG0AAAAAAAEAAAAeaWxvYwAAAABEAAABAAEAAAABAAABGgAAABoAAAAoaWluZgAAAAAAAQAAABppbmZl" +

@@ -1,4 +1,5 @@
-// Every setting of the scene with its unit, limits, default and meaning, from the schema; found by a search box.
+// Every setting of the scene with its unit, limits, default and meaning from the schema, and a
+// search box.
 import type { ComponentType } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { SettingsProps } from "./every_setting";
@@ -6,7 +7,7 @@ import type { Page } from "./page";
 import { withPart } from "./part";
 import { focusRail } from "./tool_rail";
 
-// Loaded when it opens first.
+// The drawer. Its content is loaded when it first opens.
 export function ExpertDrawer({ page }: { page: Page }) {
   const [Settings, setSettings] = useState<ComponentType<SettingsProps> | undefined>(undefined);
   const [query, setQuery] = useState("");
@@ -15,11 +16,11 @@ export function ExpertDrawer({ page }: { page: Page }) {
   const open = page.state.drawerOpen.value;
   const block = page.state.session.editBlock.value;
   const wasOpen = useRef(false);
-  // Before the next key.
+  // This must run before the next key is handled.
   useLayoutEffect(() => {
     const closes = wasOpen.current && !open;
     wasOpen.current = open;
-    // The focus was in it: browsers take it from what is hidden, but not at once.
+    // The focus was in the drawer. Browsers remove the focus from hidden elements, but not at once.
     const focused = document.activeElement;
     if (closes && (focused === document.body || drawer.current?.contains(focused))) {
       focusRail("settings");

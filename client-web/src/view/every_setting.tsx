@@ -8,7 +8,7 @@ import { COMMENTS } from "../gen/comments";
 import { Choice, Slider, Switch, TextInput } from "./controls";
 import type { Page } from "./page";
 
-// The page sets these itself.
+// The page sets these parameters itself.
 const NOT_LISTED = new Set(["storm_id", "time_index"]);
 
 export interface SettingsProps {
@@ -110,7 +110,7 @@ function Setting({ state, parameter }: { state: PageState; parameter: Parameter 
   );
 }
 
-// Elements of lists say whose they are.
+// Returns the label. The label of a list element names the element.
 function labelOf(state: PageState, { name, path, group }: Parameter): string {
   const index = /\[(\d+)\]/.exec(path)?.[1];
   if (index === undefined) return name;

@@ -53,7 +53,7 @@ export function FieldsSection({ state }: { state: PageState }) {
   );
 }
 
-// True if a change of extinction makes the server fit metaballs again, which takes seconds.
+// Returns true if a change of extinction makes the server fit metaballs again, which takes seconds.
 function fitsAnew(state: PageState): boolean {
   const settings = state.settings.value;
   return settings !== undefined && isMessage(settings, MetaballsSchema);
@@ -119,7 +119,7 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
   );
 }
 
-// Fields in this unit are extinction already: particle size has no effect.
+// Unit of fields that are already an extinction. Particle size has no effect on them.
 const EXTINCTION_UNITS = "m-1";
 
 function amountOf(field: FieldDescription): string {
@@ -135,7 +135,7 @@ function micrometres(radiusM: number): string {
   return `${formatNumber(radiusM * 1e6)} µm`;
 }
 
-// Where the particles' radius comes from that the picture is drawn with.
+// Describes the source of the particle radius with which the picture is drawn.
 function sizeInWords(field: FieldDescription, shown: ReturnType<typeof effectiveField>): string {
   switch (shown.sizes) {
     case ParticleSizes.PAPERS:
@@ -149,7 +149,7 @@ function sizeInWords(field: FieldDescription, shown: ReturnType<typeof effective
   }
 }
 
-// The variable or scheme that the model's sizes come from.
+// Returns the variable or scheme from which the model's sizes come.
 function originOf(field: FieldDescription): string {
   switch (field.sizeOrigin) {
     case SizeOrigin.EFFECTIVE_RADIUS:
@@ -168,13 +168,14 @@ const PREPOSITIONS: Partial<Record<SizeOrigin, string>> = {
   [SizeOrigin.SCHEME]: "by ",
 };
 
-// The effective radius of all particles after the words before it; nothing where there is none.
+// Returns the mean effective radius, preceded by `before`; empty if there is none.
 function meanRadius(field: FieldDescription, before: string): string {
   return field.meanRadiusM > 0 ? `${before}${micrometres(field.meanRadiusM)}` : "";
 }
 
-// A field's settings as the scene has them, the prefix of its test ids, and how to change them. Draws again
-// with every change of the fields, not with those of the whole scene.
+// Returns a field's settings from the scene, the prefix of its test ids, and the function that
+// changes them. The component is drawn again when the fields change, but not with every change of
+// the scene.
 function controlsOf(state: PageState, { hydrometeor, defaults }: FieldDescription) {
   void state.fields.value;
   void state.particleSizes.value;
@@ -246,7 +247,7 @@ function ParticleSettings({ state, field }: { state: PageState; field: FieldDesc
   );
 }
 
-// How the field's particles scatter light.
+// Shows how the field's particles scatter light.
 function OpticsSettings({ state, field }: { state: PageState; field: FieldDescription }) {
   const { defaults } = field;
   const { shown, id, edit } = controlsOf(state, field);

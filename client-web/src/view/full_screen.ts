@@ -1,4 +1,4 @@
-// Shows the page in full screen, or ends that.
+// Shows the page in full screen, or leaves full screen.
 export function toggleFullScreen(): void {
   if (document.fullscreenElement !== null) void document.exitFullscreen();
   else void document.documentElement.requestFullscreen();

@@ -1,4 +1,4 @@
-// The page's pictograms, 24 x 24, drawn with lines in the colour of the text.
+// The page's icons, 24 x 24, drawn with lines in the colour of the text.
 import type { ToolName } from "../core/tools";
 
 const PATHS = {

@@ -12,10 +12,11 @@ export interface KeyActions {
   stepTime(by: number): void;
   undo(): void;
   redo(): void;
-  // False where the key has no meaning now.
+  // Returns false if the key has no meaning now.
   enter(): boolean;
   fullScreen(): void;
-  // Closes what is uppermost, puts the pen down. False if there was nothing to do.
+  // Closes the uppermost panel or tool, or puts the pen down. Returns false if there was nothing to
+  // do.
   escape(): boolean;
 }
 
@@ -49,7 +50,7 @@ const PANEL_KEYS: Readonly<Record<string, PanelName>> = {
 };
 
 const TURN_DEG = 3;
-// Moves by this many hundredths of the picture.
+// Pan distance of one key press, as a percentage of the picture.
 const PAN_PX = 5;
 const PICTURE = { widthPx: 100, heightPx: 100 };
 const ZOOM_FACTOR = 0.88;
@@ -78,7 +79,7 @@ export function attachKeyboard(window: Window, actions: KeyActions): () => void 
   return () => listening.abort();
 }
 
-// An arrow key turns an orbit camera around the storm or a spotter's head, and moves a map.
+// Turns an orbit camera around the storm or a spotter's head by an arrow key, or moves a map.
 function look(pose: Pose, right: number, down: number): Pose {
   if (pose.kind === "topDown") return pan(pose, -right * PAN_PX, -down * PAN_PX, PICTURE);
   return turn(pose, right * TURN_DEG, -down * TURN_DEG);
@@ -136,7 +137,7 @@ function opens(key: string, actions: KeyActions): boolean {
   return tool !== undefined || panel !== undefined;
 }
 
-// Texts undo their own changes.
+// Handles the keys of undo and redo. A text field undoes its own changes instead.
 function undoes(event: KeyboardEvent, actions: KeyActions): boolean {
   if (!(event.ctrlKey || event.metaKey) || event.altKey) return false;
   const target = event.target instanceof Element ? event.target : undefined;
@@ -149,8 +150,8 @@ function undoes(event: KeyboardEvent, actions: KeyActions): boolean {
   return true;
 }
 
-// True if the focused control uses the key itself: a text uses all keys, a slider or a radio button the arrows, a
-// button the space bar.
+// Returns true if the focused control uses the key itself. A text field uses all keys, a slider or
+// a radio button the arrows, and a button the space bar.
 function usesKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof Element)) return false;
   const control = target.closest("input, select, textarea, button, summary, [role=slider]");

@@ -1,4 +1,4 @@
-// Lights besides the sun, each from its own direction and in its own colour.
+// The lights except the sun, each with its direction and its colour.
 import { create } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
 import { nameOfTechnique } from "../core/names";
@@ -12,7 +12,7 @@ import {
 import { Section, Slider } from "./controls";
 
 const WHITE = { red: 1, green: 1, blue: 1 };
-// Colours of lights added one after the other, so that each looks different.
+// Colours of lights that are added one after another, so that each looks different.
 const FIRST_COLORS = ["#ff9a4d", "#4d8dff", "#ffffff", "#c04dff"];
 
 export function LightsSection({ state }: { state: PageState }) {

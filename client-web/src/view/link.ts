@@ -1,6 +1,8 @@
-// Links to a session: ?session=VIEWER_KEY names it; #scene=... is a copy of the scene, to open a new session with if that
-// one has ended, or where none is named: such a link is to a view; #present=PRESENTER_KEY lets another person or device present. Browsers do not send the fragment to the
-// server, so the presenter's key is in no log.
+// Links to a session. The query ?session=VIEWER_KEY names the session. The fragment #scene=... is a
+// copy of the scene. It opens a new session if that session has ended or none is named; a link
+// without a session is a link to a view. The fragment #present=PRESENTER_KEY lets another person or
+// device present. Browsers do not send the fragment to the server, so no log contains the
+// presenter's key.
 import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 
@@ -21,7 +23,7 @@ export function readLink(address: string): Link {
   };
 }
 
-// Without a scene the link is short enough for a QR code that a projector shows.
+// Returns the viewers' link. Without a scene the link is short enough for a QR code on a projector.
 export function linkTo(address: string, viewerKey: string, scene?: Scene): string {
   const link = new URL(withoutLink(address));
   link.searchParams.set("session", viewerKey);
@@ -29,7 +31,7 @@ export function linkTo(address: string, viewerKey: string, scene?: Scene): strin
   return link.href;
 }
 
-// Opens a session of one's own with that scene.
+// Returns a link that opens a new session with that scene.
 export function linkToView(address: string, scene: Scene): string {
   const link = new URL(withoutLink(address));
   link.hash = `scene=${sceneToUrlText(scene)}`;
@@ -42,13 +44,13 @@ export function presentersLinkTo(address: string, viewerKey: string, presenterKe
   return link.href;
 }
 
-// True for an address that means the machine of whoever opens it.
+// Returns true for an address that means the machine on which it is opened.
 export function isLoopback(address: string): boolean {
   const host = new URL(address).hostname;
   return /^(localhost|.*\.localhost|127(\.\d+){3}|0\.0\.0\.0|\[::1?\])$/.test(host);
 }
 
-// The page's address without session and scene.
+// Returns the page's address without session and scene.
 function withoutLink(address: string): string {
   const link = new URL(address);
   link.search = "";

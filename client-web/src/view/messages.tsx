@@ -45,7 +45,7 @@ function ConnectionBanner({ state }: { state: PageState }) {
   );
 }
 
-// Counts the seconds to the next attempt, where they are many.
+// Counts down the seconds to the next attempt if there are many.
 function Reconnecting({ inMs }: { inMs: number }) {
   const left = useSignal(Math.ceil(inMs / 1000));
   useEffect(() => {
@@ -70,7 +70,7 @@ function SessionEnded({ page }: { page: Page }) {
   );
 }
 
-// Why the picture is dark, and the way to one by daylight.
+// Explains that the picture is dark, and offers daylight.
 function Night({ state }: { state: PageState }) {
   if (state.frame.value === undefined) return null;
   const { elevationDeg } = state.sunDirection.value;

@@ -1,11 +1,11 @@
-// Notices that disappear by themselves.
+// Notices that disappear automatically.
 import type { PageState } from "../core/state";
 
 const NOTE_MS = 6000;
 
 export class Notes {
   readonly #state: PageState;
-  // Of the notices that disappear, by their subjects.
+  // The timers of the notices that disappear, by their subjects.
   readonly #timers = new Map<string, ReturnType<typeof setTimeout>>();
 
   constructor(state: PageState) {
@@ -22,7 +22,7 @@ export class Notes {
     this.#timers.set(subject, timer);
   }
 
-  // Stays until it is dismissed, or said again.
+  // Shows a notice that stays until it is dismissed or replaced.
   problem(subject: string, text: string): void {
     this.#keep(subject);
     this.#state.notify({ subject, text, severity: "problem" });
@@ -32,7 +32,7 @@ export class Notes {
     for (const timer of this.#timers.values()) clearTimeout(timer);
   }
 
-  // An older notice on it goes no more, as a newer one has its place.
+  // Stops the timer of the notice on this subject, because a newer notice replaces it.
   #keep(subject: string): void {
     clearTimeout(this.#timers.get(subject));
     this.#timers.delete(subject);

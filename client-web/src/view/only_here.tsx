@@ -1,6 +1,6 @@
-// A warning beside a link that works on this computer alone.
+// A warning next to a link that only works on this computer.
 
-// `host` is the address that nobody else can open; undefined where others can.
+// `host` is the address that others cannot open; undefined if they can.
 export function OnlyHere({ host }: { host: string | undefined }) {
   if (host === undefined) return null;
   return (

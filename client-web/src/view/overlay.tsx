@@ -1,4 +1,5 @@
-// Pointers and marks over the picture, at their places in the world as the picture on the screen shows them.
+// Pointers and marks over the picture, at their positions in the world as seen in the picture on
+// the screen.
 
 import { hexOfColor } from "../core/color";
 import { inkOutline, type MarkStroke, markStrokes } from "../core/mark_strokes";
@@ -67,7 +68,7 @@ export function Overlay({ state, marking, marked }: OverlayProps) {
   );
 }
 
-// Where the probe is aimed at by keys, and what its clicks found.
+// Shows the target of a probe by keys, and the places that its clicks found.
 function ProbeMarks({ state, projection, box }: InPicture & { state: PageState }) {
   if (state.tool.value !== "probe") return null;
   const places = state.probes.value.flatMap(({ found }) => {

@@ -1,5 +1,5 @@
-// Connects the parts: the session with the state, the state with the screen, keys and buttons with both. Owns the parts;
-// dispose() ends them.
+// Connects the parts: the session with the state, the state with the screen, and keys and buttons
+// with both. It owns the parts, and dispose() ends them.
 
 import type { Transport } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
@@ -41,7 +41,8 @@ import { StormsOnServer } from "./storms_on_server";
 import { Viewpoint } from "./viewpoint";
 import { followZones } from "./zones";
 
-// A page that is looked at says so, so that the session does not expire under a still picture.
+// A visible page reports itself this often, so that the session does not expire while the picture
+// does not change.
 const STILL_HERE_EVERY_MS = 30_000;
 
 export class Page {
@@ -67,7 +68,7 @@ export class Page {
   readonly #listening = new AbortController();
   readonly #disposals: (() => void)[] = [];
   #running = false;
-  // By a person, on this page.
+  // The storm that a person chose on this page.
   #chosenStorm = "";
 
   constructor(
@@ -220,7 +221,7 @@ export class Page {
     this.viewpoint.showKind(kind);
   }
 
-  // The camera and the time; who looks around has the session's time.
+  // Shows the view's camera and time. A person who looks around keeps the session's time.
   showView({ camera, validTime, timeIndex }: NamedView): void {
     const { state } = this;
     if (state.session.editBlock.peek() !== undefined) {
@@ -252,8 +253,8 @@ export class Page {
     this.state.edit((scene) => withTime(scene, index), record);
   }
 
-  // Shows another storm: another run of the same model from the same place, with the same settings and at the same valid time,
-  // any other at its last time, as the server does by default.
+  // Shows another storm. A run of the same model keeps the camera, the settings and the valid time.
+  // Any other storm is shown at its last time, like the server's default.
   async showStorm(stormId: string): Promise<void> {
     this.playback.pause();
     const { state } = this;
@@ -262,7 +263,7 @@ export class Page {
     const listed = state.storms.value.find((storm) => storm.id === stormId);
     const last = Math.max(0, (listed?.timeCount ?? 1) - 1);
     const other = await this.#storms.description(stormId, last);
-    // Yet another storm was chosen meanwhile, here or by a file or another person.
+    // A different storm was chosen meanwhile, on this page, by a file or by another person.
     if (this.#chosenStorm !== stormId || state.stormId.peek() !== before) return;
     const from = state.storm.peek();
     if (from?.id === before && other !== undefined && isSameDomain(from, other)) {
@@ -272,7 +273,7 @@ export class Page {
     } else state.edit((scene) => withStorm(scene, stormId, last));
   }
 
-  // Asks the server to make the cloud set in the panel, and shows it.
+  // Asks the server to make the cloud set in the panel, and shows the cloud.
   async makeCloud(): Promise<void> {
     const stormId = await this.#storms.makeCloud();
     if (stormId === undefined) return;
@@ -284,7 +285,7 @@ export class Page {
     this.#storms.stopCloud();
   }
 
-  // Deletes the cloud that is shown, for all viewers, and shows another storm.
+  // Deletes the shown cloud for all viewers, and shows another storm.
   async deleteCloud(): Promise<void> {
     const { storms, stormId } = this.state;
     const deleted = stormId.value;
@@ -293,7 +294,8 @@ export class Page {
     await this.#storms.deleteCloud(deleted);
   }
 
-  // Opens a tool in place of the one that is open, or closes it. By a key it takes the focus.
+  // Opens a tool in place of the open tool, or closes it. A tool that was opened by a key takes the
+  // focus.
   toggleTool(name: ToolName, byKey = false): void {
     const { tool, session } = this.state;
     this.state.toolTakesFocus = byKey;
@@ -313,7 +315,7 @@ export class Page {
     popover.value = popover.value === name ? undefined : name;
   }
 
-  // Takes a pen or a pointer into the hand, or puts it down.
+  // Activates a pen or a pointer, or deactivates it.
   takeInHand(tool: Exclude<Tool, "camera">): void {
     const { session } = this.state;
     this.marking.withdrawPointer();
@@ -327,12 +329,13 @@ export class Page {
     this.#life.sendOutputSize();
   }
 
-  // To watch this session with.
+  // Copies the link with which others watch this session.
   copyLink(): Promise<void> {
     return this.#copy(this.addresses.viewersLink(true) ?? "");
   }
 
-  // To the view on this screen, also an own one, whatever becomes of the session.
+  // Copies a link to the view on this screen, even to an own view. The link stays valid after the
+  // session has ended.
   copyViewLink(): Promise<void> {
     return this.#copy(this.addresses.viewLink(this.keeper.sceneShown()));
   }
@@ -342,7 +345,8 @@ export class Page {
     else this.state.notify({ subject: "link", text: link, severity: "note" });
   }
 
-  // Its key is not for the eyes of those who watch: no notice has it.
+  // Copies the presenter's link. No notice shows the link, because viewers may see the screen and
+  // must not learn the key.
   async copyPresentersLink(): Promise<void> {
     const link = this.addresses.presentersLink();
     if (link === undefined) return;
@@ -383,7 +387,8 @@ export class Page {
     const options = { signal: this.#listening.signal };
     const window = this.#window;
     const { session } = this.state;
-    // A presenter's link that is opened in place of this session's address loads nothing anew by itself.
+    // Opening a presenter's link in place of this session's address changes only the fragment, so
+    // the browser does not reload the page.
     window.addEventListener(
       "hashchange",
       () => this.addresses.adoptPresentersLink() && window.location.reload(),
@@ -404,7 +409,7 @@ export class Page {
       effect(() => {
         const { server, storm, storms } = this.state;
         const id = storm.value?.id;
-        // What is written into it is known by then.
+        // The movie's texts need the server's description and its storms, so it waits for them.
         const known = server.value !== undefined && storms.value.length > 0;
         if (id !== undefined && known) untracked(() => this.keeper.resumeMovie(id));
       }),
@@ -455,7 +460,7 @@ export class Page {
     return this.state.session.editBlock.peek() === undefined;
   }
 
-  // The camera then turns around the place seen there.
+  // Turns the camera around the place that is seen there.
   async #turnAround(
     findSeen: () => Promise<readonly [number, number, number] | undefined>,
   ): Promise<void> {
@@ -472,7 +477,7 @@ export class Page {
     this.state.session.tool.value = "camera";
   }
 
-  // Closes what is uppermost.
+  // Closes the uppermost panel or tool.
   #escape(): boolean {
     const { popover, session, tool, drawerOpen } = this.state;
     if (popover.peek() !== undefined) popover.value = undefined;
@@ -484,7 +489,7 @@ export class Page {
   }
 }
 
-// Browsers may deny storage altogether.
+// Returns the storage; undefined because browsers may deny access to it.
 function storageOf(window: Window): Storage | undefined {
   try {
     return window.localStorage;

@@ -1,4 +1,4 @@
-// The panel that a button of the top bar has opened.
+// The open panel of the top bar.
 import { Compare } from "./compare/compare_panel";
 import { Keep } from "./keep/keep_panel";
 import { KEYS } from "./keyboard";

@@ -73,7 +73,7 @@ function PersonRow({ page, person }: { page: Page; person: Person }) {
   );
 }
 
-// Those who ask, for the people who answer: a request ends after 20 seconds.
+// The people who ask to steer, for the people who answer. A request expires after 20 seconds.
 export function Asking({ page }: { page: Page }) {
   const { session } = page.state;
   if (!session.answersAsking.value) return null;

@@ -1,6 +1,7 @@
-// Frames on their way to the canvas: of the session's view, or of the own view of a person who looks around. Every frame is
-// acknowledged, shown or not: the server waits for that. Pictures of video are decoded as they come, as the next ones need
-// them; of files only the newest.
+// Frames between the network and the canvas, either of the session's view or of the own view of a
+// person who looks around. Every frame is acknowledged, shown or not, because the server waits for
+// that. Every video frame is decoded on arrival, because later frames depend on it. Of other images
+// only the newest is decoded.
 
 import { FramePipeline } from "../core/frame_pipeline";
 import type { Frame } from "../gen/thunderhead/v1/frame_pb";
@@ -8,16 +9,16 @@ import { CanvasPainter, type Picture } from "./canvas_painter";
 import { VideoPictures } from "./video_pictures";
 
 export interface PictureFlowSteps {
-  // `videoLost` if it was video that could not be decoded.
+  // `videoLost` is true for video that could not be decoded.
   acknowledge(sequence: bigint, ownView: boolean, videoLost?: boolean): void;
-  // True while frames of the own view are to be shown.
+  // Returns true while frames of the own view should be shown.
   wantsOwnView(): boolean;
   painted(frame: Frame): void;
   undecodable(frame: Frame): void;
   onNextPaint(callback: () => void): () => void;
 }
 
-// A frame whose video is being decoded already.
+// A frame, with its video that is already being decoded.
 interface Arrived {
   readonly frame: Frame;
   readonly video: Promise<VideoFrame> | undefined;
@@ -30,7 +31,7 @@ export class PictureFlow {
   #painter: CanvasPainter | undefined;
   #showsOwnView = false;
   #newestSequence: bigint | undefined;
-  // The newest frame of the session's view that came while the own one was shown.
+  // The newest frame of the session's view that arrived while the own view was shown.
   #unwanted: Frame | undefined;
 
   constructor(steps: PictureFlowSteps) {
@@ -55,7 +56,7 @@ export class PictureFlow {
     this.#painter = undefined;
   }
 
-  // A new call: sequences count from the beginning.
+  // Begins a new call, whose sequence numbers restart.
   startCall(): void {
     this.#video.reset();
     this.#pipeline.startStream();
@@ -67,7 +68,7 @@ export class PictureFlow {
     if (frame.ownView !== this.#steps.wantsOwnView()) {
       this.#steps.acknowledge(frame.sequence, frame.ownView);
       if (!frame.ownView) this.#unwanted = frame;
-      // The next pictures of its stream would need it.
+      // Later frames of this stream would depend on the skipped frame.
       if (frame.vp9.byteLength > 0 && frame.ownView === this.#showsOwnView) this.#video.reset();
       return;
     }
@@ -75,12 +76,13 @@ export class PictureFlow {
     this.#newestSequence = frame.sequence;
     const video =
       frame.vp9.byteLength > 0 ? this.#video.decode(frame.vp9, frame.keyFrame) : undefined;
-    // It is told by the pipeline, or by #skipped.
+    // The pipeline or #skipped handles the error, so it is ignored here.
     video?.catch(() => undefined);
     this.#pipeline.offer({ frame, video });
   }
 
-  // Another view is wanted now. The server may have sent its frame before it said so.
+  // Reports that another view should be shown. The server may have sent that view's frame before it
+  // reported the change.
   viewChanged(): void {
     const frame = this.#unwanted;
     this.#unwanted = undefined;
@@ -93,7 +95,8 @@ export class PictureFlow {
     this.detach();
   }
 
-  // The views count their sequences apart. What waits of the other is not shown any more.
+  // Switches to the other view, whose sequences are numbered separately. Waiting frames of the old
+  // view are dropped.
   #switchTo(ownView: boolean): void {
     if (this.#newestSequence !== undefined)
       this.#steps.acknowledge(this.#newestSequence, this.#showsOwnView);
@@ -111,7 +114,8 @@ export class PictureFlow {
     this.#steps.painted(frame);
   }
 
-  // Video that breaks off is no news to anybody: the server goes on with JPEG.
+  // Reports a frame that could not be decoded. For video there is no notice, because the server
+  // continues with JPEG.
   #undecodable(frame: Frame): void {
     const isVideo = frame.vp9.byteLength > 0;
     this.#steps.acknowledge(frame.sequence, frame.ownView, isVideo);
@@ -128,7 +132,7 @@ export class PictureFlow {
 
 function decodeFile(frame: Frame): Promise<ImageBitmap> {
   const isStill = frame.avif.byteLength > 0;
-  // Blob does not accept shared buffers; decoded messages never use them.
+  // The cast is safe because decoded messages never use shared buffers, which Blob does not accept.
   const bytes = (isStill ? frame.avif : frame.jpeg) as Uint8Array<ArrayBuffer>;
   return createImageBitmap(new Blob([bytes], { type: isStill ? "image/avif" : "image/jpeg" }));
 }

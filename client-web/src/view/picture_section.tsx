@@ -1,4 +1,4 @@
-// How bright the picture is, and what sky and ground are like.
+// The picture's brightness, the sky and the ground.
 import { DEFAULTS, LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
 import type { PageState } from "../core/state";
 import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";
@@ -23,10 +23,10 @@ const RESOLUTIONS = [
   [0.25, "A quarter"],
 ] as const;
 
-// Left to the server, or set by hand.
+// The exposure, either automatic or set by hand.
 export function ExposureControls({ state }: { state: PageState }) {
   const display = state.display.value;
-  // An automatic exposure is the newest frame's.
+  // An automatic exposure is that of the newest frame.
   const shownExposureEv =
     display?.exposureEv ?? Math.round(100 * (state.frame.value?.modelled?.exposureEv ?? 0)) / 100;
   return (

@@ -1,20 +1,21 @@
-// Mouse and touch over the storm: a drag turns, with the right button, shift or two fingers it moves, the
-// wheel or a pinch comes nearer. With a tool in the hand, the left button or one finger uses that instead of turning.
-// attachPointer() returns a function that removes the listeners.
+// Converts mouse and touch over the storm to camera motions. A drag turns the camera. A drag with
+// the right button, Shift or two fingers moves it. The wheel or a pinch zooms. If a tool is active,
+// the left button or one finger uses the tool. attachPointer() returns a function that removes the
+// listeners.
 import { drag, type PictureSize, type Pose, pan, zoom } from "../core/camera";
 import type { PictureTool } from "../core/marking";
 import type { StrokePoint } from "../core/stroke";
 
 export interface PointerSteps {
   move(motion: (pose: Pose) => Pose): void;
-  // The tool in the hand; undefined for the camera.
+  // Returns the active tool; undefined for the camera.
   tool(): PictureTool | undefined;
-  // Pressed and released at one place, without a tool in the hand.
+  // These report a press and release at one place while no tool is active.
   clicked(place: StrokePoint): void;
   doubleClicked(place: StrokePoint): void;
 }
 
-// Farther than this it was a drag.
+// A motion longer than this is a drag.
 const CLICK_PX = 4;
 
 interface Point {
@@ -24,7 +25,7 @@ interface Point {
 
 // One notch of a common wheel, 100 pixels, changes the distance by 14 %.
 const WHEEL_PER_PIXEL = 0.0013;
-// A pinch on a touchpad comes as a wheel with small steps and the control key.
+// Browsers report a pinch on a touchpad as a wheel with small steps and the control key.
 const TOUCHPAD_PINCH_PER_PIXEL = 0.01;
 const LINE_PX = 16;
 const SECONDARY_AND_MIDDLE_BUTTONS = 2 | 4;
@@ -35,7 +36,7 @@ export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): (
   const down = new Map<number, Point>();
   const listening = new AbortController();
   const options = { signal: listening.signal };
-  // The pointer that uses the tool, which is also in `down`.
+  // `drawing` is the pointer that uses the tool. It is also in `down`.
   let pressedAt: StrokePoint | undefined;
   let drawing: { readonly pointerId: number; readonly tool: PictureTool } | undefined;
 
@@ -125,7 +126,7 @@ export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): (
   return () => listening.abort();
 }
 
-// One of two fingers has moved: the middle between them pans, their distance zooms.
+// Handles a motion of one of two fingers. Their midpoint pans, and their distance zooms.
 function pinch(pose: Pose, before: Point, after: Point, other: Point, picture: PictureSize): Pose {
   const apartBefore = Math.hypot(before.x - other.x, before.y - other.y);
   const apartAfter = Math.hypot(after.x - other.x, after.y - other.y);
@@ -141,7 +142,7 @@ function isNear(a: StrokePoint, b: StrokePoint): boolean {
   return Math.hypot(a.left - b.left, a.top - b.top) <= CLICK_PX;
 }
 
-// The canvas fills the window.
+// Returns the event's place. The canvas fills the window, so no offset is needed.
 function placeOf(event: MouseEvent): StrokePoint {
   return { left: event.clientX, top: event.clientY };
 }

@@ -1,4 +1,4 @@
-// The panel that a button of the top bar opens: takes the focus, and gives it back when it closes.
+// The panel that a button of the top bar opens. It takes the focus, and returns it when it closes.
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { PanelName } from "../core/tools";
@@ -14,7 +14,7 @@ interface PopoverProps {
 
 export function Popover({ page, name, title, label, children }: PopoverProps) {
   const dialog = useRef<HTMLElement>(null);
-  // Before the next key.
+  // This must run before the next key is handled.
   useLayoutEffect(() => {
     const before = document.activeElement;
     dialog.current?.focus();

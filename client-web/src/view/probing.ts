@@ -1,5 +1,5 @@
-// Asks the server for the fields along the ray of a click, and keeps the last two answers: the second click measures from the
-// first.
+// Asks the server for the fields along the ray of a click, and keeps the last two answers. The
+// second click measures from the first.
 import { ConnectError } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
 import { cameraOfPose, type Pose } from "../core/camera";
@@ -29,7 +29,7 @@ export class Probing {
   constructor(calls: ServerCalls, state: PageState) {
     this.#calls = calls;
     this.#state = state;
-    // Answers belong to the storm and time that were shown, and are dropped with them.
+    // Answers belong to one storm and time, so they are dropped when another is shown.
     this.#stop = effect(() => {
       void [state.stormId.value, state.timeIndex.value];
       untracked(() => this.forget());
@@ -68,13 +68,13 @@ export class Probing {
     }
   }
 
-  // The place of what is seen there; undefined for the sky.
+  // Returns the world position of what is seen at a place of the window; undefined for the sky.
   async seenAt(place: StrokePoint): Promise<readonly [number, number, number] | undefined> {
     const point = this.#pointAt(place);
     return point === undefined ? undefined : this.seenThrough(point);
   }
 
-  // The same through a point of the picture.
+  // Returns the world position of what is seen at a point of the picture.
   async seenThrough(
     point: PicturePoint,
     picture = this.#pictureA(),
@@ -92,7 +92,7 @@ export class Probing {
     this.#state.probeProblem.value = undefined;
   }
 
-  // Picture B shows something else now.
+  // Forgets the answers of picture B, because it shows something else now.
   forgetB(): void {
     const left = this.#state.probes.peek().filter(({ picture }) => picture === "A");
     if (left.length < this.#state.probes.peek().length) this.#state.probes.value = left;

@@ -1,4 +1,4 @@
-// Quality of the picture: three presets, and the technique with its settings.
+// The picture's quality: three presets, and the technique with its settings.
 import { nameOfPreset } from "../core/names";
 import { withPreset } from "../core/scene";
 import type { PageState } from "../core/state";
@@ -43,7 +43,7 @@ export function TechniqueSection({ state }: { state: PageState }) {
   );
 }
 
-// Shown while none of the three presets is chosen.
+// Returns the text that is shown while none of the three presets is chosen.
 function otherwise(state: PageState): string {
   if (state.goal.value !== undefined) return "Set by the goal under Accuracy.";
   if (state.settings.value === undefined) return "Waiting for the server …";
@@ -53,7 +53,7 @@ function otherwise(state: PageState): string {
     : `As in the paper: ${nameOfPreset(preset)}.`;
 }
 
-// Properties of the scene that the picture on the screen leaves out.
+// Lists the properties of the scene that the picture on the screen leaves out.
 function NotShown({ state }: { state: PageState }) {
   const notShown = state.frame.value?.modelled?.notShown ?? [];
   if (notShown.length === 0) return null;

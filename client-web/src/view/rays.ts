@@ -1,4 +1,4 @@
-// Rays as the messages have them.
+// Converts rays to the form of the messages.
 import type { WorldRay } from "../core/projection";
 
 export function rayMessage({ originM, direction }: WorldRay) {

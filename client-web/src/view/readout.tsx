@@ -4,7 +4,7 @@ import { nameOfStage, nameOfTechnique } from "../core/names";
 import type { PageState } from "../core/state";
 import { formatBitRate, formatBytes, formatNumber } from "../core/units";
 
-// The connection at a glance; opened, the cost of the picture.
+// A summary of the connection. When it is opened, it shows the cost of the picture.
 export function Connection({ state }: { state: PageState }) {
   const frame = state.frame.value;
   const pace = state.pace.value;
@@ -72,7 +72,8 @@ function Costs({ state }: { state: PageState }) {
               testId="technique"
               text={nameOfTechnique(frame.modelled.technique)}
             />
-            {/* The reference is traced on the CPU: no slices, nothing on the device. */}
+            {/* The reference is traced on the CPU, so it has no slices and uses no device memory.
+                */}
             {frame.refinement === undefined && (
               <>
                 {frame.modelled.balls > 0 && (
@@ -111,7 +112,8 @@ function Costs({ state }: { state: PageState }) {
   );
 }
 
-// All own views together get half of the server's time where the session's moves too (server/session/turns.h).
+// Describes the own view. All own views together get half of the server's time while the session's
+// view also moves (server/session/turns.h).
 function ownView({ session }: PageState): string {
   const count = session.othersLookingAround.value + 1;
   if (count === 1) return "Your own, drawn for you alone";

@@ -1,4 +1,5 @@
-// The screen: frames to the canvas, the canvas in its window, and what the frame that is shown tells the state.
+// The screen. It passes frames to the canvas, places the canvas in its window, and reports the
+// shown frame to the state.
 import { poseOfCamera, standingAzimuthDeg } from "../core/camera";
 import { encodingOf, pictureBytes } from "../core/encoding";
 import { FrameRate } from "../core/frame_rate";
@@ -10,17 +11,17 @@ import { CanvasPlace } from "./canvas_place";
 import { PictureFlow } from "./picture_flow";
 import type { PointerSteps } from "./pointer";
 
-// The person has asked the browser to save data; not in every browser.
+// The person may have asked the browser to save data. Not every browser reports this.
 type NetworkNavigator = Navigator & { readonly connection?: { readonly saveData?: boolean } };
 
 const PACE_EVERY_MS = 500;
-// Of what a camera that does not turn around a target looks at.
+// Distance of what the camera sees, for a camera that does not turn around a target.
 const TYPICAL_DISTANCE_M = 30_000;
 
 export interface ScreenSteps extends Omit<PointerSteps, "tool"> {
   tool(): PictureTool | undefined;
   acknowledge(sequence: bigint, ownView: boolean, videoLost?: boolean): void;
-  // A frame is on the screen.
+  // Reports that a frame is on the screen.
   shown(frame: Frame, nowMs: number): void;
   // Called twice a second.
   paced(): void;
@@ -72,7 +73,7 @@ export class Screen {
     return this.#shown;
   }
 
-  // In physical pixels.
+  // Returns the canvas's size in physical pixels.
   get size(): { readonly widthPx: number; readonly heightPx: number } {
     return this.#place.size;
   }
@@ -81,14 +82,14 @@ export class Screen {
     return this.#place.attach(canvas);
   }
 
-  // The window as the session is told of it.
+  // Returns the window as it is reported to the session.
   window() {
     const { document, navigator } = this.#window;
     const savesBytes = (navigator as NetworkNavigator | undefined)?.connection?.saveData === true;
     return { ...this.size, hidden: document.hidden, savesBytes };
   }
 
-  // The picture that marks are drawn on.
+  // Returns the picture on which marks are drawn.
   markedPicture(): MarkedPicture | undefined {
     const box = this.#state.pictureBox.peek();
     const projection = this.#state.frame.peek()?.projection;
@@ -98,13 +99,14 @@ export class Screen {
     return { box, projection, distanceM };
   }
 
-  // For tests: the revision that the picture at rest will show, empty until it is known.
+  // Publishes for tests the revision that the resting picture will show; empty until it is known.
   tellAgreed(revision: bigint | undefined): void {
     const { canvas } = this.#place;
     if (canvas !== undefined) canvas.dataset.agreed = String(revision ?? "");
   }
 
-  // A new call: frames count from the beginning, and the picture on the canvas is of an earlier call.
+  // Begins a new call. Its frames are numbered anew, and the picture on the canvas belongs to an
+  // earlier call.
   startCall(): void {
     this.#flow.startCall();
     delete this.#place.canvas?.dataset.revision;
@@ -143,7 +145,8 @@ export class Screen {
     });
   }
 
-  // Such a frame is acknowledged although it is not shown: the server would wait for it.
+  // Shows a notice. The frame is acknowledged although it is not shown, because the server would
+  // otherwise wait for it.
   #undecodable(frame: Frame): void {
     const text = `Frame ${frame.sequence} is no picture that this browser can read`;
     this.#state.notify({ subject: "decode", text, severity: "problem" });

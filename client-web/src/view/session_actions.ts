@@ -19,7 +19,7 @@ export class SessionActions {
     this.#state = state;
   }
 
-  // The name that others see; kept for the next time.
+  // The name that others see. It is kept for the next session.
   get name(): string {
     return this.#keys.name;
   }
@@ -37,7 +37,7 @@ export class SessionActions {
     this.#client.send({ case: "takeControl", value: {} });
   }
 
-  // Without a person, a viewer gives it back to the presenter.
+  // Gives control to a person. Without a person, a viewer returns control to the presenter.
   giveControl(viewerId = 0n): void {
     this.#client.send({ case: "giveControl", value: { viewerId } });
   }
@@ -54,7 +54,7 @@ export class SessionActions {
     this.#client.send({ case: "eraseMarks", value: {} });
   }
 
-  // Ends the session for everybody.
+  // Ends the session for all people.
   async endSession(): Promise<void> {
     const viewerKey = this.#state.session.viewerKey.peek() ?? "";
     const presenterKey = this.#keys.presenterKey(viewerKey);
@@ -68,7 +68,7 @@ export class SessionActions {
     }
   }
 
-  // In place of one that has ended.
+  // Opens a session in place of one that has ended.
   openNewSession(): void {
     const { session, connection } = this.#state;
     session.ended.value = undefined;

@@ -1,4 +1,4 @@
-// The person who steers, and the way back from looking around.
+// The person who steers, and the button that ends looking around.
 import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
 
@@ -30,7 +30,7 @@ function Control({ page }: { page: Page }) {
   const { session } = page.state;
   if (session.steersAlone.value) return null;
   const step = controlStep(page);
-  // One button whatever it does, so that it keeps the keyboard's focus.
+  // One button serves all actions, so that it keeps the keyboard focus.
   return (
     <>
       <span class="who-steers" title={whyWaiting(session)} data-testid="who-steers">
@@ -59,7 +59,7 @@ interface ControlStep {
   act(): void;
 }
 
-// The one button about who steers: ask, take, give back or let go.
+// Returns the action of the button about who steers: ask, take, give back or let go.
 function controlStep({ state: { session }, actions }: Page): ControlStep {
   const letGo = () => actions.giveControl();
   if (session.steering.value && session.presenting.value)
@@ -106,7 +106,7 @@ function whoSteers(session: SessionState): string {
     : `Waiting for ${session.nameOf(awaited)} to come back`;
 }
 
-// Words on what happens while control waits for somebody; undefined where it waits for nobody.
+// Describes why control is reserved for a person; undefined if it is not reserved.
 function whyWaiting(session: SessionState): string | undefined {
   if (session.awaited.value === undefined) return undefined;
   const who = "Whoever steered and has left or lost the connection has some seconds to come back.";

@@ -1,4 +1,5 @@
-// This page's part in a session: opens or joins it, keeps its scene and the page's the same, takes its messages.
+// This page's part in a session. It opens or joins the session, synchronizes the page's scene with
+// the session's, and handles the session's messages.
 
 import { create } from "@bufbuild/protobuf";
 import { Code } from "@connectrpc/connect";
@@ -32,7 +33,7 @@ import type { Screen } from "./screen";
 import type { StormsOnServer } from "./storms_on_server";
 import type { Viewpoint } from "./viewpoint";
 
-// The subject of the notice, and its words.
+// The subject and the text of the notice.
 const NOT_SAVED = "not-saved";
 const NOT_SAVED_TEXT =
   "This session is not saved: it ends with the server, unless the server can save it later.";
@@ -57,11 +58,11 @@ export interface SessionLifeParts {
 
 export class SessionLife implements SessionListener {
   codecs: Codec[] = [Codec.JPEG];
-  // False for who steers another's session, which keeps its picture size.
+  // False for a page that joined another person's session, whose picture size must not change.
   setsOutput: boolean;
   readonly #parts: SessionLifeParts;
   readonly #sync: SceneSync;
-  // The key that the page joins with, if it is the presenter's.
+  // The key with which the page joins, if it is the presenter's.
   #presenterKey: string | undefined;
   // True until the first presence of a session that this page opened.
   #opened = false;
@@ -89,19 +90,19 @@ export class SessionLife implements SessionListener {
     state.onEdit((edit) => this.#sync.edited(edit));
   }
 
-  // The key to join with.
+  // Returns the key with which to join.
   get key(): string | undefined {
     return this.#presenterKey ?? this.#parts.state.session.viewerKey.peek();
   }
 
-  // True once the picture of this time is on the screen. Before this page sends a first scene, the frame shown is of the
-  // scene's time.
+  // Returns true once the picture of this time is on the screen. Before this page sends its first
+  // scene, the frame shown has the scene's time.
   isTimeShown(index: number): boolean {
     if (this.#sync.unsettled || this.#parts.screen().shown === undefined) return false;
     return (this.#parts.ledger.shownTimeIndex ?? index) === index;
   }
 
-  // A frame is on the screen.
+  // Handles a frame that is on the screen.
   shown(frame: Frame, nowMs: number): void {
     if (frame.ownView) this.#parts.viewpoint().ownView.placed(frame.camera);
     else {
@@ -120,7 +121,8 @@ export class SessionLife implements SessionListener {
     if (frame.sceneRevision >= this.#sync.revision) this.#parts.state.adoptCamera(frame.camera);
   }
 
-  // A frame may arrive before the reply that names its revision.
+  // Adopts the camera if the scene has none, because a frame may arrive before the response that
+  // names its revision.
   adoptOpenCamera(): void {
     if (poseOfCamera(this.#parts.state.scene.peek().camera) === undefined) this.adoptCamera();
   }
@@ -142,7 +144,7 @@ export class SessionLife implements SessionListener {
     this.#sync.dispose();
   }
 
-  // SessionListener.
+  // The methods of SessionListener follow.
 
   sceneToOpen(): Scene {
     this.setsOutput = true;
@@ -232,10 +234,11 @@ export class SessionLife implements SessionListener {
 
   refused({ subject, requestId, code, message, reason, retryAfterMs }: Refusal): void {
     const { ownView } = this.#parts.viewpoint();
-    // A late or a second pointer, acknowledgement or motion is of no interest.
+    // A refused pointer, acknowledgement or motion does not matter, because it was late or a
+    // duplicate.
     if (subject === "point" || subject === "acknowledge") return;
     if (subject === "moveCamera") {
-      // The server has ended the own view; this page may not have been told of it.
+      // The server has ended the own view, and this page may not know it yet.
       if (code === Code.FailedPrecondition) ownView.end();
       return;
     }
@@ -297,7 +300,7 @@ export class SessionLife implements SessionListener {
     this.#newestProblem = problem;
     if (!problem.ownView) this.#parts.ledger.settled(problem.sceneRevision);
     this.#parts.notes.problem("problem", problem.message);
-    // The storm may be gone.
+    // The storm may no longer exist.
     void this.#parts.storms.learn();
   }
 

@@ -1,4 +1,5 @@
-// The viewers' link as text and as a QR code for a projector, and for the presenter the rules and a link to present by.
+// The viewers' link as text and as a QR code for a projector. For the presenter also the rules, and
+// a link with which to present.
 
 import { useMemo, useState } from "preact/hooks";
 import qrcode from "qrcode-generator";
@@ -21,7 +22,7 @@ const RULES: readonly (readonly [RuleName, string, string])[] = [
   ["freeWhenAway", "Free when away", "Control becomes free once you have been away for a minute."],
 ];
 
-// Modules of quiet zone around the code, as ISO 18004 asks for.
+// Width in modules of the quiet zone around the code, which ISO 18004 requires.
 const QUIET = 4;
 
 export function Share({ page }: { page: Page }) {
@@ -79,7 +80,7 @@ function LinkRow({ who, link, copyId, copy }: LinkRowProps) {
   );
 }
 
-// Folded up, as its text is not for those who watch the screen.
+// The presenter's link. It is folded because people who watch the screen must not read it.
 function PresentersLink({ page }: { page: Page }) {
   const [open, setOpen] = useState(false);
   const link = page.addresses.presentersLink();
@@ -109,7 +110,7 @@ function PresentersLink({ page }: { page: Page }) {
   );
 }
 
-// A click shows it as large as the window, for those at the back.
+// A QR code. A click enlarges it to the window's size, for people at the back.
 function QrCode({ text }: { text: string }) {
   const [large, setLarge] = useState(false);
   const { size, path } = useMemo(() => qrPath(text), [text]);
@@ -137,7 +138,7 @@ function QrCode({ text }: { text: string }) {
   );
 }
 
-// The dark modules as one path, a module a unit.
+// Returns the dark modules as one path. A module is one unit wide.
 function qrPath(text: string): { size: number; path: string } {
   const code = qrcode(0, "M");
   code.addData(text);
@@ -175,7 +176,7 @@ function Rules({ page }: { page: Page }) {
   );
 }
 
-// The first click asks for confirmation.
+// The button that ends the session. The first click asks for confirmation.
 function EndSession({ page }: { page: Page }) {
   const [asked, setAsked] = useState(false);
   return (

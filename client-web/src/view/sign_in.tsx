@@ -1,4 +1,4 @@
-// Asks for the token that the server wants.
+// Asks for the token that the server requires.
 import { useSignal } from "@preact/signals";
 import { isToken } from "../core/access_token";
 import type { Page } from "./page";

@@ -1,4 +1,5 @@
-// The storm from above, as the server computes it: fetched while something that shows it is open, again for another time.
+// The storm from above, as the server computes it. It is fetched while a tool that shows it is
+// open, and again for another time.
 import { ConnectError } from "@connectrpc/connect";
 import { effect } from "@preact/signals-core";
 import type { PageState } from "../core/state";
@@ -18,7 +19,7 @@ export class StormMap {
   readonly #state: PageState;
   readonly #stop: () => void;
   #timer: ReturnType<typeof setTimeout> | undefined;
-  // The newest request: an older one's answer counts no more.
+  // The newest request. Answers to older requests are ignored.
   #asked: Asked | undefined;
 
   constructor(calls: ServerCalls, state: PageState) {
@@ -29,7 +30,7 @@ export class StormMap {
       const live = state.connection.value.kind === "live";
       const stormId = state.stormId.value;
       const timeIndex = state.timeIndex.value;
-      // Fetched again when a file was replaced or deleted.
+      // Reading this signal fetches the map again when a file was replaced or deleted.
       const storms = state.storms.value;
       clearTimeout(this.#timer);
       if (!wanted || !live || stormId === "") return;
@@ -58,7 +59,7 @@ export class StormMap {
     } catch (error) {
       if (this.#asked !== asked) return;
       this.#asked = undefined;
-      // Of another time or storm.
+      // The old map belongs to another time or storm.
       this.#state.stormMap.value = undefined;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
       this.#state.mapProblem.value = `The server sends no map: ${why}`;

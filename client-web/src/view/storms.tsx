@@ -1,4 +1,4 @@
-// The server's storms, and clouds made to order.
+// The server's storms, and generated clouds.
 import { useState } from "preact/hooks";
 import { CloudSection } from "./cloud_section";
 import { Choice } from "./controls";
@@ -45,7 +45,7 @@ export function Storms({ page }: { page: Page }) {
   );
 }
 
-// The first click asks for confirmation.
+// The button that deletes a cloud. The first click asks for confirmation.
 function DeleteCloud({ page }: { page: Page }) {
   const [asked, setAsked] = useState(false);
   return (

@@ -1,4 +1,5 @@
-// Fetches what the server offers: its description, its storms, details of the storm shown; makes and deletes clouds.
+// Fetches what the server offers: its description, its storms, details of the storm shown. Makes
+// and deletes clouds.
 import { ConnectError } from "@connectrpc/connect";
 import { requestOfCloud } from "../core/cloud";
 import type { PageState } from "../core/state";
@@ -18,7 +19,8 @@ export class StormsOnServer {
     this.#state = state;
   }
 
-  // Called for each new session, as the server may be another one.
+  // Fetches the server's description and storms. Called for each new session, because the server
+  // may be a different one.
   async learn(): Promise<void> {
     const { server, storms, scene } = this.#state;
     try {
@@ -29,12 +31,12 @@ export class StormsOnServer {
         this.#state.adoptScene({ ...scene.value, stormId: first.id });
       }
     } catch {
-      // The stream notices the lost connection too; after reconnecting this is called again.
+      // The stream also notices the lost connection, and this is called again after reconnecting.
     }
   }
 
-  // Fetches the description of the storm at the time shown: at once for another storm, after a delay for another time.
-  // Reads signals, to be called from an effect.
+  // Fetches the description of the storm at the time shown. Another storm is described at once,
+  // another time after a delay. It reads signals, so an effect must call it.
   describeAfterRest(playing: boolean): void {
     const stormId = this.#state.stormId.value;
     const timeIndex = this.#state.timeIndex.value;
@@ -48,18 +50,19 @@ export class StormsOnServer {
     }
   }
 
-  // The server's storms or their times have changed.
+  // Handles a change of the server's storms or their times.
   async changed(): Promise<void> {
     const stormId = this.#state.stormId.value;
     if (stormId !== "") void this.#describe(stormId, this.#state.timeIndex.value);
     try {
       this.#state.storms.value = await this.#calls.storms();
     } catch {
-      // As above.
+      // This error is ignored for the same reason as in learn().
     }
   }
 
-  // Undefined where the server cannot tell now: it says so where the storm is asked for.
+  // Returns the description; undefined if the server cannot describe the storm now. The server then
+  // reports the error when the storm is requested.
   async description(stormId: string, timeIndex: number): Promise<StormDescription | undefined> {
     try {
       return await this.#calls.describeStorm(stormId, timeIndex);
@@ -68,7 +71,8 @@ export class StormsOnServer {
     }
   }
 
-  // Makes the cloud set in the panel. Returns the id of its storm, or undefined if it failed or was stopped.
+  // Makes the cloud set in the panel. Returns the id of its storm; undefined if it failed or was
+  // stopped.
   async makeCloud(): Promise<string | undefined> {
     const making = new AbortController();
     this.#making = making;
@@ -89,7 +93,7 @@ export class StormsOnServer {
     }
   }
 
-  // Deletes a cloud that the server made; a failure becomes a notice.
+  // Deletes a cloud that the server made. A failure becomes a notice.
   async deleteCloud(stormId: string): Promise<void> {
     try {
       await this.#calls.deleteCloud(stormId);

@@ -1,5 +1,5 @@
-// The sky from below with the sun in it, to be dragged. Its middle is the zenith, its ring the horizon; the
-// wedge shows where the camera looks.
+// The sky from below, with a sun that can be dragged. Its centre is the zenith, its ring the
+// horizon. The wedge shows the camera's direction.
 
 import { wrapDegrees } from "../core/camera";
 import { clampToLimits } from "../core/limits";
@@ -14,7 +14,7 @@ import {
 
 interface SunDomeProps {
   readonly sun: SunDirection;
-  // Azimuth at which the camera stands, seen from the storm.
+  // Azimuth of the camera's position, seen from the storm.
   readonly cameraAzimuthDeg: number | undefined;
   readonly disabled: boolean;
   readonly onChange: (sun: SunDirection) => void;

@@ -1,4 +1,4 @@
-// The sun: by the clock, with a slider over the day, or by hand on the dome.
+// The sun, set by the clock with a slider over the day, or by hand on the dome.
 import { standingAzimuthDeg } from "../core/camera";
 import { localClock } from "../core/moment";
 import { LIMITS, withSky, withSun, withSunClock } from "../core/scene";
@@ -28,7 +28,7 @@ export function SunControls({ state }: { state: PageState }) {
   const sun = state.sun.value;
   const byTime = sun?.source === Sun_Source.BY_TIME;
   const direction = state.sunDirection.value;
-  // Moving the sun by hand stops the clock; the other angle stays.
+  // Moving the sun by hand stops the clock and keeps the other angle.
   const point = (change: { azimuthDeg?: number; elevationDeg?: number }) =>
     state.edit((scene) => withSun(scene, { ...direction, ...change, source: Sun_Source.BY_HAND }));
   const here = state.clockHere.value;
@@ -88,7 +88,7 @@ interface DayProps {
   readonly byTime: boolean;
 }
 
-// Local time of day, with sunrise and sunset. Moving it starts the clock.
+// A slider over the local time of day, with sunrise and sunset. Moving it starts the clock.
 function DaySlider({ state, here, byTime }: DayProps) {
   const zone = state.sunZone.value;
   const minute = minuteOfDay(here.instant, zone);
@@ -132,9 +132,9 @@ function DaySlider({ state, here, byTime }: DayProps) {
   );
 }
 
-// Every half hour.
+// Number of sky samples: one every half hour.
 const SKY_STEPS = 48;
-// Heights of the sun and colours of the sky; between them they are mixed.
+// Heights of the sun with colours of the sky. Colours in between are interpolated.
 const SKY = [
   [-8, [8, 14, 30]],
   [-1, [217, 146, 91]],

@@ -90,7 +90,7 @@ interface MediumProps {
   readonly technique: TechniqueDescription;
 }
 
-// The settings that several techniques share; only those that this one has.
+// The settings that several techniques share. Only those that this technique has are shown.
 function MediumControls({ state, settings, technique }: MediumProps) {
   const shared = sharedSettingsOf(settings);
   const transport = transportOf(settings, technique);
@@ -144,7 +144,7 @@ interface SettingSliderProps {
   readonly label: string;
 }
 
-// Empty if the technique has no such setting.
+// A slider for a setting; empty if the technique does not have the setting.
 function SettingSlider({ state, settings, name, label }: SettingSliderProps) {
   const limits = settingLimits(settings, name);
   if (limits === undefined) return null;
@@ -164,7 +164,7 @@ interface OtherProps {
   readonly technique: OtherTechnique;
 }
 
-// The numbers of a technique that the server was extended by.
+// The numbers of a technique of a server extension.
 function OtherControls({ state, technique }: OtherProps) {
   return (
     <>

@@ -1,4 +1,4 @@
-// The storm's times along the bottom: a tick each, play, step, loop and speed.
+// The storm's times along the bottom: a tick for each time, play, step, loop and speed.
 
 import { stretchesOf } from "../core/held_times";
 import { momentOf } from "../core/moment";
@@ -8,7 +8,7 @@ import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
 import { Icon } from "./icons";
 import type { Page } from "./page";
 
-// Times that get their clock under their tick, at most.
+// Maximum number of times whose clock is below their tick.
 const MAX_LABELS = 6;
 
 export function TimeLine({ page }: { page: Page }) {
@@ -106,7 +106,8 @@ interface StepsProps {
   readonly fixed: boolean;
 }
 
-// A slider with a tick for each time. Under the ticks of times that are read already, so that they come at once, lies a shade.
+// A slider with a tick for each time. The ticks of times that are already in memory, and thus
+// appear at once, are shaded.
 function Steps({ page, times, index, fixed }: StepsProps) {
   const { state, playback } = page;
   const last = times.length - 1;

@@ -1,4 +1,5 @@
-// The rail of tools, and the panel of the one that is open: beside the rail on a wide window, a sheet from below on a narrow one.
+// The rail of tools, and the panel of the open tool. The panel is next to the rail in a wide
+// window, and a sheet at the bottom in a narrow one.
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { TOOL_NAMES, TOOL_TEXTS, type ToolName } from "../core/tools";
@@ -22,7 +23,7 @@ const CONTENTS: Readonly<Record<ToolName, (props: { page: Page }) => ComponentCh
   marks: MarksTool,
 };
 
-// Tools that change the scene for everybody, and are locked for who does not steer.
+// Tools that change the scene for all people. They are locked for viewers who do not steer.
 const STEERED: readonly ToolName[] = ["time", "light", "look", "fields"];
 
 export function ToolRail({ page }: { page: Page }) {
@@ -71,7 +72,7 @@ export function ToolRail({ page }: { page: Page }) {
   );
 }
 
-// Where a panel was opened from, once it is closed.
+// Moves the focus to the button that opened a panel, after the panel was closed.
 export function focusRail(name: ToolName | "settings"): void {
   document.querySelector<HTMLElement>(`[data-testid=rail-${name}]`)?.focus();
 }
@@ -88,7 +89,7 @@ function OpenTool({ page, name }: { page: Page; name: ToolName }) {
   const locked = block !== undefined && STEERED.includes(name);
   const Content = CONTENTS[name];
   const { title, key } = TOOL_TEXTS[name];
-  // Before the next key.
+  // This must run before the next key is handled.
   useLayoutEffect(() => {
     if (page.state.toolTakesFocus) panel.current?.focus();
   }, [page]);

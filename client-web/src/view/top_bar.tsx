@@ -1,5 +1,5 @@
-// The picture at a glance: storm, run, valid time in UTC and local, lead time; then the connection, and buttons for what is
-// kept and shared.
+// A summary of the picture: storm, run, valid time in UTC and local, lead time. Then follow the
+// connection, and the buttons for saving and sharing.
 
 import type { PanelName } from "../core/tools";
 import { formatElapsed } from "../core/units";
@@ -30,7 +30,7 @@ export function TopBar({ page }: { page: Page }) {
   );
 }
 
-// A click lists the server's storms.
+// The storm's name. A click lists the server's storms.
 function Storm({ page }: { page: Page }) {
   const { state } = page;
   return (
@@ -133,7 +133,7 @@ function PanelButton(props: PanelButtonProps) {
   );
 }
 
-// How far a movie or a picture is, while the panel that it was asked for in is closed.
+// The progress of a movie or a picture, while the panel in which it was requested is closed.
 function AtWork({ page }: { page: Page }) {
   const { keeper, state } = page;
   const work = keeper.work.value;
@@ -156,7 +156,7 @@ function AtWork({ page }: { page: Page }) {
 }
 
 function FullScreen() {
-  // Not every browser has it, such as those of phones.
+  // Some browsers, such as those of phones, have no full screen.
   if (!document.fullscreenEnabled) return null;
   return (
     <button

@@ -1,4 +1,4 @@
-// How far the picture on the screen is believed to be off, in a line over it.
+// The estimated error of the picture on the screen, in a line over it.
 import { nameOfPreset } from "../core/names";
 import { errorSource } from "../core/picture_error";
 import type { PageState } from "../core/state";
@@ -56,7 +56,8 @@ function sourceTitle(accuracy: AccuracyReport): string {
     : "The error that the same settings had on other storms; this picture's own is measured while it rests";
 }
 
-// Progress of the reference. Always visible, as a picture cannot be judged without it.
+// The progress of the reference. It is always visible, because a picture cannot be judged without
+// it.
 function RefinementBrief({ refinement }: { refinement: Refinement }) {
   const { samplesPerPixel, relativeError } = refinement;
   return (

@@ -1,7 +1,7 @@
-// Decodes the pictures of one stream of video at a time, each of which needs those before it. Every picture is decoded, in the
-// order in which it came, whether or not it will be shown.
+// Decodes the frames of one video stream at a time. Each frame depends on those before it. Every
+// frame is therefore decoded in order of arrival, whether or not it will be shown.
 
-// Profile 0, 8 bits; the level leaves room for any size that a server sends.
+// Profile 0, 8 bits. The level is sufficient for any size that a server sends.
 export const VP9 = "vp09.00.62.08";
 
 // The colours are those of JPEG: sRGB as full-range BT.601.
@@ -24,10 +24,11 @@ interface Waiting {
 export class VideoPictures {
   #decoder: VideoDecoder | undefined;
   #count = 0;
-  // By timestamp, which only counts.
+  // The frames being decoded, by timestamp. The timestamp is only a counter.
   #waiting = new Map<number, Waiting>();
 
-  // The caller closes the picture. Rejects for a picture that needs one that was not decoded.
+  // Decodes a frame. The caller must close the result. Rejects if the frame depends on one that was
+  // not decoded.
   decode(bytes: Uint8Array, isKey: boolean): Promise<VideoFrame> {
     return new Promise((resolve, reject) => {
       try {
@@ -46,7 +47,8 @@ export class VideoPictures {
     });
   }
 
-  // A picture was left out, or another stream begins: the next to be decoded is a key picture.
+  // Resets the decoder because a frame was skipped or another stream begins. The next frame to
+  // decode must be a key frame.
   reset(): void {
     const decoder = this.#decoder;
     this.#decoder = undefined;

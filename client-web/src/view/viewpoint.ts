@@ -1,4 +1,4 @@
-// Moves the camera: the session's for who steers, else that of an own view.
+// Moves the camera: the session's camera for a viewer who steers, otherwise that of an own view.
 import { create } from "@bufbuild/protobuf";
 import { type CameraKind, homeCamera, type Pose, poseOfCamera } from "../core/camera";
 import { azimuthTo, standOf } from "../core/map_frame";
@@ -10,7 +10,7 @@ import { type Camera, CameraSchema } from "../gen/thunderhead/v1/scene_pb";
 import type { SessionClient } from "../transport/session_client";
 import type { Notes } from "./notes";
 
-// Of what a camera looks at that says no height.
+// Height of the target for a camera that has no target height.
 const TYPICAL_HEIGHT_M = 5000;
 
 export class Viewpoint {
@@ -42,20 +42,20 @@ export class Viewpoint {
     else if (this.#startsLookingAround()) this.ownView.move(motion, this.#shownPose());
   }
 
-  // That camera, where absent values are the server's to choose.
+  // Shows that camera. The server chooses absent values.
   show(camera: Camera): void {
     if (this.#state.session.editBlock.peek() === undefined)
       this.#state.edit((scene) => withCamera(scene, camera));
     else if (this.#startsLookingAround()) this.ownView.show(camera);
   }
 
-  // A camera of that kind that shows the whole storm.
+  // Shows the whole storm with a camera of that kind.
   showKind(kind: CameraKind): void {
     this.show(homeCamera(kind));
   }
 
-  // Turns around a place in the storm, from where the camera stands now as far as that can be. Without a height it is the
-  // one that the camera looks at now.
+  // Turns the camera around a place in the storm. It starts from the camera's present position as
+  // far as possible. Without a height, the target keeps its present height.
   turnAround([xM, yM, zM]: readonly [number, number, number | undefined]): void {
     const pose = this.#shownPose();
     const orbit = pose?.kind === "orbit" ? pose : undefined;

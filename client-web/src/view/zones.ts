@@ -1,4 +1,5 @@
-// The time zones of the storm's place and of the sun's clock. The table of zones is loaded with the first place.
+// The time zones of the storm's place and of the sun's clock. The table of zones is loaded with the
+// first place.
 import { effect } from "@preact/signals-core";
 import { zoneOfLongitude } from "../core/moment";
 import type { PageState } from "../core/state";
@@ -18,13 +19,13 @@ export function followZones(state: PageState): () => void {
     const adopt = (zone: string) => {
       if (key !== asked) return;
       state.sunZone.value = zone;
-      // Only real places have a local time; an idealised run's is the sun's alone.
+      // Only a real place has a local time. For an idealised run only the sun uses the zone.
       state.zone.value = hasPlace ? zone : undefined;
     };
     adopt(zoneOfLongitude(longitudeDeg));
     import("@photostructure/tz-lookup").then(
       ({ default: zoneOf }) => adopt(zoneOf(latitudeDeg, longitudeDeg)),
-      // Without the table, the zone of the longitude stays.
+      // Without the table, the zone of the longitude is used.
       () => undefined,
     );
   });

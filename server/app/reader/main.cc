@@ -1,5 +1,5 @@
-// thunderhead-reader: the confined process that reads one storm file. A program of its own, because
-// it starts for every read and needs none of the libraries that the server loads.
+// thunderhead-reader: the confined process that reads one storm file. It is a separate program
+// because it starts for every read and needs none of the server's libraries.
 #include <unistd.h>
 
 #include "sandbox/reader_main.h"

@@ -8,7 +8,8 @@
 
 namespace thunderhead::physics {
 
-// A panel for each table, its three channels in colour on a logarithmic scale.
+// Returns an SVG with a panel for each table. The three channels are in colour on a logarithmic
+// scale.
 std::string CurvesSvg(const std::vector<PhaseTable>& tables);
 
 }  // namespace thunderhead::physics

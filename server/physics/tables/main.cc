@@ -1,5 +1,5 @@
 // thunderhead_phase_tables FOLDER [CURVES.svg]: computes every phase table and writes it into
-// FOLDER, and the curves of all.
+// FOLDER. It also draws the curves of all tables.
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -26,7 +26,7 @@ absl::Status WriteFile(const std::string& path, const std::string& text) {
   return absl::OkStatus();
 }
 
-// Builds one table, shows how far it is, and writes it.
+// Builds one table, shows the progress, and writes the table.
 template <typename Recipe>
 absl::Status BuildAndWrite(const Recipe& recipe, const std::string& folder,
                            std::vector<PhaseTable>& tables) {

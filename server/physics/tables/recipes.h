@@ -1,5 +1,5 @@
-// How each table of data/phase is computed: which drops or crystals, on which angles, with how much
-// work. Tests run the same recipes with less.
+// The recipe of each table of data/phase: the drops or crystals, the angles and the amount of work.
+// Tests run the same recipes with less work.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct DropletRecipe {
   DropletSizes sizes;
   std::vector<GridSpan> grid;
   int radii;   // quadrature points over the sizes
-  int points;  // within each step of the grid
+  int points;  // quadrature points within each step of the grid
 };
 
 struct IceRecipe {
@@ -26,19 +26,20 @@ struct IceRecipe {
   IceCrystal crystal;
   std::vector<GridSpan> grid;
   std::int64_t rays;
-  int orientations;  // for diffraction
+  int orientations;  // number of orientations for diffraction
   std::uint64_t seed;
 };
 
 std::vector<DropletRecipe> DropletRecipes();
 std::vector<IceRecipe> IceRecipes();
 
-// A table and the lines about its origin that stand at the top of its file.
+// A table, and the lines about its origin at the top of its file.
 struct BuiltTable {
   PhaseTable table;
   std::string provenance;
 };
-// Tables for sunlight: averaged over the sun's disc, and for water over each channel's band.
+// Build tables for sunlight. They are averaged over the sun's disc and, for water, over each
+// channel's band.
 BuiltTable Build(const DropletRecipe& recipe, const WorkPlan& plan);
 BuiltTable Build(const IceRecipe& recipe, const WorkPlan& plan);
 

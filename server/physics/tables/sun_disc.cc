@@ -12,11 +12,11 @@
 namespace thunderhead::physics {
 namespace {
 
-// Rings of equal area, whose widths are finer than the forward peak of rain.
+// Rings of equal area, with widths finer than the forward peak of rain.
 constexpr int kRings = 64;
 constexpr int kDirections = 64;  // half of those around a ring; the other half mirrors them
 
-// The quadrature leaves the light at angles below a hundredth of a degree with this error.
+// The error that the quadrature has for light at angles below a hundredth of a degree.
 constexpr double kMeanTolerance = 0.02;
 
 struct DiscPoint {

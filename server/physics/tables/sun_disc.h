@@ -1,13 +1,14 @@
-// A phase function's mean over the sun's disc. Renderers and reference take the sun for a point;
-// tables that hold the mean over its disc give them bows, halos and coronas of the right sharpness.
+// The mean of a phase function over the sun's disc. Renderers and the reference treat the sun as a
+// point. Tables that hold the mean over its disc give them bows, halos and coronas of the right
+// sharpness.
 #pragma once
 
 #include "physics/phase_table.h"
 
 namespace thunderhead::physics {
 
-// The table whose value at each angle is the mean of `point`'s over an evenly bright disc of radius
-// kSunRadius_rad, seen around that angle.
+// Returns a table whose value at each angle is the mean of `point` over a uniformly bright disc of
+// radius kSunRadius_rad around that angle.
 PhaseTable UnderSunDisc(const PhaseTable& point);
 
 }  // namespace thunderhead::physics

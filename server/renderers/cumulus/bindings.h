@@ -1,4 +1,4 @@
-// shaders/cumulus/bindings.glsl for C++.
+// Compiles shaders/cumulus/bindings.glsl as C++.
 #pragma once
 
 namespace thunderhead::shaders {

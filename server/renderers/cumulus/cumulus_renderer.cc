@@ -20,16 +20,18 @@ namespace {
 
 constexpr int kShadowTexels = 1024;  // along each side
 constexpr int kGroundShadowTexels = 256;
-constexpr double kBeforeSurface_m = 2.0;  // from the sun\'s eye
+constexpr double kBeforeSurface_m = 2.0;  // distance from the sun's eye to the surface
 constexpr int kRoughnessOctaves = 4;
-constexpr double kRoughnessInFinest = 1.6;  // wavelength over the radius of the finest bubbles
-constexpr double kMinCorona = 1e-3;         // of the finest radius: thinner is a division by zero
+// Wavelength relative to the radius of the finest bubbles.
+constexpr double kRoughnessInFinest = 1.6;
+// Relative to the finest radius; prevents a division by zero.
+constexpr double kMinCorona = 1e-3;
 
 constexpr gl::PieceCost kResolvePixel{"resolve", 50.0};
 constexpr gl::PieceCost kBubbleDepth{"bubble's depth", 1e5};
 constexpr gl::PieceCost kBubbleShade{"bubble", 1e6};
 
-// As cumulus/bubble.glsl has it.
+// The layout of cumulus/bubble.glsl.
 struct DeviceBubble {
   glm::vec4 unit_x;
   glm::vec4 unit_y;
@@ -39,7 +41,7 @@ struct DeviceBubble {
 };
 
 DeviceBubble OnDevice(const clouds::Bubble& bubble, const glm::dvec3& middle_m) {
-  // Columns of the transposed are rows.
+  // The columns of the transposed matrix are the rows of the original.
   const glm::dmat3 rows = glm::transpose(clouds::UnitFromWorld(bubble));
   const glm::dmat3& axes = bubble.semi_axes_m;
   const double longest_m =
@@ -59,7 +61,7 @@ bool IsPlain(const RenderSettings& settings) {
   return CumulusOf(settings).component == scene::CumulusComponent::kBalls;
 }
 
-// Shares of direct light, inter-reflection, ambient light and corona.
+// Returns the weights of direct light, inter-reflection, ambient light and corona.
 glm::vec4 SharesOf(scene::CumulusComponent component) {
   switch (component) {
     case scene::CumulusComponent::kAll:
@@ -83,9 +85,9 @@ glm::vec4 SharesOf(scene::CumulusComponent component) {
 struct CumulusRenderer::Pass {
   scene::View view;
   glm::ivec2 size{1};
-  double far_m = 1.0;  // that is depth 1
+  double far_m = 1.0;  // distance of depth 1
   double corona_m = 1.0;
-  double slack_m = 0.0;  // how far behind the nearest core something is still drawn
+  double slack_m = 0.0;  // bubbles up to this far behind the nearest core are still drawn
   const gl::Texture2D* ground_distance = nullptr;
   gl::Buffer order;
 
@@ -101,7 +103,7 @@ CumulusRenderer::Pass::Pass(const scene::View& from, const glm::ivec2& target,
                             const CumulusRenderer& renderer)
     : view(from), size(target) {
   const glm::dvec3 eye_m = view.eye_m - renderer.Middle_m();
-  // Parallel rays start on a plane, not in a point.
+  // Parallel rays start on a plane, not at a point.
   const double reach_m = glm::length(renderer.HalfExtent_m());
   far_m =
       view.Orthographic() ? glm::dot(view.forward, -eye_m) + reach_m : glm::length(eye_m) + reach_m;
@@ -282,7 +284,7 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   SetShading(*program, settings, light_map, noises);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 0);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F, 1);
-  // The shader reads one copy of the depths and is tested against the other.
+  // The shader reads one copy of the depths while the depth test uses the other.
   glCopyImageSubData(core_depth_.Get(), GL_TEXTURE_2D, 0, 0, 0, 0, tested_depth_.Get(),
                      GL_TEXTURE_2D, 0, 0, 0, 0, settings.eye_size.x, settings.eye_size.y, 1);
   shade_target_.Bind();

@@ -1,7 +1,7 @@
 // Neyret's phenomenological shading of cumulus clouds (2000, "A Phenomenological Shader for the
-// Rendering of Cumulus Clouds") in real time: ray-cast ellipsoids, nearest cores first, then each
-// fragment shaded by section 4. The result is like that of the medium's renderers: radiance
-// (rgb) and transmittance (a). Owns GL objects: use it on the context's thread.
+// Rendering of Cumulus Clouds") in real time. It ray-casts ellipsoids, nearest cores first, and
+// then shades each fragment by section 4. The result is radiance (rgb) and transmittance (a), like
+// that of the medium's renderers. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -22,25 +22,25 @@ namespace thunderhead::renderers {
 
 class CumulusRenderer {
  public:
-  // Programs are linked in `programs`.
+  // `programs` links the programs.
   explicit CumulusRenderer(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Takes a surface, which may be empty.
+  // Sets the surface, which may be empty.
   void SetSurface(const clouds::CumulusSurface& surface);
   bool Empty() const { return count_ == 0; }
   int BubbleCount() const { return count_; }
   glm::dvec3 Middle_m() const { return (box_.low_m + box_.high_m) / 2.0; }
   glm::dvec3 HalfExtent_m() const { return (box_.high_m - box_.low_m) / 2.0; }
 
-  // Draws the surface's depth as the sun sees it, a shadow map. Must not be empty.
+  // Draws the surface's depth as seen from the sun, a shadow map. The surface must not be empty.
   absl::Status CastShadow(const RenderSettings& settings);
-  // The share of sunlight that the surface keeps from the ground, over `frame` around the middle;
-  // after CastShadow.
+  // Returns the share of sunlight that the surface keeps from the ground, over ShadowFrame around
+  // the middle. Call CastShadow first.
   absl::StatusOr<gl::Texture2D> GroundShadow();
   const LightFrame& ShadowFrame() const { return shadow_frame_; }
 
-  // Draws the surface, in the shadow of the last CastShadow. `light_map` as LightMapOf gives it.
+  // Draws the surface in the shadow of the last CastShadow. `light_map` comes from LightMapOf.
   absl::Status DrawView(const RenderSettings& settings, const std::vector<glm::vec3>& light_map,
                         DetailNoises* noises);
 
@@ -55,7 +55,7 @@ class CumulusRenderer {
   void SetShading(const gl::Program& program, const RenderSettings& settings,
                   const std::vector<glm::vec3>& light_map, DetailNoises* noises);
   absl::Status DrawDepth(const Pass& pass, const gl::Framebuffer& target);
-  // `far_m` is the distance of depth 1, `middle_m` that of the surface.
+  // `far_m` is the distance of depth 1, `middle_m` that of the surface's middle.
   absl::Status Resolve(double far_m, double middle_m);
   absl::Status DrawBubbles(const gl::Program& program, const Pass& pass,
                            const gl::PieceCost& bubble) const;
@@ -65,13 +65,13 @@ class CumulusRenderer {
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   gl::WholeTarget whole_target_;
 
-  std::vector<glm::vec3> centres_m_;  // from the middle
+  std::vector<glm::vec3> centres_m_;  // relative to the middle
   std::vector<float> radii_m_;
   int count_ = 0;
   double finest_m_ = 1.0;
   clouds::SurfaceBox box_;
   bool has_base_ = false;
-  float base_m_ = 0.0F;  // from the middle
+  float base_m_ = 0.0F;  // relative to the middle
   gl::Buffer bubbles_;
 
   LightFrame shadow_frame_;
@@ -81,7 +81,7 @@ class CumulusRenderer {
 
   gl::Texture2D core_depth_;
   gl::Framebuffer core_target_;
-  gl::Texture2D tested_depth_;  // a copy
+  gl::Texture2D tested_depth_;  // copy of core_depth_ for the depth test
   gl::Texture2D cores_;
   gl::Texture2D layer_;
   gl::Framebuffer shade_target_;

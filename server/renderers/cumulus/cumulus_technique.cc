@@ -67,7 +67,7 @@ class CumulusTechnique final : public Technique {
  private:
   Workspace& workspace_;
   CumulusRenderer renderer_;
-  std::vector<physics::Hydrometeor> fields_;  // that the surface was made of
+  std::vector<physics::Hydrometeor> fields_;  // from which the surface was made
 };
 
 class CumulusFactory final : public TechniqueFactory {

@@ -12,16 +12,17 @@
 namespace thunderhead::renderers {
 namespace {
 
-// More cells than this are coarsened first: the surface is no finer than its ellipsoids.
+// Grids with more cells are coarsened first, because the surface is no finer than its ellipsoids.
 constexpr std::size_t kMaxSurfaceCells = 4'000'000;
 constexpr int kMaxSurfaceBalls = 700;
 
-// Precipitation has no surface.
+// Returns true for cloud water and ice. Precipitation has no surface.
 bool HasSurface(physics::Hydrometeor hydrometeor) {
   return hydrometeor == physics::Hydrometeor::kCloud || hydrometeor == physics::Hydrometeor::kIce;
 }
 
-// The smallest number of cells along each axis of which one is made so that few enough are left.
+// Returns the smallest coarsening factor along each axis that leaves at most kMaxSurfaceCells
+// cells.
 int CoarseningOf(const volume::RegularGrid& grid) {
   int factor = 1;
   while (grid.CellCount() / static_cast<std::size_t>(factor * factor * factor) > kMaxSurfaceCells) {
@@ -59,7 +60,7 @@ DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::Hydrometeor
   return drawn;
 }
 
-// Where the storm is, or its domain if there is none.
+// Returns the box of the storm's condensate, or its domain if there is none.
 clouds::SurfaceBox PlaceOf(const volume::HydrometeorFields& fields) {
   const volume::RegularGrid& grid = fields.grid;
   const volume::CellBox cells =

@@ -1,5 +1,5 @@
-// The surface that the cumulus renderer draws of a scene: of the storm's cloud water and ice, or
-// made from a seed in the storm's place. Knows no GL.
+// The surface that the cumulus renderer draws for a scene. It is that of the storm's cloud water
+// and ice, or is generated from a seed in the storm's place. This code does not use GL.
 #pragma once
 
 #include <vector>
@@ -14,13 +14,13 @@ namespace thunderhead::renderers {
 
 struct DrawnSurface {
   clouds::CumulusSurface surface;
-  std::vector<physics::Hydrometeor> fields;  // that it was made of
+  std::vector<physics::Hydrometeor> fields;  // from which the surface was made
 };
 
 absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields);
 
-// The parts of the storm that the surface leaves out.
+// Returns the parts of the storm that the surface does not show.
 std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
                                                const volume::HydrometeorFields& fields);
 

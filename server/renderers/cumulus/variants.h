@@ -8,8 +8,8 @@ namespace thunderhead::renderers {
 // Variant of cumulus/bubble.vert with cumulus/depth.frag.
 struct BubbleVariant {
   gl::DefineValue base;         // the surface is cut off at a height
-  gl::DefineValue ground;       // may hide bubbles
-  gl::DefineValue front_first;  // the order of drawing
+  gl::DefineValue ground;       // ground may hide bubbles
+  gl::DefineValue front_first;  // bubbles are drawn front to back
 
   gl::Defines Defines() const {
     return {{"BASE", base}, {"GROUND", ground}, {"FRONT_FIRST", front_first}};
@@ -19,7 +19,7 @@ struct BubbleVariant {
 // Variant of cumulus/bubble.vert with cumulus/shade.frag.
 struct ShadeVariant {
   BubbleVariant bubble;
-  gl::DefineValue plain;  // Lambert's law alone
+  gl::DefineValue plain;  // only Lambert's law
 
   gl::Defines Defines() const { return gl::Joined(bubble.Defines(), {{"PLAIN", plain}}); }
 };

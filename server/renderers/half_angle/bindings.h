@@ -1,4 +1,4 @@
-// shaders/half_angle/bindings.glsl for C++.
+// Compiles shaders/half_angle/bindings.glsl as C++.
 #pragma once
 
 namespace thunderhead::shaders {

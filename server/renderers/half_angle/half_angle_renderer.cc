@@ -21,16 +21,16 @@ namespace {
 
 constexpr int kMaxBufferTexels = 256;         // along the longer side of the light buffer
 constexpr double kBufferTexelInCells = 0.75;  // size of a light texel
-constexpr int kThicknessSlices = 128;         // perpendicular to the light
-// Drawn to the picture in one pass. More change targets less often, but their light takes more
-// memory.
+constexpr int kThicknessSlices = 128;         // slices perpendicular to the light
+// Number of slices drawn to the picture in one pass. A larger slab changes targets less often, but
+// its light takes more memory.
 constexpr int kSlabSlices = 16;
 constexpr gl::PieceCost kSlabPixel{"slab", 15.0 * kSlabSlices};
-// Path length of the light between two exchanges with neighbouring texels, in the reach of one
-// (consistent transport).
+// Path length of the light between two exchanges with neighbouring texels, relative to the reach of
+// one exchange (consistent transport).
 constexpr double kExchangeInReach = 3.0;
 
-// Runs `program`, which is in use, for each texel of a rectangle.
+// Runs the current program for each texel of a rectangle.
 void Dispatch(const glm::ivec2& size) {
   const glm::ivec2 groups = (size + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
@@ -56,8 +56,8 @@ struct HalfAngleRenderer::Slab {
 
 struct HalfAngleRenderer::CarriedLight {
   BufferRing layers;
-  bool exchanges_late = false;  // what one call scatters goes to neighbours in the next
-  PixelRect due{};              // where it does
+  bool exchanges_late = false;  // light scattered in one call reaches the neighbours in the next
+  PixelRect due{};              // where that exchange is pending
 };
 
 struct HalfAngleRenderer::Programs {
@@ -73,15 +73,15 @@ std::size_t HalfAngleRenderer::Bytes() const {
 }
 
 void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
-  // Finer texels than cells would carry no more detail.
+  // Texels finer than cells would add no detail.
   const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
   const double texel_m = std::max(longest_m / kMaxBufferTexels, kBufferTexelInCells * cell_m);
   const glm::ivec2 light_size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
-  // The last frame's stores come before what fills here.
+  // The stores of the last frame must complete before the fills below.
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   if (light_.Size() != light_size) {
-    // A slab's light, and what leaves it.
+    // The layers hold the light of a slab's slices and the light that leaves the slab.
     light_ = gl::Texture2DArray(GL_RG32F, light_size, kSlabSlices + 1);
     light_reach_ = {glm::ivec2(0), light_size};
     thickness_ = gl::Texture2D(GL_R32F, light_size);
@@ -144,7 +144,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
       const gl::Program* light,
       programs_->Get(gl::ProgramSource::Compute("half_angle/carry.comp", light_variant.Defines())));
   medium.BindWithBricks(*light);
-  medium.BindPixel(*light, settings.view, settings.eye_size);  // drawn in turns with the eye
+  medium.BindPixel(*light, settings.view, settings.eye_size);  // drawn alternately with the eye
   BindSunRays(*light, slicing, frame);
   light->Set(uniform::light_weights, medium.Weights(weights.light));
   light->Set(uniform::transport_weights, medium.Weights(weights.transport));
@@ -167,7 +167,8 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
 
 absl::Status HalfAngleRenderer::SumThickness(const ResidentMedium& medium, const LightFrame& frame,
                                              const GroupWeights& weights) {
-  // Slices across the sun's rays, so that the sum does not depend on the view and can be kept.
+  // These slices are perpendicular to the sun's rays, so the sum does not depend on the view and
+  // can be kept.
   const Slicing slicing =
       SliceBox({medium.HalfExtent_m()}, frame.towards_sun, frame.towards_sun, kThicknessSlices);
   THUNDERHEAD_ASSIGN_OR_RETURN(const gl::Program* program,
@@ -228,7 +229,7 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& progra
                                      std::size_t at_once, const std::vector<SliceReach>& reach,
                                      CarriedLight* light) {
   program.Use();
-  // Layers are taken again that the last slab's pass has fetched from.
+  // The light overwrites layers that the last slab's pass has fetched from.
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   for (std::size_t first = slab.begin; first < slab.end; first += at_once) {
     const std::size_t end = std::min(first + at_once, slab.end);

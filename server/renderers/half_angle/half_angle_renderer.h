@@ -1,11 +1,11 @@
-// Half-angle slicing: an eye buffer and a light buffer advance together through slices of the
-// medium, a slab of slices at a time: sunlight is carried through the slab, each slice's in a layer
-// of its own, and one pass adds the slab to the picture (docs/decisions/0013-slabs.md). The result
+// Half-angle slicing. An eye buffer and a light buffer advance together through slices of the
+// medium, one slab of slices at a time. Sunlight is propagated through the slab, with a layer for
+// each slice. One pass then adds the slab to the picture (docs/decisions/0013-slabs.md). The result
 // is the medium's radiance towards the eye (rgb) and its transmittance (a), before sky and ground.
 //
-// Riley et al. 2003 (Vis), section 4.4; transport `kPaper` is eq. 14-17 as printed, `kConsistent`
-// the same idea with the exact exponential of the effective extinction, delta scaling, and a
-// diffusion term (Eddington) for light scattered many times.
+// The method is that of Riley et al. 2003 (Vis), section 4.4. Transport `kPaper` is eq. 14-17 as
+// printed. Transport `kConsistent` is the same idea with the exact exponential of the effective
+// extinction, delta scaling, and a diffusion term (Eddington) for light scattered many times.
 #pragma once
 
 #include <array>
@@ -27,19 +27,19 @@ namespace thunderhead::renderers {
 
 class HalfAngleRenderer {
  public:
-  // Programs are linked in `programs`.
+  // `programs` links the programs.
   explicit HalfAngleRenderer(std::shared_ptr<gl::ProgramCache> programs);
 
-  // Draws `medium`, which must not be empty. `light_changed` says that the medium or the sun differ
-  // from the last call.
+  // Draws `medium`, which must not be empty. `light_changed` means that the medium or the sun
+  // differs from the last call.
   absl::Status Render(const ResidentMedium& medium, const RenderSettings& settings,
                       bool light_changed);
 
-  // The result of the last Render.
+  // Returns the result of the last Render.
   const gl::Texture2D& Eye() const { return eye_[last_eye_].Texture(); }
   const gl::Texture2D& Distances_m() const { return eye_[last_eye_].Distances(); }
-  // Light that leaves the last slice, before the exchange with neighbours that may be due: four
-  // floats a texel of the light buffer, of which the first is the share of sunlight.
+  // Returns the light that leaves the last slice, before a pending exchange with neighbours. It has
+  // four floats a texel of the light buffer, the first of which is the share of sunlight.
   std::vector<float> Light() const { return light_.Download(static_cast<int>(last_layer_)); }
   std::size_t Bytes() const;
 
@@ -60,11 +60,11 @@ class HalfAngleRenderer {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
-  std::array<CoveredTarget, 2> eye_;  // before and after a slab, in turn
+  std::array<CoveredTarget, 2> eye_;  // before and after a slab, alternately
   std::size_t last_eye_ = 0;
-  gl::Texture2DArray light_;    // what enters slice after slice, in turn
-  std::size_t last_layer_ = 0;  // behind the last slice
-  PixelRect light_reach_;       // where it may differ from light that has met nothing
+  gl::Texture2DArray light_;    // the light that enters each slice, by layer
+  std::size_t last_layer_ = 0;  // layer behind the last slice
+  PixelRect light_reach_;       // where the light may differ from unshaded light
   gl::Texture2D ring_depth_;    // optical depth scattered to neighbours since the last exchange
   gl::Texture2D thickness_;
 };

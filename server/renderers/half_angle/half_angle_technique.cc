@@ -6,7 +6,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Light and view advance together, so that the light is carried when the view is drawn.
+// The light is propagated while the view is drawn, because light and view advance together.
 class HalfAngleTechnique final : public Technique {
  public:
   explicit HalfAngleTechnique(Workspace& workspace)
@@ -31,7 +31,7 @@ class HalfAngleTechnique final : public Technique {
     THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kSlices, times, [&] {
       return renderer_.Render(workspace_.medium, settings, light_changed_);
     }));
-    // Not where that was cancelled: its light may be half done.
+    // The flag is not reset after a cancelled Render, because its light may be incomplete.
     light_changed_ = false;
     return absl::OkStatus();
   }

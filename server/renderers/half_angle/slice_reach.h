@@ -1,5 +1,5 @@
-// Bounds of each slice: where the occupied bricks that it cuts lie in the picture and in the
-// light buffer. Pure geometry: no GL.
+// Bounds of each slice: the part of the picture and of the light buffer that the occupied bricks in
+// the slice cover. It is pure geometry without GL.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,14 @@
 
 namespace thunderhead::renderers {
 
-// Both are empty for a slice that meets nothing.
+// Both rectangles are empty for a slice that meets no brick.
 struct SliceReach {
   PixelRect eye;
-  PixelRect light;  // texels, with one around
+  PixelRect light;  // in texels, with a border of one
 };
 
-// One for each slice. `boxes` are around `middle_m`, the origin of the slices' coordinates.
+// Returns the reach of each slice. `boxes` are around `middle_m`, the origin of the slices'
+// coordinates.
 std::vector<SliceReach> ReachOf(const Slicing& slicing, const Boxes& boxes,
                                 const glm::dvec3& middle_m, const scene::View& view,
                                 const glm::ivec2& eye_px, const LightFrame& frame,

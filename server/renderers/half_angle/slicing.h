@@ -1,6 +1,6 @@
-// The geometry of half-angle slicing: planes perpendicular to the half vector between the light and
-// the view, in the order in which sunlight meets them. Pure geometry: no GL. Kniss et al. 2003;
-// Riley et al. 2003 (Vis), 4.4.1.
+// The geometry of half-angle slicing: planes perpendicular to the half vector between light and
+// view, in the order in which sunlight meets them. It is pure geometry without GL. Sources: Kniss
+// et al. 2003; Riley et al. 2003 (Vis), 4.4.1.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -9,24 +9,24 @@
 
 namespace thunderhead::renderers {
 
-// Parallel planes, the same distance apart; sunlight meets the first one first.
+// Equidistant parallel planes. Sunlight meets the first one first.
 struct Slicing {
   glm::dvec3 normal{0.0, 0.0, 1.0};  // points to the sun's side
   int count = 0;
-  double first_m = 0.0;  // of the first plane from the origin, along the normal
+  double first_m = 0.0;  // distance of the first plane from the origin along the normal
   double spacing_m = 1.0;
-  double light_path_m = 1.0;  // of a sun ray between two slices
+  double light_path_m = 1.0;  // path length of a sun ray between two slices
 
   double Distance_m(int slice) const { return first_m - slice * spacing_m; }
 };
 
-// In which order the rays of a view meet the slices.
+// The order in which the rays of a view meet the slices.
 enum class SliceOrder { kAgainst, kAlong, kBoth };
 SliceOrder OrderOf(const Slicing& slicing, const scene::View& view);
 
-// Cuts `box` into `count` slices. `towards_eye` is the unit vector against the view's axis. When
-// the eye is on the sun's side the slices face halfway between the two; otherwise the view is
-// reversed, and with it the blend order.
+// Cuts `box` into `count` slices. `towards_eye` is the unit vector against the view's axis. If the
+// eye is on the sun's side, the slices face halfway between the two. Otherwise the view direction
+// is reversed, and with it the blend order.
 Slicing SliceBox(const LocalBox& box, const glm::dvec3& towards_sun, const glm::dvec3& towards_eye,
                  int count);
 

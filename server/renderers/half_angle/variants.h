@@ -1,4 +1,5 @@
-// The variants of half-angle slicing's shaders; thickness.comp has those of the medium alone.
+// The variants of half-angle slicing's shaders. The variants of thickness.comp are those of the
+// medium.
 #pragma once
 
 #include "gl/program.h"
@@ -10,7 +11,7 @@ namespace thunderhead::renderers {
 // Variant of half_angle/carry.comp.
 struct SliceLightVariant {
   MediumVariant medium;
-  gl::DefineValue consistent;   // transport
+  gl::DefineValue consistent;   // the transport is consistent
   gl::DefineValue translucent;  // neighbouring texels exchange light
 
   gl::Defines Defines() const {
@@ -24,8 +25,8 @@ struct SliceEyeVariant {
   gl::DefineValue colored;      // groups have colours
   gl::DefineValue even_albedo;  // one albedo and colour for all groups
   gl::DefineValue translucent;
-  gl::DefineValue consistent;  // transport
-  gl::DefineValue ground;      // may hide a part of the medium
+  gl::DefineValue consistent;  // the transport is consistent
+  gl::DefineValue ground;      // ground may hide a part of the medium
   SliceOrder order;
 
   gl::Defines Defines() const {

@@ -1,4 +1,4 @@
-// shaders/light_volume/bindings.glsl for C++.
+// Compiles shaders/light_volume/bindings.glsl as C++.
 #pragma once
 
 namespace thunderhead::shaders {

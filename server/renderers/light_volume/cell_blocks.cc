@@ -7,7 +7,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxGroupsInRow = 65535;  // what OpenGL 4.5 guarantees along each axis
+constexpr int kMaxGroupsInRow = 65535;  // the minimum that OpenGL 4.5 guarantees along each axis
 
 }  // namespace
 

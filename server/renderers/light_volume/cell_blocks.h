@@ -1,5 +1,5 @@
-// Work on the blocks of cells that a ray may meet, as shaders/light_volume/cell_blocks.glsl does
-// it.
+// Runs work on the blocks of cells that a ray may meet. The shader's side is
+// shaders/light_volume/cell_blocks.glsl.
 #pragma once
 
 #include "absl/status/status.h"
@@ -8,8 +8,8 @@
 
 namespace thunderhead::renderers {
 
-// Runs `program`, whose other inputs are bound, with a work group for each block of `medium` from
-// `first` to before `end`.
+// Runs `program` with a work group for each block of `medium` from `first` to before `end`. The
+// program's other inputs must be bound.
 absl::Status ForCellBlocks(gl::Pieces& pieces, const gl::PieceCost& block,
                            const ResidentMedium& medium, const gl::Program& program, int first,
                            int end);

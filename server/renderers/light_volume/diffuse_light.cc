@@ -15,28 +15,28 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr double kSkyTolerance = 2e-4;
-// Maximum factor by which leaving a face aslant lengthens the path to the surface.
+// Maximum factor by which a slanted exit through a face lengthens the path to the surface.
 constexpr float kMaxSlant = 4.0F;
 
-// Sunlight that is less than this is none.
+// Smaller transmittances of sunlight count as zero.
 constexpr float kDarkTransmittance = 1e-12F;
 
-// Light that faces receive of a sky of radiance a + b (1 - sine of the elevation), as weights of
-// its irradiance from above over pi and of its mean radiance: integrals over the half of the
-// sphere, for sides over a quarter.
+// Light that faces receive from a sky of radiance a + b (1 - sine of the elevation). The values are
+// weights of its irradiance from above over pi, and of its mean radiance. They are integrals over a
+// hemisphere, and for sides over a quarter of the sphere.
 constexpr glm::vec2 kSideSees(-0.227F, 0.727F);
 constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSideSees,
                                                kSideSees, glm::vec2(0.0F), glm::vec2(1.0F, 0.0F)};
 
-// Diffusion knows no free flight: in haze on a thick cloud, which light leaves upwards before it
-// has gone far, it would carry light away sideways. A step sideways goes no farther than this share
-// of the medium's height. Half or twice this changes the errors of the sample storm by
-// 0.01 to 0.03.
+// Largest horizontal step of light, as a share of the medium's height. Diffusion has no free
+// flight. In haze on a thick cloud it would carry light away sideways, although that light leaves
+// upwards after a short distance. Half or twice this value changes the errors of the sample storm
+// by 0.01 to 0.03.
 constexpr double kFarthestHop = 0.05;
 constexpr float kMinResistance = 1e-3F;
 
-// The mean of exp(-depth) between the optical depths `from` and `to`; `transmittance` is that of
-// the lesser depth.
+// Returns the mean of exp(-depth) between the optical depths `from` and `to`. `transmittance` is
+// that of the smaller depth.
 float MeanTransmittance(float transmittance, float from, float to) {
   return transmittance * physics::glsl::mean_transmittance(std::abs(to - from));
 }
@@ -52,7 +52,7 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   FindExits();
   Link();
   SolveSky();
-  // For a sun extinction is read by number alone (optics_).
+  // For a sun, extinction is read only by number (optics_), so the values by cell are freed.
   cells_.light_per_m = std::vector<float>();
   cells_.transport_per_m = std::vector<float>();
   cells_.absorption_per_m = std::vector<float>();
@@ -107,8 +107,8 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
   }
 }
 
-// For a plane surface with normal n, the distance out along axis k is t / |n_k|, so that squares of
-// reciprocals add up to that of the shortest distance t, in whatever direction the surface faces.
+// For a plane surface with normal n, the distance out along axis k is t / |n_k|. The squares of the
+// reciprocals therefore sum to that of the shortest distance t, for any direction of the surface.
 void DiffuseLight::FindExits() {
   std::vector<float> sum(numbered_.AllCells(), 0.0F);
   std::vector<float> all(numbered_.AllCells(), 0.0F);
@@ -122,7 +122,7 @@ void DiffuseLight::FindExits() {
     const std::size_t i = numbered_.CellOf(n);
     exit_root_[i] = std::pow(sum[i], -0.25F);
     sky_seen_[i] /= all[i];
-    // Where all depths are too great for numbers, no way out is nearer than another.
+    // If all depths overflow, no exit counts as nearer than another.
     outward_.push_back(all[i] > 0.0F ? outward[i] / all[i] : glm::vec3(0.0F));
     const float exit = exit_root_[i] * exit_root_[i];
     optics_.push_back({cells_.light_per_m[i], cells_.absorption_per_m[i], exit,
@@ -143,7 +143,7 @@ void DiffuseLight::Link() {
     const std::size_t i = numbered_.CellOf(n);
     const glm::ivec3 cell = cells_.CellAt(i);
     const float here = cells_.transport_per_m[i];
-    const float exit = optics_[n].exit;  // of light, as are the ways out below
+    const float exit = optics_[n].exit;  // for `light`, as is `out` below
     for (int side = 0; side < 6; ++side) {
       const int axis = side / 2;
       glm::ivec3 next = cell;
@@ -203,7 +203,8 @@ void DiffuseLight::SolveSkyPart(int part) {
   }
 }
 
-// Transmittance of sunlight to each cell, and its mean on the path to the neighbour up each axis.
+// Computes the transmittance of sunlight to each cell, and its mean on the path to the neighbour up
+// each axis.
 void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
   sun_.resize(numbered_.Count());
   ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
@@ -228,7 +229,7 @@ void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
   });
 }
 
-// Sunlight that cell number `n` makes diffuse.
+// Returns the sunlight that cell number `n` turns into diffuse light.
 float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_sun) const {
   const Optics& here = optics_[n];
   const float depth = sun_[n].depth;
@@ -252,7 +253,7 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
       flux = along * (3.0F * between + slack) * transmittance;
     } else {
       const float out = half_m * here.light_per_m;
-      // The optical depth of sunlight at the surface, where it enters or leaves.
+      // The optical depth of sunlight at the surface where it enters or leaves.
       const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
                                          : depth + out / std::max(along, 1e-3F);
       const float surface_transmittance = std::exp(-surface);

@@ -1,4 +1,4 @@
-// The medium as the diffusion equation sees it: extinction in cells of one size.
+// The input of the diffusion equation: extinction of the medium in cells of one size.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace thunderhead::renderers {
 
-// Cells, x fastest.
+// Values by cell, with x varying fastest.
 struct DiffusionCells {
   glm::ivec3 size{0};
   glm::dvec3 cell_m{0.0};

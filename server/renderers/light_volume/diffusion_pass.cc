@@ -16,11 +16,11 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Larger media are solved on a coarser grid than their own.
+// Media with more cells are solved on a coarser grid.
 constexpr double kMaxDiffusionCells = 4e6;
 
-// Memory of DiffuseLight, its inputs and this pass for each cell, and in addition for each cell
-// that is not empty.
+// Memory of DiffuseLight, its inputs and this pass for each cell, and additionally for each
+// non-empty cell.
 constexpr std::size_t kBytesPerCell = 56;
 constexpr std::size_t kBytesPerFullCell = 176;
 
@@ -136,7 +136,8 @@ void DiffusionPass::SolveCells(DiffusionCells cells) {
 
 absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
   if (arrived.Size() == size_ && arrived.InternalFormat() == GL_R16F) {
-    // As it is, without a pass over cells of which most are empty.
+    // The half floats are downloaded unconverted, because converting would be a pass over mostly
+    // empty cells.
     arrived_halves_.resize(arrived_root_.size());
     arrived.Download(GL_RED, GL_HALF_FLOAT, arrived_halves_.size() * sizeof(std::uint16_t),
                      arrived_halves_.data());

@@ -1,7 +1,7 @@
-// The diffusion equation of a resident medium: takes its cells and the light that has arrived there
-// from the device, solves (diffuse_light.h), and puts the result back as textures for the march.
-// Results that depend on the cells alone are kept for all suns. Owns GL objects: use it on the
-// context's thread.
+// The diffusion equation of a resident medium. It reads the medium's cells and the light that has
+// arrived there from the device, solves the equation (diffuse_light.h), and uploads the result as
+// textures for the march. Results that depend only on the cells are kept for all suns. The class
+// owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <array>
@@ -29,16 +29,17 @@ class DiffusionPass {
   explicit DiffusionPass(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // `arrived` is that of arrive.comp; `tolerance` as DiffuseLight::SolveSun has it; `in_turns`:
-  // the light of the ground is found for a part of the cells (SunParts).
+  // Solves for one sun. `arrived` is the result of arrive.comp. `tolerance` is that of
+  // DiffuseLight::SolveSun. With `in_turns`, the light of the ground is updated for only a part of
+  // the cells (SunParts).
   absl::Status Solve(const ResidentMedium& medium, const GroupWeights& weights,
                      const gl::Texture3D& arrived, const glm::dvec3& towards_sun, double tolerance,
                      const LitGround& ground, bool in_turns);
 
-  // For march.frag.
+  // Binds the textures for march.frag.
   void Bind() const;
 
-  // The result of the last Solve, for checks.
+  // Returns the result of the last Solve, for checks.
   const gl::Texture3D& Exits() const { return exits_; }
   const gl::Texture3D& NetInward() const { return net_inward_; }
 
@@ -47,7 +48,7 @@ class DiffusionPass {
   }
 
  private:
-  // The inputs that the cells depend on.
+  // The inputs that determine the cells.
   struct Key {
     std::uint64_t medium = 0;
     std::vector<double> light;
@@ -65,16 +66,16 @@ class DiffusionPass {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   Key key_;
-  base::MemoryReservation memory_;  // in main memory, of the members below
+  base::MemoryReservation memory_;  // main memory of the members below
   std::optional<DiffuseLight> light_;
   glm::ivec3 size_{0};
   gl::Texture3D sampled_cells_;
   gl::Texture3D sampled_light_;
-  // Square root of the optical depth to the nearest exit; sky seen (DiffuseLight::SkySeen), and the
-  // x of its net flux.
+  // Texels hold the square root of the optical depth to the nearest exit, the sky seen
+  // (DiffuseLight::SkySeen), and the x of its net flux.
   gl::Texture3D exits_;
-  // Net inward flux of sunlight; the fluence from other walls; the y of the sky's net flux;
-  // LitGround::ShareAt.
+  // Texels hold the net inward flux of sunlight, the fluence from other walls, the y of the sky's
+  // net flux, and LitGround::ShareAt.
   gl::Texture3D net_inward_;
   SunParts ground_parts_;
   std::vector<float> arrived_root_;

@@ -1,5 +1,5 @@
-// The cells without a value beside those that have one: they are set to the mean of those, so that
-// what is looked up between cells does not fade towards the edge.
+// The cells without a value that are next to cells with one. They are set to the mean of those
+// neighbours, so that interpolated values do not fade towards the edge.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ namespace thunderhead::renderers {
 class Fringe {
  public:
   Fringe() = default;
-  // `holding` are the cells that have a value, in rising order.
+  // `holding` are the cells that have a value, in ascending order.
   Fringe(const DiffusionCells& cells, const std::vector<std::int32_t>& holding);
 
   std::size_t Count() const { return cells_.size(); }
-  // In rising order.
+  // Returns cell `f` of the fringe. The cells are in ascending order.
   std::int32_t CellOf(std::size_t f) const { return cells_[f].cell; }
 
   // Sets each cell of the fringe to the mean of those of its 26 neighbours that have a value.
@@ -28,10 +28,10 @@ class Fringe {
   void Spread(std::vector<Value>* values) const;
 
  private:
-  static constexpr std::size_t kAround = 27;  // with the cell itself
+  static constexpr std::size_t kAround = 27;  // including the cell itself
   struct Cell {
     std::int32_t cell;
-    std::uint32_t neighbours;  // that have a value: bit k for the cell at cell + around_[k]
+    std::uint32_t neighbours;  // bit k: the cell at cell + around_[k] has a value
   };
 
   std::array<std::ptrdiff_t, kAround> around_{};

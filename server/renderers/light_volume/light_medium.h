@@ -1,7 +1,6 @@
-// The medium as the light that is carried sees it: one texture of one value a cell, made once for
-// fields and their parameters, in place of groups and detail at each sample along the sun's rays.
-// Cells are what light is given to, and detail that they cannot tell apart does not reach it
-// anyway.
+// The medium for propagating light: one texture with one value a cell, computed once for fields and
+// their parameters. It replaces fetching groups and detail at each sample along the sun's rays.
+// Light is stored per cell, so detail finer than cells does not affect it anyway.
 #pragma once
 
 #include <cstdint>
@@ -22,28 +21,28 @@ class LightMedium {
   explicit LightMedium(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Makes it of `medium`, which must not be empty, unless it is that one. `with_transport`: with
-  // similarity-scaled extinction beside the light's.
+  // Computes the texture of `medium`, which must not be empty, unless it is up to date.
+  // `with_transport` adds similarity-scaled extinction to that of the light.
   absl::Status Update(const ResidentMedium& medium, const GroupWeights& weights,
                       bool with_transport);
 
-  // For light_volume/light_medium.glsl.
+  // Binds the texture for light_volume/light_medium.glsl.
   void Bind(const gl::Program& program) const;
   std::size_t Bytes() const { return texture_.Bytes(); }
 
-  // Another number each time that it has been made anew; never 0.
+  // Returns a number that changes each time the texture is computed. It is never 0.
   std::uint64_t Version() const { return version_; }
 
-  // For checks: the texture, and the extinction of a texel value of 1.
+  // Return the texture and the extinction of a texel value of 1, for checks.
   const gl::Texture3D& Texture() const { return texture_; }
   double PerMetre() const { return per_m_; }
 
  private:
-  // The inputs that the texture depends on.
+  // The inputs that determine the texture.
   struct Key {
     std::uint64_t medium = 0;
     std::vector<double> light;
-    std::vector<double> transport;  // empty without
+    std::vector<double> transport;  // empty if not requested
 
     bool operator==(const Key&) const = default;
   };

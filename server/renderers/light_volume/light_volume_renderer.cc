@@ -17,30 +17,32 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxLightTexels = 256;         // along each side, of the usual detail
-constexpr double kLightTexelInCells = 0.75;  // across the sun's rays, of the usual detail
-constexpr double kLayerInCells = 1.5;        // along them, of the path through a cell
+constexpr int kMaxLightTexels = 256;         // along each side, at the usual detail
+constexpr double kLightTexelInCells = 0.75;  // across the sun's rays, at the usual detail
+// Along the sun's rays, relative to the path through a cell.
+constexpr double kLayerInCells = 1.5;
 constexpr std::array kCorrectionUnits = {shaders::kCorrectionRedUnit, shaders::kCorrectionGreenUnit,
                                          shaders::kCorrectionBlueUnit};
-constexpr double kNearInTexels = 1.5;  // sampled next to a cell
-// Texels beyond the end of that path within which the carried light is read: one along each axis,
-// by interpolation.
+constexpr double kNearInTexels = 1.5;  // length of the path next to a cell that is sampled
+// Distance in texels beyond the end of that path within which the carried light is read.
+// Interpolation adds one texel along each axis.
 constexpr double kReadBeyond = 1.74;
-constexpr double kMarchedSample_ns = 15.0;  // what a sample of the medium may cost
+constexpr double kMarchedSample_ns = 15.0;  // guessed cost of a sample of the medium
 constexpr gl::PieceCost kArriveBlock{"arrive", 12000.0};
 
-// Multiple scattering in closed form.
+// Returns true if multiple scattering is computed in closed form.
 bool IsDiffuse(const RenderSettings& settings) {
   return settings.Medium().transport == scene::Transport::kConsistent;
 }
 
-// The same from the diffusion equation.
+// Returns true if multiple scattering comes from the diffusion equation.
 bool Diffuses(const RenderSettings& settings) {
   return settings.Medium().transport == scene::Transport::kDiffusion;
 }
 
-// From inside a cloud or beside it, samples that are a large share of their distance apart show as
-// plates that slide as the eye moves. Frames with few samples have fewer there too.
+// Returns the limits of the march's step near the eye, in cells and relative to the distance.
+// Inside or close to a cloud, steps that are long relative to their distance show as plates that
+// slide as the eye moves. Frames with few samples also have longer steps there.
 glm::vec2 NearStep(int slices) {
   constexpr double kInCells = 0.25;
   constexpr double kByDistance = 1.0 / 24.0;
@@ -50,17 +52,17 @@ glm::vec2 NearStep(int slices) {
 
 }  // namespace
 
-// The box of the carried light: across and along the sun's rays, around the medium's middle.
+// The box of the carried light, across and along the sun's rays, around the medium's middle.
 struct LightVolumeRenderer::LightBox {
   LightFrame frame;
-  double reach_m = 0.0;  // half its depth
-  double near_m = 0.0;   // sampled next to a cell towards the sun
-  double read_m = 0.0;   // from cells that scatter, within which the carried light is read
+  double reach_m = 0.0;  // half the depth of the box
+  double near_m = 0.0;   // length of the path next to a cell, towards the sun, that is sampled
+  double read_m = 0.0;   // distance from scattering cells within which the carried light is read
   glm::ivec3 size{1};
   int half_layer_steps = 1;  // samples of the medium in half a layer
 
   LightBox(const ResidentMedium& medium, const RenderSettings& settings);
-  // Texture coordinates from local metres.
+  // Returns the transformation from local metres to texture coordinates.
   glm::mat4x3 FromLocal() const;
 };
 
@@ -74,7 +76,7 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
   const int max_texels =
       std::max(static_cast<int>(kMaxLightTexels * settings.quality.light_detail), 1);
-  // Finer texels than cells would carry no more detail.
+  // Texels finer than cells would add no detail.
   const double texel_m =
       std::max(std::max(across_m.x, across_m.y) / max_texels,
                kLightTexelInCells / settings.quality.light_detail * std::min(cell_m.x, cell_m.y));
@@ -89,12 +91,12 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
       glm::clamp(glm::ivec2(glm::ceil(across_m / texel_m)), glm::ivec2(1), glm::ivec2(max_texels)),
       layers_of(settings.quality.light_layer * layer_m));
   if (settings.Medium().transport == scene::Transport::kPaper) {
-    // The paper's transport depends on the number of its steps: they are the scene's slices.
+    // The paper's transport depends on the number of its steps, so they are the scene's slices.
     const int slices = *scene::SlicesOf(settings.technique);
     size.z = usual_layers = std::clamp((slices + 1) / 2, 1, max_texels);
     half_layer_steps = std::max(1, (slices + size.z) / (2 * size.z));
   }
-  // Longer layers than usual leave what is sampled next to a cell as it is.
+  // Layers longer than usual do not change the length of the path sampled next to a cell.
   near_m = kNearInTexels * std::max(texel_m, 2.0 * reach_m / usual_layers);
   read_m = near_m + kReadBeyond * std::max(texel_m, 2.0 * reach_m / size.z);
 }
@@ -116,9 +118,11 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
   }
   if (arrived_.Size() != cells || light_format_ != format) {
     arrived_ = gl::Texture3D(format, cells);
-    // The march leaves out what is never written, but might multiply it by zero.
+    // The march gives unwritten texels no weight, but it may multiply them by zero, so they must be
+    // finite.
     arrived_.Clear();
-    // Now, so that a storm that has room has it while something moves, too.
+    // The texture is allocated now, so that a lack of memory shows now and not later, while the
+    // camera or the sun moves.
     if (!gl::ComputesWholeTargets() && near_ratio_.Size() != cells) {
       near_ratio_ = {};
       near_ratio_ = gl::Texture3D(GL_R8, cells);

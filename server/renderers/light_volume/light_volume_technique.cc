@@ -58,7 +58,7 @@ class LightVolumeTechnique final : public Technique {
   }
 
  private:
-  // Carrying the light has found the ground's shadow.
+  // CarryLight has already computed the ground's shadow.
   void ShareShadow(const glm::dvec3& towards_sun) {
     const ResidentMedium& medium = workspace_.medium;
     if (towards_sun.z <= 0.0) return workspace_.ground.ClearShadow();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxIterations = 200;
 
-// Adds up sums of parts in order, so that the total does not depend on threads.
+// Adds up the sums of parts in order, so that the total does not depend on the number of threads.
 double Total(const std::vector<double>& sums) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
@@ -34,9 +34,9 @@ LinkedCells::LinkedCells(std::vector<Links> down, std::vector<Links> up,
   Factor();
 }
 
-// Incomplete Cholesky with no fill: of a matrix with these links only its diagonal changes. Links
-// between blocks are left out: those are between columns, where light goes through more resistance
-// than along them.
+// Incomplete Cholesky factorisation without fill, in which only the diagonal of a matrix with these
+// links changes. Links between blocks are omitted. They connect columns, between which the
+// resistance is larger than within a column.
 void LinkedCells::Factor() {
   inverse_pivot_.resize(diagonal_.size());
   tbb::parallel_for(std::size_t{1}, blocks_.size(), [&](std::size_t block) {
@@ -45,7 +45,7 @@ void LinkedCells::Factor() {
       float pivot = diagonal_[n];
       for (int axis = 0; axis < 3; ++axis) {
         const std::int32_t to = down_[n].to[axis];
-        if (to < static_cast<std::int32_t>(begin)) continue;  // NumberedCells::kNone, too
+        if (to < static_cast<std::int32_t>(begin)) continue;  // also skips NumberedCells::kNone
         const float conductance = down_[n].conductance[axis];
         pivot -= conductance * conductance * inverse_pivot_[static_cast<std::size_t>(to)];
       }
@@ -61,7 +61,7 @@ double LinkedCells::Precondition(const std::vector<float>& from, std::vector<flo
     const Links& down = down_[n];
     for (int axis = 0; axis < 3; ++axis) {
       const std::int32_t other = down.to[axis];
-      if (other < static_cast<std::int32_t>(begin)) continue;  // NumberedCells::kNone, too
+      if (other < static_cast<std::int32_t>(begin)) continue;  // also skips NumberedCells::kNone
       sum += down.conductance[axis] * x[static_cast<std::size_t>(other)];
     }
     x[n] = sum * inverse_pivot_[n];
@@ -77,7 +77,7 @@ double LinkedCells::Precondition(const std::vector<float>& from, std::vector<flo
     x[n] += sum * inverse_pivot_[n];
     return static_cast<double>(from[n] * x[n]);
   };
-  // Each cell waits for the one before it: two blocks in turn keep a processor busy.
+  // Each cell depends on the one before it. Interleaving two blocks keeps a processor busy.
   const std::size_t blocks = blocks_.size() - 1;
   std::vector<double> products((blocks + 1) / 2);
   tbb::parallel_for(std::size_t{0}, products.size(), [&](std::size_t pair) {

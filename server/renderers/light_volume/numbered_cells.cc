@@ -7,7 +7,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Cells through which light loses less than this are empty.
+// Cells with a smaller optical depth count as empty.
 constexpr float kEmptyDepth = 1e-4F;
 
 constexpr std::size_t kMaxBlocks = 16;
@@ -52,8 +52,8 @@ NumberedCells::NumberedCells(const DiffusionCells& cells) {
   }
 }
 
-// Cell by cell, as those are next to each other in memory, and all that there is by number is not
-// much.
+// The loop is in the order of cells, because these are contiguous in memory and the values by
+// number are few.
 void NumberedCells::SetByCell(const std::vector<float>& by_number,
                               std::vector<float>* by_cell) const {
   ForShares(valued_.size(), [&](std::size_t begin, std::size_t end) {

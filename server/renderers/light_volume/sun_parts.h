@@ -1,5 +1,5 @@
-// Light that changes little from one place of the sun to the next, while that moves: found anew for
-// one part of the cells at a time, and kept for the others. Plain values; knows no GL.
+// Bookkeeping for light that changes little as the sun moves. It is updated for one part of the
+// cells at a time, and kept for the others. The class is a plain value and does not use GL.
 #pragma once
 
 #include <array>
@@ -14,23 +14,24 @@ namespace thunderhead::renderers {
 class SunParts {
  public:
   static constexpr std::size_t kCount = 8;
-  // The sun has not gone farther than this since any part was found.
+  // A part is updated if the sun is farther than this from the sun of its last update.
   static constexpr double kFarthest_deg = 10.0;
   using Parts = std::bitset<kCount>;
 
-  // Those to find for a sun in direction `towards_sun`, of length 1: all, or, `in_turns`, the next
-  // one and those that were found for a sun farther away. All of a sun that has not moved, too, as
-  // something else has changed.
+  // Returns the parts to update for a sun in direction `towards_sun`, of length 1. Without
+  // `in_turns` it returns all parts. With `in_turns` it returns the next part, and those whose last
+  // sun was too far away. It also returns all parts if the sun has not moved, because something
+  // else has changed.
   Parts Next(const glm::dvec3& towards_sun, bool in_turns) const;
 
-  // `parts` have been found.
+  // Records that `parts` have been updated.
   void Found(const Parts& parts, const glm::dvec3& towards_sun);
 
-  // None has.
+  // Marks all parts as outdated.
   void Forget() { suns_ = {}; }
 
  private:
-  std::array<std::optional<glm::dvec3>, kCount> suns_;  // for which each part was found
+  std::array<std::optional<glm::dvec3>, kCount> suns_;  // the sun of each part's last update
   std::optional<glm::dvec3> last_sun_;
   std::size_t turn_ = 0;
 };

@@ -8,9 +8,9 @@ namespace thunderhead::renderers {
 
 // Variant of carry.comp.
 struct CarryVariant {
-  gl::DefineValue consistent;   // transport
-  gl::DefineValue translucent;  // light that is scattered goes on
-  gl::DefineValue diffuse;      // light scattered many times is found in closed form
+  gl::DefineValue consistent;   // the transport is consistent
+  gl::DefineValue translucent;  // scattered light continues
+  gl::DefineValue diffuse;      // multiple scattering in closed form
 
   gl::Defines Defines() const {
     return {{"CONSISTENT", consistent}, {"TRANSLUCENT", translucent}, {"DIFFUSE", diffuse}};
@@ -21,7 +21,8 @@ struct CarryVariant {
 struct ArriveVariant {
   MediumVariant medium;
   CarryVariant carry;
-  gl::DefineValue near;  // 1: keeps what 2 takes in place of the medium next to a cell
+  // 1: stores a depth ratio; 2: uses it instead of sampling the medium next to a cell
+  gl::DefineValue near;
 
   gl::Defines Defines() const {
     return gl::Joined(gl::Joined(medium.Defines(), carry.Defines()), {{"NEAR", near}});
@@ -32,13 +33,13 @@ struct ArriveVariant {
 struct MarchVariant {
   MediumVariant medium;
   gl::DefineValue colored;      // groups have colours
-  gl::DefineValue consistent;   // transport
-  gl::DefineValue ground;       // may hide a part of the medium
+  gl::DefineValue consistent;   // the transport is consistent
+  gl::DefineValue ground;       // ground may hide a part of the medium
   gl::DefineValue even_albedo;  // one albedo and colour for all groups
-  gl::DefineValue diffusion;    // light scattered many times comes from the diffusion equation
-  gl::DefineValue tinted;       // that light is absorbed or coloured
-  gl::DefineValue corrected;    // by renderers::LightCorrection
-  gl::DefineValue chosen;       // the rays of renderers::ChosenRays
+  gl::DefineValue diffusion;    // multiple scattering comes from the diffusion equation
+  gl::DefineValue tinted;       // this light is absorbed or coloured
+  gl::DefineValue corrected;    // radiance is corrected by renderers::LightCorrection
+  gl::DefineValue chosen;       // draws the rays of renderers::ChosenRays
 
   gl::Defines Defines() const {
     return gl::Joined(medium.Defines(), {{"COLORED", colored},

@@ -12,31 +12,32 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Size of a wall over the medium's height: as far as light hops sideways (diffuse_light.cc).
+// Size of a wall relative to the medium's height. It equals the largest horizontal step of light
+// (diffuse_light.cc).
 constexpr double kWallSize = 0.05;
 // A cell belongs to a wall if its transport extinction times a wall's size is at least this. Half
-// or twice this changes the errors of the sample storm by 0.01 to 0.03
+// or twice this value changes the errors of the sample storm by 0.01 to 0.03
 // (docs/decisions/0009-diffusion-transport.md).
 constexpr double kWallDepth = 1.345;
-// Shortest paths through a cell, and share of a wall's size, within which a wall may belong to the
-// same slope of steps.
+// Limits within which a wall may belong to the same slope of steps: in shortest paths through a
+// cell, and as a share of a wall's size.
 constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
-// Height in cells above its own slope from which a wall sees another that near.
+// Height in cells above its own slope from which a wall sees another wall that near.
 constexpr double kAboveSlope = 0.5;
-// Transport optical depth of a cell's shortest side at which half of such a wall's light counts. In
-// deeper cells the medium between centres is a smooth surface, of which steps are the grid's; in
-// thinner ones they are the cloud's own.
+// Transport optical depth of a cell's shortest side at which half of the light of such a near wall
+// counts. In deeper cells the medium between centres is a smooth surface, whose steps are artefacts
+// of the grid. In thinner cells the steps are the cloud's own.
 constexpr float kSteppedDepth = 1.0F;
 constexpr float kMinTransmittance = 0.02F;
-constexpr int kTurns = 6;  // from wall to wall that are followed
+constexpr int kTurns = 6;  // number of exchanges of light between walls
 constexpr std::size_t kWallsInShare = 1024;
 constexpr int kRings = 3;
 constexpr int kRaysInRing = 4;
 
 using Rays = std::array<glm::dvec3, static_cast<std::size_t>(kRings* kRaysInRing)>;
 
-// Directions of equal shares of the light that a white face sends out.
+// Returns directions that each carry an equal share of the light of a white face.
 Rays RaysFrom(int side) {
   Rays rays;
   const int axis = side / 2;
@@ -54,7 +55,7 @@ Rays RaysFrom(int side) {
   return rays;
 }
 
-// Goes from cell to cell along a ray.
+// Steps from cell to cell along a ray.
 class Walk {
  public:
   Walk(const glm::dvec3& cell_m, const glm::dvec3& start, const glm::ivec3& cell,
@@ -75,7 +76,7 @@ class Walk {
   double Gone_m() const { return gone_m_; }
   double ShortestWay_m() const { return shortest_m_; }  // through a cell
 
-  // Goes to the next cell; returns the path length through this one.
+  // Moves to the next cell. Returns the path length through the cell that it leaves.
   double Leave() {
     int axis = next_m_.y < next_m_.x ? 1 : 0;
     if (next_m_.z < next_m_[axis]) axis = 2;
@@ -148,7 +149,8 @@ void WallLight::Look(const DiffusionCells& cells, std::size_t wall) {
   if (seen_.size() > before) walls_.push_back(static_cast<std::int32_t>(wall));
 }
 
-// The direction out of the slope that a wall belongs to, of any length, by the walls around it.
+// Returns the outward direction of the slope that a wall belongs to, of any length, from the walls
+// around it.
 glm::dvec3 WallLight::Outward(const DiffusionCells& cells, std::size_t wall) const {
   glm::dvec3 outward(0.0);
   const glm::ivec3 middle = cells.CellAt(wall);
@@ -161,7 +163,7 @@ glm::dvec3 WallLight::Outward(const DiffusionCells& cells, std::size_t wall) con
   return outward;
 }
 
-// The share of the light between a wall and a near one at `other` that counts.
+// Returns the share of the light between a wall and a near one at `other` that counts.
 float WallLight::NearShare(const DiffusionCells& cells, std::size_t wall, const glm::ivec3& other,
                            const glm::dvec3& outward) {
   const glm::dvec3 way_m = glm::dvec3(other - cells.CellAt(wall)) * cells.cell_m;

@@ -1,6 +1,7 @@
-// Light that thick clouds' walls send each other through air that scatters little: what the
-// diffusion equation, which knows no free flight, cannot carry. Walls are taken for white, so that
-// what they send on does not depend on how much comes in. Plain values on the CPU; knows no GL.
+// Light that thick clouds' walls send each other through air that scatters little. The diffusion
+// equation cannot carry it, because it has no free flight. Walls count as white, so the light that
+// they send does not depend on how much arrives. The code works with plain values on the CPU and
+// does not use GL.
 #pragma once
 
 #include <array>
@@ -17,12 +18,13 @@ class WallLight {
  public:
   explicit WallLight(const DiffusionCells& cells);
 
-  // For each cell, the share of what a wall's open faces see that is other walls; 0 elsewhere.
+  // Returns, for each cell, the share of the view of a wall's open faces that other walls take. It
+  // is 0 for other cells.
   const std::vector<float>& Hidden() const { return hidden_; }
 
-  // Sets `arriving` of walls to the light that comes in from other walls, and of the cells beside
-  // them to that of the walls there; other cells stay as they are. `own` is what each cell sends
-  // out besides. Both are fluences that give the same flux to a white surface: four times it.
+  // Sets `arriving` of walls to the light from other walls. Cells next to walls get the value of
+  // those walls. Other cells stay unchanged. `own` is the other light that each cell sends out.
+  // Both are fluences that give the same flux to a white surface: four times that flux.
   void FindArriving(const std::vector<float>& own, std::vector<float>* arriving) const;
 
  private:
@@ -30,8 +32,8 @@ class WallLight {
   struct Seen {
     std::int32_t from;
     std::int32_t to;
-    float share;                // of all that its open faces see
-    std::int32_t to_wall = -1;  // in walls_; none if that wall sees no others
+    float share;                // relative to the whole view of its open faces
+    std::int32_t to_wall = -1;  // index in walls_; -1 if that wall sees no others
   };
 
   bool IsWall(const DiffusionCells& cells, std::size_t cell) const;
@@ -47,8 +49,8 @@ class WallLight {
   double wall_size_m_ = 0.0;
   float wall_per_m_ = 0.0F;
   std::vector<Seen> seen_;               // ordered by `from`
-  std::vector<std::int32_t> walls_;      // those that see others
-  std::vector<std::size_t> first_seen_;  // in seen_, of each of these, and the end
+  std::vector<std::int32_t> walls_;      // the walls that see others
+  std::vector<std::size_t> first_seen_;  // start in seen_ of each of walls_, and the end
   std::vector<float> hidden_;
   Fringe beside_walls_;
 };

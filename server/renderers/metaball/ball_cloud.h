@@ -1,5 +1,5 @@
-// A storm as metaballs, as it is drawn: the fit's balls (clouds/metaballs.h) with Wyvill's field,
-// and what of each ball's extinction is whose. Plain values: no GL.
+// A storm as metaballs for drawing: the fit's balls (clouds/metaballs.h) with Wyvill's field, and
+// the shares of the groups in each ball's extinction. The types are plain values and do not use GL.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace thunderhead::renderers {
 struct Ball {
   glm::dvec3 middle_m{0.0};
   double radius_m = 1.0;          // R of Man, eq. 16
-  double extinction_per_m = 0.0;  // in its middle, from 0
-  // Shares of its extinction, by the medium's group; their sum is 1.
+  double extinction_per_m = 0.0;  // at the ball's centre; at least 0
+  // Shares of its extinction by the medium's group. Their sum is 1.
   std::array<float, volume::kMaxChannels> shares{1.0F};
 };
 
@@ -23,7 +23,7 @@ struct BallCloud {
   double relative_error = 0.0;  // of the fit: sqrt(H / sum of squares), Man's eq. 20
 };
 
-// The box around all balls; empty (low above high) without any.
+// The bounding box of all balls. It is empty (low above high) without balls.
 struct BallBox {
   glm::dvec3 low_m{1.0};
   glm::dvec3 high_m{-1.0};

@@ -1,6 +1,6 @@
 // Metaballs for a scene's storm: Man's approximator (clouds/rbf_fit.h) on the extinction of the
-// fields that the scene shows. Fits are kept, as each takes a second or more. Knows no GL; safe
-// from any thread.
+// fields that the scene shows. Fits are kept, because each takes a second or more. This code does
+// not use GL and is safe to use from any thread.
 #pragma once
 
 #include <list>
@@ -17,21 +17,21 @@
 
 namespace thunderhead::renderers {
 
-// Fits at most `count` balls, none of which takes away, to the extinction of `medium`. No balls for
-// what is empty; fewer where there are fewer cells.
+// Fits at most `count` balls, none with negative extinction, to the extinction of `medium`. Returns
+// no balls for an empty medium, and fewer balls if there are fewer cells.
 absl::StatusOr<BallCloud> FitBalls(const Medium& medium, const volume::HydrometeorFields& fields,
                                    int count);
 
 class BallFits {
  public:
-  // Keeps the `most` fits used last.
+  // Keeps the `max_fits` most recently used fits.
   explicit BallFits(std::size_t max_fits = 64) : max_fits_(max_fits) {}
 
-  // The balls of `scene`, kept or fitted now: then it takes seconds.
+  // Returns the balls of `scene`. If they are not kept, it fits them, which takes seconds.
   absl::StatusOr<std::shared_ptr<const BallCloud>> Get(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
-  // True if Get has nothing to fit.
+  // Returns true if Get has nothing to fit.
   bool Has(const scene::Scene& scene,
            const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
@@ -51,8 +51,8 @@ class BallFits {
   std::shared_ptr<const BallCloud> Find(const Key& key);
 
   const std::size_t max_fits_;
-  std::mutex fitting_;    // one fit at a time: each uses every core
-  std::mutex mutex_;      // of `kept_`
+  std::mutex fitting_;    // one fit at a time, because each uses every core
+  std::mutex mutex_;      // protects `kept_`
   std::list<Kept> kept_;  // the most recently used first
 };
 

@@ -1,4 +1,4 @@
-// shaders/metaball/bindings.glsl for C++.
+// Compiles shaders/metaball/bindings.glsl as C++.
 #pragma once
 
 namespace thunderhead::shaders {

@@ -9,10 +9,10 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Texels of a side of the blocks that overlap is told by: discs in one block count as touching.
+// Side in texels of the blocks for finding overlaps. Discs in one block count as overlapping.
 constexpr int kBlock = 8;
 
-// The texels that a disc may touch, as blocks; `high` is included.
+// The blocks of texels that a disc may touch. `high` is included.
 struct Blocks {
   glm::ivec2 low{0};
   glm::ivec2 high{0};

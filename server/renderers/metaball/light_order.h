@@ -1,6 +1,6 @@
-// In which order balls are splatted into a light buffer: the one nearest to the light first (Man,
-// 4.1). Balls that cannot touch the same texels need not wait for one another: they form a level,
-// and levels in turn give what one ball after the other would give. Knows no GL.
+// The order in which balls are splatted into a light buffer: the one nearest to the light first
+// (Man, 4.1). Balls that cannot touch the same texels are independent and form a level. Processing
+// level after level gives the same result as processing ball after ball. This code does not use GL.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ struct LightDisc {
 
 struct LightOrder {
   std::vector<std::uint32_t> discs;   // level by level
-  std::vector<std::uint32_t> starts;  // of each level in `discs`, and the end
+  std::vector<std::uint32_t> starts;  // start of each level in `discs`, and the end
 
   std::size_t Levels() const { return starts.empty() ? 0 : starts.size() - 1; }
 };
 
-// `size` is the buffer's in texels; what is beyond counts as on its edge.
+// `size` is the buffer's size in texels. Texels beyond the buffer count as on its edge.
 LightOrder OrderFromLight(const std::vector<LightDisc>& discs, const glm::ivec2& size);
 
 }  // namespace thunderhead::renderers

@@ -23,15 +23,15 @@ namespace {
 
 constexpr int kMinBallLightTexels = 64;  // along the longer side
 constexpr int kMaxBallLightTexels = 1024;
-constexpr double kTexelsAcrossBall = 8.0;  // of the smaller balls
+constexpr double kTexelsAcrossBall = 8.0;  // texels across the smaller balls
 
-constexpr double kWaveInRadii = 1.5;  // of the longest wave of surfaces
+constexpr double kWaveInRadii = 1.5;  // wavelength of the longest wave of surfaces
 
 constexpr gl::PieceCost kSplatPixel{"splat", 1000.0};
 constexpr gl::PieceCost kBallLevel{"balls' light", 2e5};
 constexpr gl::PieceCost kDiffuseBall{"balls' diffuse light", 5000.0};
 
-// As shaders/metaball/balls.glsl has it.
+// The layout of shaders/metaball/balls.glsl.
 struct DeviceBall {
   glm::vec4 middle_radius;
   glm::vec4 optics;
@@ -62,8 +62,8 @@ absl::Status Check(const std::vector<Ball>& balls) {
   return absl::OkStatus();
 }
 
-// Man, eq. 18: densities rho = t v. The paper leaves t open; here the mean ball has the density 1,
-// and none more.
+// Returns the factor t of Man, eq. 18: densities rho = t v. The paper does not specify t. Here the
+// mean ball has the density 1, which is also the upper limit.
 double PaperDensityFactor(const std::vector<Ball>& balls) {
   double sum = 0.0;
   for (const Ball& ball : balls) sum += ball.extinction_per_m;
@@ -129,7 +129,7 @@ LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
 }
 
 gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
-  // An empty buffer is an error in GL; this element is never read.
+  // An empty buffer is an error in GL. This element is never read.
   if (values.empty()) return {sizeof(std::uint32_t), nullptr, 0};
   return {values.size() * sizeof(std::uint32_t), values.data(), 0};
 }
@@ -140,13 +140,14 @@ std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSett
   const Illumination& from = settings.illumination;
   std::vector<Light> lights = {{from.towards_sun, glm::vec3(1.0F), false}};
   if (IsPaper(settings)) {
-    // The paper has lights in directions only: the halves of the sky stand in as their middles.
+    // The paper has only directional lights, so a light at the middle represents each half of the
+    // sky.
     const float half_sky = std::numbers::pi_v<float>;
     lights.push_back({{0.0, 0.0, 1.0}, half_sky * from.from_sky, false});
     lights.push_back({{0.0, 0.0, -1.0}, half_sky * from.from_ground, false});
   }
   for (const Beam& beam : from.beams) lights.push_back({beam.towards, beam.irradiance, false});
-  // The last: source.comp expects it there.
+  // The diffuse light must be last, because source.comp expects it there.
   if (!IsPaper(settings)) {
     lights.push_back({{0.0, 0.0, 1.0}, glm::vec3(0.0F), true});
   }
@@ -186,7 +187,7 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
 std::vector<int> MetaballRenderer::KeepArrived(const std::vector<Light>& lights) {
   const std::size_t bytes = balls_.size() * sizeof(glm::vec2);
   gl::Buffer arrived(lights.size() * bytes, nullptr, 0);
-  // Shaders wrote what is copied.
+  // Waits for the shaders that wrote the data copied below.
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<int> missing;
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -237,7 +238,7 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
   const LightOrder order = OrderFromLight(discs, plane.size);
   order_ = BufferOf(order.discs);
   if (light_.Size() != plane.size) light_ = gl::Texture2D(GL_RG32F, plane.size);
-  // Depths begin at none, the paper's light at white.
+  // Depths begin at 0, and the paper's light begins at white.
   const float clear[2] = {paper ? 1.0F : 0.0F, 0.0F};
   glClearTexImage(light_.Get(), 0, GL_RG, GL_FLOAT, clear);
   light_.BindImage(shaders::kBallLightImage, GL_READ_WRITE);
@@ -299,7 +300,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   const bool paper = IsPaper(settings);
   std::vector<glm::vec3> towards;
   std::vector<glm::vec3> irradiance;
-  // Another haze changes the lights' colours, not what arrives of them.
+  // A change of haze changes the lights' colours, but not the share of them that arrives.
   for (const Light& light : LightsOf(settings)) {
     if (light.diffuse) continue;
     towards.emplace_back(light.towards);
@@ -336,7 +337,7 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   return absl::OkStatus();
 }
 
-// The longest wave is shorter than the mean ball is wide, the finest level the one whose
+// The longest wave is shorter than the diameter of the mean ball. The finest level is the one whose
 // texels are as large as the pixels of the nearest ball.
 void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSettings& settings,
                                  float share) const {
@@ -351,7 +352,7 @@ void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSetting
   program.Set(uniform::noise_per_m, static_cast<float>(1.0 / tile_m));
   program.Set(uniform::noise_offset, glm::vec3(corner - glm::floor(corner)));
   program.Set(uniform::roughness, share);
-  // A margin for the rounding of distances.
+  // The factor is a margin for the rounding of distances.
   program.Set(uniform::largest_radius_m, static_cast<float>(1.001 * largest_radius_m));
   const scene::View& view = settings.view;
   const double away_m =
@@ -365,7 +366,7 @@ void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSetting
 
 absl::Status MetaballRenderer::Splat(const RenderSettings& settings, const scene::Detail& detail,
                                      DetailNoises* noises) {
-  // Balls carry all fields at once, so that one noise stands for theirs.
+  // Balls carry all fields at once, so one noise represents those of all fields.
   const bool rough = noises != nullptr && detail.share > 0.0F && !IsPaper(settings);
   if (rough) noise_ = noises->Get(detail.octaves, detail.seed);
   const SplatVariant variant{

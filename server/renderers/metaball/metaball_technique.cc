@@ -30,7 +30,7 @@ class BallPreparation final : public Preparation {
   std::shared_ptr<BallFits> fits_;
 };
 
-// The detail of the drawn field that has most of it.
+// Returns the detail of the drawn field with the largest share.
 scene::Detail RoughestOf(const std::vector<scene::DrawnField>& drawn) {
   scene::Detail roughest;
   for (const scene::DrawnField& field : drawn) {

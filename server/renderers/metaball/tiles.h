@@ -1,5 +1,5 @@
-// Which balls may lie over each tile of a picture, the nearest to the eye first: what splatting
-// them one by one would sort by blending. Pure geometry: no GL.
+// The balls that may lie over each tile of a picture, the nearest to the eye first. The lists
+// replace sorting and blending the balls one by one. It is pure geometry without GL.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct BallTiles {
   int tile_px = 16;
   glm::ivec2 tiles{1};
   std::vector<std::uint32_t>
-      starts;  // of each tile in `balls`, row by row from the bottom; the end
+      starts;  // start of each tile in `balls`, row by row from the bottom, and the end
   std::vector<std::uint32_t> balls;
 };
 
-// Tiles are as small as a list of bearable length allows.
+// Returns the lists, with tiles as small as the limit on the lists' length allows.
 BallTiles TilesOf(const std::vector<Ball>& balls, const scene::View& view,
                   const glm::ivec2& size_px);
 

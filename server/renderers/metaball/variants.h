@@ -7,21 +7,21 @@ namespace thunderhead::renderers {
 
 // Variant of metaball/light.comp.
 struct BallLightVariant {
-  gl::DefineValue paper;    // transport as printed
-  gl::DefineValue pass;     // 0 splats, 1 gives the light scattered many times
-  gl::DefineValue diffuse;  // the light of sky and ground, not a beam
+  gl::DefineValue paper;    // transport as printed in the paper
+  gl::DefineValue pass;     // 0 splats, 1 computes the light scattered many times
+  gl::DefineValue diffuse;  // the light of sky and ground instead of a beam
 
   gl::Defines Defines() const { return {{"PAPER", paper}, {"PASS", pass}, {"DIFFUSE", diffuse}}; }
 };
 
 // Variant of metaball/source.comp.
 struct BallSourceVariant {
-  gl::DefineValue lights;  // beams
+  gl::DefineValue lights;  // number of beams
   gl::DefineValue groups;
   gl::DefineValue colored;    // groups have colours
-  gl::DefineValue paper;      // transport as printed
-  gl::DefineValue isotropic;  // phase function
-  gl::DefineValue parallel;   // view rays
+  gl::DefineValue paper;      // transport as printed in the paper
+  gl::DefineValue isotropic;  // isotropic phase function
+  gl::DefineValue parallel;   // parallel view rays
 
   gl::Defines Defines() const {
     return {{"LIGHTS", lights},    {"GROUPS", groups},
@@ -33,9 +33,9 @@ struct BallSourceVariant {
 
 // Variant of metaball/splat.frag.
 struct SplatVariant {
-  gl::DefineValue paper;   // transport as printed
-  gl::DefineValue ground;  // may hide balls
-  gl::DefineValue detail;  // noise on surfaces
+  gl::DefineValue paper;   // transport as printed in the paper
+  gl::DefineValue ground;  // ground may hide balls
+  gl::DefineValue detail;  // surfaces have noise
 
   gl::Defines Defines() const { return {{"PAPER", paper}, {"GROUND", ground}, {"DETAIL", detail}}; }
 };

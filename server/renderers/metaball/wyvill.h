@@ -1,5 +1,5 @@
-// Wyvill's field function as the shaders have it: the same text compiled as C++, so that tests
-// check what the GPU runs.
+// Wyvill's field function from the shaders, compiled as C++ so that tests check the code that the
+// GPU runs.
 #pragma once
 
 #include "glm/common.hpp"

@@ -1,4 +1,4 @@
-// The reference as a technique of the registry. It is traced on the CPU beside the renderers, for
+// The reference as a technique of the registry. It is traced on the CPU outside the renderers, for
 // sessions that choose it (drawing/truth_source.h).
 #pragma once
 

@@ -11,9 +11,9 @@
 
 namespace thunderhead::scene {
 
-// The source of the surface: the storm's cloud water and ice, a heap of heaps of bubbles, the
-// ellipsoids of one of the generator's presets, or one ellipsoid. A source other than the storm
-// fills the storm's place.
+// The source of the surface: the storm's cloud water and ice, a hierarchy of bubbles, the
+// ellipsoids of one of the generator's presets, or a single ellipsoid. A source other than the
+// storm fills the storm's place.
 enum class CumulusSource {
   kStorm,
   kCauliflower,
@@ -23,8 +23,8 @@ enum class CumulusSource {
   kEllipsoid
 };
 
-// The part of the light that is shown; balls are Lambert's law on bare ellipsoids, the baseline for
-// the cost of the shading.
+// The part of the light that is shown. kBalls shades bare ellipsoids by Lambert's law, as the
+// baseline for the cost of the shading.
 enum class CumulusComponent { kAll, kDirect, kInterReflection, kAmbient, kCorona, kBalls };
 
 struct Cumulus {
@@ -33,11 +33,12 @@ struct Cumulus {
 
   CumulusSource source = CumulusSource::kStorm;
   std::uint32_t seed = 1;
-  int scales = 3;                        // of ellipsoids
-  float least_extinction_per_m = 2e-3F;  // of a storm, inside the surface
-  float corona = 0.45F;                  // thickness over the radius of the finest ellipsoids
-  float trap = 0.45F;                    // share of the sky that the deepest valley hides
-  float transmission = 0.05F;            // share of sunlight that comes through
+  int scales = 3;                        // levels of ellipsoids
+  float least_extinction_per_m = 2e-3F;  // extinction of a storm that counts as inside the surface
+  // Thickness relative to the radius of the finest ellipsoids.
+  float corona = 0.45F;
+  float trap = 0.45F;          // share of the sky that the deepest valley hides
+  float transmission = 0.05F;  // share of sunlight that passes through
   float roughness = 0.6F;
   CumulusComponent component = CumulusComponent::kAll;
 
@@ -46,7 +47,8 @@ struct Cumulus {
   const MediumSettings* Medium() const { return nullptr; }
   FieldLook Look() const { return {}; }
 
-  // Fragments over a pixel, about the same for any surface of several scales.
+  // Returns the number of fragments over a pixel, which is about the same for any surface of
+  // several scales.
   double SamplesPerPixel(double /*slice_share*/) const { return 20.0; }
 
   Stage DirtiedSince(const Cumulus& before) const {
@@ -54,7 +56,8 @@ struct Cumulus {
         least_extinction_per_m != before.least_extinction_per_m) {
       return Stage::kExtinction;
     }
-    // The surface shades the ground behind it, less its corona.
+    // The surface without its corona shades the ground behind it, so the corona changes the
+    // ground's light.
     if (corona != before.corona) return Stage::kLight;
     return *this == before ? Stage::kNothing : Stage::kView;
   }

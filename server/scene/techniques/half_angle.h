@@ -1,4 +1,4 @@
-// Settings of half-angle slicing (Riley et al. 2003): light and view advance together through
+// Settings of half-angle slicing (Riley et al. 2003). Light and view advance together through
 // slices halfway between sun and eye.
 #pragma once
 
@@ -20,7 +20,7 @@ struct HalfAngle {
                                               .slices = true,
                                               .transports = kTransports};
 
-  // kDiffusion is drawn as kConsistent
+  // kDiffusion is drawn as kConsistent.
   MediumSettings medium{.transport = kTransports.front()};
   int slices = 128;
 

@@ -1,4 +1,5 @@
-// Settings of the light volume: light carried once into a volume, through which view rays march.
+// Settings of the light volume. Light is propagated once into a volume, and view rays then march
+// through it.
 #pragma once
 
 #include <array>
@@ -10,11 +11,11 @@
 
 namespace thunderhead::scene {
 
-// When traced paths correct the light (docs/decisions/0012-traced-light.md).
+// When path tracing corrects the light (docs/decisions/0012-traced-light.md).
 enum class TracedLight {
   kOff,
-  kAtRest,   // in a session, while the view rests
-  kAwaited,  // as at rest; a picture outside a session waits for it
+  kAtRest,   // in a session, while the view is at rest
+  kAwaited,  // as kAtRest; an image outside a session waits for the correction
 };
 
 struct LightVolume {
@@ -45,7 +46,8 @@ struct LightVolume {
     return traced_light == before.traced_light ? Stage::kNothing : Stage::kView;
   }
 
-  // Traced paths correct light by diffusion alone.
+  // Returns kOff unless the light is computed by diffusion, because path tracing corrects only
+  // that.
   TracedLight TracedLightShown() const {
     return medium.transport == Transport::kDiffusion ? traced_light : TracedLight::kOff;
   }

@@ -1,13 +1,13 @@
-// Settings that techniques have in common which draw the storm's fields as a medium.
+// Settings that are common to the techniques that draw the storm's fields as a medium.
 #pragma once
 
 #include "scene/transport.h"
 
 namespace thunderhead::scene {
 
-// Which of the fields' own properties a picture shows.
+// The fields' own properties that a picture shows.
 struct FieldLook {
-  bool per_field_phase = true;  // false: the phase function of cloud water for every field
+  bool per_field_phase = true;  // false: every field has the phase function of cloud water
   bool detail = false;          // turbulent detail finer than the grid
   bool false_colors = false;
 

@@ -21,17 +21,18 @@ struct Metaballs {
                                               .transports = kTransports};
 
   MediumSettings medium{.transport = kTransports.front()};
-  int count = 1200;  // at most; the paper's first scene
+  int count = 1200;  // upper limit; the default is that of the paper's first scene
   bool isotropic = false;
-  double albedo = 0.9;         // a of Man's eq. 26; Transport::kPaper only
-  double optical_depth = 8.0;  // tau of the same
+  double albedo = 0.9;         // a of Man's eq. 26; only for Transport::kPaper
+  double optical_depth = 8.0;  // tau of Man's eq. 26; only for Transport::kPaper
 
   bool operator==(const Metaballs&) const = default;
 
   const MediumSettings* Medium() const { return &medium; }
   FieldLook Look() const { return medium.look; }
 
-  // Balls that a pixel lies under: they fill the volume, each as wide as its share of it.
+  // Returns the number of balls that cover a pixel. The balls fill the volume, so it grows with the
+  // cube root of their count.
   double SamplesPerPixel(double /*slice_share*/) const { return 3.0 * std::cbrt(count); }
 
   Stage DirtiedSince(const Metaballs& before) const {

@@ -1,4 +1,4 @@
-// Settings of a technique that the program was extended by (docs/extending.md): named numbers. Its
+// Settings of a technique that was added as an extension (docs/extending.md): named numbers. Its
 // name and capabilities are in the registry of techniques (renderers/technique_registry.h).
 #pragma once
 
@@ -12,7 +12,8 @@
 namespace thunderhead::scene {
 
 struct OtherTechnique {
-  // Until its registry entry says more: a change of the lights reruns it.
+  // The capabilities that apply until the registry entry gives others. A change of the lights
+  // reruns the technique.
   static constexpr Capabilities kCapabilities{.lights = true};
 
   std::string name;

@@ -1,4 +1,4 @@
-// Settings of the Monte Carlo reference as a technique: it is traced on the CPU, ever finer.
+// Settings of the Monte Carlo reference as a technique. It is traced progressively on the CPU.
 #pragma once
 
 #include <string_view>

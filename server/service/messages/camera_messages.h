@@ -10,14 +10,14 @@
 
 namespace thunderhead::service {
 
-// True if the camera's defaults depend on where the storm is.
+// Returns true if the camera's defaults depend on the storm's position.
 bool NeedsFraming(const v1::Scene& scene);
 
 // Fills in absent positions and directions of the camera so that the picture frames the visible
 // part of `fields` (volume::VisibleBox).
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
 
-// The value of a camera whose defaults are filled in.
+// Returns the value of a camera whose defaults are filled in.
 scene::Camera ToCamera(const v1::Camera& message);
 
 void ToMessage(const scene::Camera& camera, v1::Camera& message);

@@ -3,7 +3,7 @@
 
 namespace thunderhead::service {
 
-// The value paired with `message`; that of the first row if there is none.
+// Returns the value paired with `message`, or that of the first row if there is none.
 template <typename Table, typename Message>
 auto ValueOf(const Table& table, Message message) {
   for (const auto& [from, to] : table) {

@@ -20,7 +20,7 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
 
-// The shortest text that parses to the same number.
+// Returns the shortest text that parses to the same number.
 template <typename Number>
 std::string Text(Number value) {
   char buffer[64];
@@ -35,8 +35,8 @@ std::string Range(const v1::NumberLimits& limits) {
   return text;
 }
 
-// The value, and the limits rounded to its type: 0.1 as a float is above 0.1 as a double, but must
-// pass.
+// The text of a value and whether it is within its limits. The limits are rounded to the value's
+// type: 0.1 as a float is above 0.1 as a double, but must pass.
 struct Checked {
   std::string text;
   bool within = false;
@@ -49,7 +49,7 @@ Checked Check(Number value, const v1::NumberLimits& limits) {
   return {Text(value), within};
 }
 
-// `index` is below zero for a field that is not repeated.
+// Checks a number; `index` is below zero for a field that is not repeated.
 Checked CheckNumber(const Message& message, const FieldDescriptor& field, int index,
                     const v1::NumberLimits& limits) {
   const Reflection& get = *message.GetReflection();
@@ -187,7 +187,7 @@ void SetNumber(Message& message, const FieldDescriptor& field, double value) {
   }
 }
 
-// `field` is one value that is absent; an enumerator of 0 counts as that.
+// Sets the default of `field`, a single value that is absent. An enumerator of 0 counts as absent.
 void FillDefault(Message& message, const FieldDescriptor& field) {
   const google::protobuf::FieldOptions& options = field.options();
   if (options.HasExtension(v1::default_on)) {

@@ -1,5 +1,5 @@
-// The description of a picture inside its file: as texts of a PNG or attributes of an OpenEXR
-// file, by the same names.
+// The description of a picture inside its file. It is stored as texts of a PNG file or as
+// attributes of an OpenEXR file, under the same names.
 #pragma once
 
 #include <map>
@@ -10,31 +10,31 @@
 
 namespace thunderhead::service {
 
-// The keyword of the whole scene, as JSON, from which the same picture can be drawn again.
+// The keyword of the whole scene as JSON, from which the same picture can be drawn again.
 inline constexpr char kSceneText[] = "thunderhead.scene";
 
-// Of the storm: its valid time and, where its files tell, when the run began (ISO 8601, UTC); where
-// it has one, its map projection as PROJ writes it, and the latitude and longitude of the middle of
-// its domain.
+// The keywords of the storm's data. They are its valid time and the start of the run (ISO 8601,
+// UTC), and its map projection in PROJ's notation. The last one is the latitude and longitude of
+// the middle of its domain. Data that the storm lacks is omitted.
 inline constexpr char kValidText[] = "thunderhead.valid";
 inline constexpr char kRunText[] = "thunderhead.run";
 inline constexpr char kProjectionText[] = "thunderhead.projection";
 inline constexpr char kMiddleText[] = "thunderhead.middle_deg";
 
-// The places of the picture's pixels in the world: a View as JSON.
+// The keyword of the View as JSON: the mapping from the picture's pixels to the world.
 inline constexpr char kViewText[] = "thunderhead.view";
 
-// The estimated error; in an OpenEXR file a number. Where it was measured, also the ends of its 95
-// % interval, in a PNG alone.
+// The keywords of the estimated error, which is a number in an OpenEXR file. If the error was
+// measured, a PNG file also has the ends of its 95 % interval.
 inline constexpr char kErrorText[] = "thunderhead.estimated_error";
 inline constexpr char kErrorLowText[] = "thunderhead.error_low";
 inline constexpr char kErrorHighText[] = "thunderhead.error_high";
 
 using PictureTexts = std::map<std::string, std::string>;
 
-// The scene, the storm with its time and map projection, the camera's pose, the program's version
-// and where it is known the estimated error of a picture of `storm`, whose response is complete but
-// for the picture.
+// Returns the description of a picture of `storm`: its scene, its storm with time and map
+// projection, the camera's pose, the program's version and, if known, the estimated error. The
+// response must be complete except for the picture itself.
 PictureTexts TextsOf(const v1::RenderImageResponse& picture, const storm_store::StormInfo& storm);
 
 }  // namespace thunderhead::service

@@ -13,7 +13,8 @@
 namespace thunderhead::service {
 namespace {
 
-// Names in an error message: enough to recognise a typing error; there may be thousands of storms.
+// Maximum number of names in an error message, because there may be thousands of storms. It is
+// enough to recognise a typing error.
 constexpr std::size_t kMaxNamesListed = 10;
 
 std::string NamesOf(const std::vector<storm_store::StormInfoPtr>& storms) {
@@ -60,7 +61,7 @@ absl::Status CheckTime(const storm_store::StormInfo& storm, std::uint32_t time_i
 
 absl::Status PrepareScene(const storm_store::StormStore& store,
                           const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene) {
-  // They would be kept, and sent to every viewer.
+  // Unknown fields would be stored and sent to every viewer.
   scene.DiscardUnknownFields();
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));

@@ -1,4 +1,4 @@
-// From a client's scene to one that can be drawn: the storm that it names, and every default.
+// Prepares a client's scene for drawing: finds the storm that it names and fills in every default.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,21 @@
 
 namespace thunderhead::service {
 
-// The reason of errors that name a storm that is not there.
+// The reason of errors that name a storm that does not exist.
 inline constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
 
-// The storm of that id, or the first for an empty id. NOT_FOUND lists the storms.
+// Returns the storm with that id, or the first storm for an empty id. The error NOT_FOUND lists the
+// storms.
 absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStore& store,
                                                     const std::string& id);
 
-// INVALID_ARGUMENT, naming the range, if the storm has no such time. `path` is the request's field.
+// Returns INVALID_ARGUMENT, which names the range, if the storm has no such time. `path` is the
+// request's field.
 absl::Status CheckTime(const storm_store::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path);
 
-// Checks a scene (whose limits were checked) and fills in every default that needs no fields.
-// `techniques` are the available ones.
+// Checks a scene, whose limits must have been checked, and fills in every default that needs no
+// fields. `techniques` are the available ones.
 absl::Status PrepareScene(const storm_store::StormStore& store,
                           const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene);
 

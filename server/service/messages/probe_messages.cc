@@ -19,7 +19,7 @@ v1::EarthPlace PlaceMessage(const volume::EarthPlace& place) {
   return message;
 }
 
-// The hydrometeor, variable and units of a field.
+// Sets the hydrometeor, variable and units of a field.
 template <typename Message>
 void Name(const volume::HydrometeorFields& fields, std::size_t index, Message& message) {
   const volume::HydrometeorField& field = fields.fields[index];
@@ -173,7 +173,7 @@ void ToMessage(const volume::StormMap& map, const StormPlaces& places,
                                      glm::dvec2(high_m), glm::dvec2(low_m.x, high_m.y)}) {
     if (const auto earth = places.OnEarth(corner_m)) *message.add_corners() = *earth;
   }
-  // A map that ends at a pole has no corner beyond.
+  // A map that reaches a pole has no corners there, so all are omitted.
   if (message.corners_size() < 4) message.clear_corners();
   if (const auto middle = places.Middle()) *message.mutable_middle() = *middle;
   message.mutable_terrain_height_m()->Assign(map.terrain_height_m.begin(),

@@ -1,4 +1,4 @@
-// Rays and maps of a storm as messages.
+// Converts rays and maps of a storm to messages.
 #pragma once
 
 #include <optional>
@@ -16,20 +16,20 @@
 
 namespace thunderhead::service {
 
-// A storm's places: their heights, and where they are on Earth.
+// Computes the heights of places in a storm, and their places on Earth.
 class StormPlaces {
  public:
-  // Both must outlive it.
+  // Both arguments must outlive it.
   StormPlaces(const storm_store::StormInfo& storm, const volume::HydrometeorFields& fields);
 
-  // Nothing where the storm has no projection.
+  // Returns the place on Earth, or nothing if the storm has no projection.
   std::optional<v1::EarthPlace> OnEarth(const glm::dvec2& place_m) const;
-  // Of the middle; nothing for an idealised run.
+  // Returns the middle of the domain on Earth, or nothing for an idealised run.
   std::optional<v1::EarthPlace> Middle() const;
-  // A place in the air.
+  // Returns a place in the air.
   v1::RayPlace Of(const scene::StormRay& ray, double along_m) const;
-  // A place where the ray meets the ground, whatever the height that the Earth's roundness gives
-  // it.
+  // Returns a place where the ray meets the ground. Its height is the terrain's, unaffected by the
+  // Earth's curvature.
   v1::RayPlace OnGround(const scene::StormRay& ray, double along_m) const;
 
   const volume::HydrometeorFields& fields() const { return fields_; }
@@ -40,12 +40,12 @@ class StormPlaces {
   std::optional<volume::MapProjection> projection_;
 };
 
-// All but the storm, its time and the scene's revision.
+// Sets all fields except the storm, its time and the scene's revision.
 void ToMessage(const scene::ViewRay& ray, const scene::StormRay& storm_ray,
                const scene::RayProbe& probe, const StormPlaces& places,
                v1::ProbeRayResponse& message);
 
-// All but the storm, its time and the fields that were added up.
+// Sets all fields except the storm, its time and the list of added fields.
 void ToMessage(const volume::StormMap& map, const StormPlaces& places,
                v1::GetStormMapResponse& message);
 

@@ -31,7 +31,7 @@ std::size_t IndexOf(v1::Hydrometeor hydrometeor) {
   return static_cast<std::size_t>(hydrometeor) - 1;
 }
 
-// The message's enumerator of each kind, found by its name.
+// Returns the message's enumerator of each kind, found by its name.
 const std::map<physics::PhaseKind, v1::PhaseFunction::Kind>& PhaseKindMessages() {
   static const auto* const messages = [] {
     auto* found = new std::map<physics::PhaseKind, v1::PhaseFunction::Kind>;
@@ -49,7 +49,7 @@ v1::PhaseFunction::Kind KindMessage(physics::PhaseKind kind) {
   return PhaseKindMessages().at(kind);
 }
 
-// Returns the first kind if the message has none, as a damaged record of a scene may.
+// Returns the first kind if the message has none, which can happen in a damaged record of a scene.
 physics::PhaseKind ToPhaseKind(v1::PhaseFunction::Kind message) {
   for (const auto& [kind, its_message] : PhaseKindMessages()) {
     if (its_message == message) return kind;
@@ -130,7 +130,8 @@ std::optional<int> FirstWith(const Repeated& fields, v1::Hydrometeor hydrometeor
   return std::nullopt;
 }
 
-// `field` is of the message's hydrometeor and has the scene's sizes.
+// Copies a message's settings to `field`, which must have the message's hydrometeor and the scene's
+// particle sizes.
 void SetField(const v1::FieldParameters& message, scene::FieldParameters& field) {
   field.visible = message.visible();
   if (message.sizes() != v1::PARTICLE_SIZES_UNSPECIFIED) {
@@ -269,7 +270,7 @@ void FillSizesDefault(v1::Scene& scene) {
 
 namespace {
 
-// The particles' sizes are known by now.
+// Fills in the ground. The particle sizes must be known.
 void FillGroundDefaults(v1::Scene& scene, const storm_store::StormInfo& storm) {
   v1::Ground& ground = *scene.mutable_ground();
   if (ground.cover() == v1::Ground::COVER_UNSPECIFIED) {

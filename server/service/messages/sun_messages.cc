@@ -13,12 +13,13 @@
 namespace thunderhead::service {
 namespace {
 
-// An afternoon of the storm season in Oklahoma, for runs without a date and place.
+// The default date, an afternoon of the storm season in Oklahoma, for runs without a date and
+// place.
 constexpr char kStormSeason[] = "2013-05-20T20:00:00Z";
 constexpr float kOklahomaLatitude_deg = 35.25F;
 constexpr float kOklahomaLongitude_deg = -97.5F;
 
-// Idealised runs start in year 1.
+// Idealised runs start in year 1, so earlier years do not count as real dates.
 constexpr int kFirstRealYear = 100;
 
 bool IsReal(const std::string& valid_time) {

@@ -9,14 +9,14 @@
 
 namespace thunderhead::service {
 
-// INVALID_ARGUMENT if the clock's date is malformed.
+// Returns INVALID_ARGUMENT if the clock's date is malformed.
 absl::Status CheckSun(const v1::Sun& sun);
 
-// Fills in the source, and for a sun that follows the clock its time, place and direction at
-// `time_index`, replacing the message's direction.
+// Fills in the source. For a sun that follows the clock it also fills in time and place, and
+// replaces the message's direction by the direction at `time_index`.
 void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time_index);
 
-// Fills in the time and place of the storm where absent.
+// Fills in the storm's time and place if they are absent.
 void FillClockDefaults(v1::SunClock& clock, const storm_store::StormInfo& storm);
 
 void ToMessage(const scene::Sun& sun, v1::Sun& message);

@@ -54,7 +54,8 @@ constexpr std::array kPresets = {
               accuracy::Preset::kPerFieldPhaseDetailTranslucent},
 };
 
-// `path` is the field of the technique, whose settings are `Settings`.
+// Checks the transport. `path` is the field of the technique, whose settings have the type
+// `Settings`.
 template <typename Settings>
 absl::Status CheckTransport(const std::string& path, v1::Transport given) {
   std::vector<v1::Transport> accepted;
@@ -93,7 +94,7 @@ absl::Status CheckOther(const v1::OtherTechnique& other,
       "UNKNOWN_TECHNIQUE");
 }
 
-// The settings that the techniques of a medium share.
+// Sets the settings that all techniques for a medium share.
 template <typename Message>
 void SetMedium(const scene::MediumSettings& settings, Message& message) {
   message.set_transport(MessageOf(kTransports, settings.transport));
@@ -206,7 +207,7 @@ scene::OtherTechnique ToSettings(const v1::OtherTechnique& message) {
   return {message.name(), {message.numbers().begin(), message.numbers().end()}};
 }
 
-// The technique in `rendering`, with its defaults.
+// Returns the technique in `rendering`, with its defaults.
 scene::Technique DefaultsOf(const v1::Rendering& rendering) {
   switch (rendering.technique_case()) {
     case v1::Rendering::kHalfAngle:
@@ -254,7 +255,7 @@ void FillTechniqueDefaults(v1::Rendering& rendering) {
   if (rendering.technique_case() != v1::Rendering::kPreset) {
     const bool traced_light_given =
         rendering.light_volume().traced_light() != v1::TRACED_LIGHT_UNSPECIFIED;
-    // Given settings replace the defaults; an enumerator of 0 counts as not given.
+    // The given settings replace the defaults. An enumerator of 0 counts as absent.
     filled.MergeFrom(rendering);
     const bool diffuses = filled.light_volume().transport() == v1::TRANSPORT_DIFFUSION;
     if (filled.has_light_volume() && !traced_light_given && !diffuses) {

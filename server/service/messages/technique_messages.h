@@ -11,19 +11,20 @@
 
 namespace thunderhead::service {
 
-// INVALID_ARGUMENT names a transport that the technique does not support, or a technique that is
-// not among `known`. Settings of techniques outside the schema are checked when they draw.
+// Returns INVALID_ARGUMENT, which names a transport that the technique does not support, or a
+// technique that is not in `known`. The settings of extension techniques are checked when they
+// draw.
 absl::Status CheckRendering(const v1::Rendering& rendering,
                             const std::vector<scene::TechniqueInfo>& known);
 
-// Replaces a preset by its technique, an absent technique by the default preset's, and fills in the
-// technique's defaults.
+// Replaces a preset by its technique, and an absent technique by the default preset's. Then fills
+// in the technique's defaults.
 void FillTechniqueDefaults(v1::Rendering& rendering);
 
-// True if a preset of the papers is asked for.
+// Returns true if the rendering names a preset of the papers.
 bool IsOfThePapers(const v1::Rendering& rendering);
 
-// The value of a technique whose defaults are filled in.
+// Returns the value of a technique whose defaults are filled in.
 scene::Technique ToTechnique(const v1::Rendering& rendering);
 
 // Sets every field of the technique's message.

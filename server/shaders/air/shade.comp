@@ -1,8 +1,10 @@
-// The light that the storm's shadow takes from the air: for each ray of a coarse picture, the share of airlight_before that
-// is missing from the eye up to each of a number of distances, a layer each, and in one more layer that of the whole sky. The
-// first layer is at `near_m` and holds nothing. Of a step's part of airlight_before, which is that of its air in the light that
-// the air takes away, the share is missing that is missing of what sun and sky make the step send: so no light is taken that
-// airlight_before has not. Rays go on below the ground, so that shares change smoothly across the picture. Coordinates are
+// Computes the light that the storm's shadow takes from the air. For each ray of a coarse picture, a layer holds the
+// missing share of airlight_before from the eye up to one of several distances. One more layer holds that of the whole
+// sky. The first layer is at `near_m` and holds nothing.
+//
+// A step's part of airlight_before is proportional to the extinction of its air. The missing share of that part is the
+// missing share of the light that sun and sky make the step scatter. The result therefore never exceeds
+// airlight_before. Rays continue below the ground, so that shares change smoothly across the picture. Coordinates are
 // metres from the eye.
 #include "common/bindings.glsl"
 #include "common/sky_hidden.glsl"
@@ -14,30 +16,33 @@
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kAirShadeImage, rgba16f) uniform writeonly image3D shade;
-// By height: row 0, the sunlight; row 1, the mean radiance of light that air has scattered.
+// Light of the air by height. Row 0 is the sunlight, row 1 the mean radiance of light that air has scattered.
 layout(binding = kAirLightUnit) uniform sampler2D air_light;
 
 uniform ivec3 shade_size;
 uniform mat3 local_from_world;
 uniform vec3 towards_sun;
-uniform vec3 level_irradiance;  // of clear sky and sun on level ground
-uniform vec3 level_skylight;    // that of the sky
+uniform vec3 level_irradiance;  // irradiance of clear sky and sun on level ground
+uniform vec3 level_skylight;  // of the clear sky on level ground
 uniform float turbidity;
 uniform float altitude_m;
-uniform vec2 air_densities;  // there
+uniform vec2 air_densities;  // at the eye
 uniform float ground_curvature_per_m;
 uniform float horizon_sine;
-uniform float lowest_air_m;  // above sea level
-uniform float near_m;        // distance along the rays
+uniform float lowest_air_m;  // height above sea level
+uniform float near_m;  // distance of the first layer along the rays
 uniform float far_m;
-uniform float air_light_per_m;  // texture coordinates of a metre of height
+uniform float air_light_per_m;  // texture coordinates per metre of height
 
 const float kInversePi = 0.318309886;
-const float kBelowGround_m = 4000.0;  // to which the air goes on
+const float kBelowGround_m = 4000.0;  // how far below the ground the air continues
 const float kSkysEnd_m = 2e6;
-const float kMostAdded = 1.0;  // of the light of air that a storm lights; in the Earth's shadow there is hardly any
+// Limit for the light that a storm adds to the air, relative to the air's own light. It is needed in the Earth's
+// shadow, where the air's light almost vanishes.
+const float kMostAdded = 1.0;
 
-// Around a point, along a step; with one place for it the shadow's edge would show as many edges as there are steps.
+// Returns the mean over several places along a step around a point. With one place per step, the shadow's edge would
+// show one edge for each step.
 float mean_blocked(vec3 point_m, vec3 step) {
   const int kPlaces = 4;
   float sum = 0.0;
@@ -56,7 +61,7 @@ void main() {
   int steps = shade_size.z - 2;
   float step_m = (far_m - near_m) / float(steps);
   vec2 size = vec2(textureSize(air_light, 0));
-  vec3 missing = vec3(0.0);  // in units of what airlight_before has of endless air
+  vec3 missing = vec3(0.0);  // in units of airlight_before for endless air
   vec3 air_per_m = air_optical_depth() / kAirScaleHeight_m;
   vec3 haze_per_m = haze_optical_depth(turbidity) / kHazeScaleHeight_m;
   AirPath path = AirPath(altitude_m, sine, ground_curvature_per_m, near_m);
@@ -74,7 +79,8 @@ void main() {
     vec3 sunlight = texture(air_light, vec2(column, 0.25)).rgb;
     vec3 skylight = texture(air_light, vec2(column, 0.75)).rgb;
     StormInSky storm = storm_in_sky(point_m);
-    // In its shadow the storm shows what comes through it; elsewhere half of that, and what it reflects.
+    // In its shadow, the storm shows the light that passes through it. Elsewhere it shows half of that, and the light
+    // that it reflects.
     float blocked = mean_blocked(point_m, step_m * ray);
     vec3 through = storm.through * level_irradiance;
     vec3 reflected = light_of_faces(storm, towards_sun, level_skylight);

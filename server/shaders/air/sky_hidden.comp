@@ -1,10 +1,11 @@
-// The storm in the sky of each point of a coarse lattice around it, as common/sky_hidden.glsl has it: means over directions
-// spread evenly over the upper half of its opacity, and of that times the transmittance for diffuse light of a level layer of
-// as much vertical depth: two-stream, (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r) for the depths r of transport (similarity
-// scaled) and a of absorption. The layer's reflectance is 1 less its
-// transmittance without absorption, multiplied by the reflectance (1 - s) / (1 + s) of a semi-infinite layer,
-// s = sqrt(a / r); its mean over directions is kept as a vector.
-// Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
+// Computes the storm in the sky of each point of a coarse lattice around it, in the format of common/sky_hidden.glsl.
+// The values are means over directions spread uniformly over the upper hemisphere. The first is the storm's opacity.
+// The second is the opacity times the transmittance for diffuse light of a level layer of the same vertical depth.
+//
+// The layer is two-stream: (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r) for the depths r of transport (similarity
+// scaled) and a of absorption. The layer's reflectance is 1 minus its transmittance without absorption, times the
+// reflectance of a semi-infinite layer. That is (1 - s) / (1 + s) with s = sqrt(a / r). Its mean over directions is
+// kept as a vector. Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
@@ -14,7 +15,7 @@ layout(binding = kSkyHiddenImage, rg16f) uniform writeonly image3D hidden;
 layout(binding = kStormFacesImage, rgba16f) uniform writeonly image3D faces;
 
 uniform ivec3 point_count;
-uniform vec3 lattice_low_m;   // of the lattice's box, from the medium's middle
+uniform vec3 lattice_low_m;  // low corner of the lattice's box, relative to the medium's middle
 uniform vec3 lattice_size_m;
 uniform float step_m;
 uniform vec4 light_weights[PLANES];
@@ -25,7 +26,7 @@ const int kDirections = 16;
 const int kMaxSamples = 512;
 const float kGoldenAngle = 2.39996323;
 
-// Optical depths of the light's extinction, of transport and of absorption, a step each.
+// Optical depths per step of the light's extinction, of transport and of absorption.
 struct Depths {
   vec4 light[PLANES];
   vec4 transport[PLANES];
@@ -61,7 +62,8 @@ void main() {
   vec2 sum = vec2(0.0);
   vec4 sum_of_faces = vec4(0.0);
   for (int i = 0; i < kDirections; ++i) {
-    // Fibonacci spiral; its turn differs from point to point, so that all together miss nothing.
+    // The directions follow a Fibonacci spiral. It is rotated differently at each point, so that all points together
+    // cover all directions.
     float sine = 1.0 - (float(i) + 0.5) / float(kDirections);
     float azimuth = kGoldenAngle * (float(i) + float(point.x) + 3.0 * float(point.y) + 7.0 * float(point.z));
     float cosine = sqrt(1.0 - sine * sine);
@@ -76,7 +78,7 @@ void main() {
     sum += opacity * vec2(1.0, diffuse);
     sum_of_faces += reflected * vec4(direction, 1.0);
   }
-  // The outermost points are beyond where air is shaded.
+  // The outermost points are beyond the region where air is shaded.
   bvec3 first = equal(point, ivec3(0));
   bvec3 last = equal(point, point_count - 1);
   bool rim = first.x || first.y || last.x || last.y || last.z;

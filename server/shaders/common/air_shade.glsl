@@ -1,4 +1,5 @@
-// The share of the air's light on a ray that the storm's shadow takes (air/shade.comp). `place` as common/view.glsl has it.
+// The share of the air's light on a ray that the storm's shadow takes (air/shade.comp). `place` is in the coordinates
+// of common/view.glsl.
 #include "common/bindings.glsl"
 
 layout(binding = kAirShadeUnit) uniform sampler3D air_shade;
@@ -10,11 +11,12 @@ vec3 air_shade_at(vec2 place, float layer) {
   return texture(air_shade, vec3(0.5 * place + 0.5, (layer + 0.5) / float(textureSize(air_shade, 0).z))).rgb;
 }
 
-// Of airlight_before up to a distance; beyond `shade_far_m`, where no more is taken, up to that.
+// Returns the share of airlight_before up to a distance. Light is taken only up to `shade_far_m`. For greater distances
+// it therefore returns the share up to that distance.
 vec3 air_shade_before(vec2 place, float distance_m) {
   float last = float(textureSize(air_shade, 0).z - 2);
   return air_shade_at(place, clamp((distance_m - shade_near_m) / (shade_far_m - shade_near_m), 0.0, 1.0) * last);
 }
 
-// Of the whole sky's.
+// Returns the share of the whole sky's airlight.
 vec3 air_shade_of_sky(vec2 place) { return air_shade_at(place, float(textureSize(air_shade, 0).z - 1)); }

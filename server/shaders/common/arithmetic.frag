@@ -1,4 +1,4 @@
-// Arithmetic alone, to find out how fast a device runs fragment shaders.
+// Computes arithmetic only, to measure how fast a device runs fragment shaders.
 in vec2 position;
 out vec4 sums;
 

@@ -1,20 +1,20 @@
-// Numbers that shaders share with the C++ that runs them: texture units, image units, bindings of storage buffers, sizes
-// of work groups. Compiles as GLSL and as C++ (shaders/bindings.h). A technique's own are in its folder (e.g.
-// half_angle/bindings.glsl). Within a program each number of a kind is used once, which tests check
-// (gl/strict_programs.h); programs of different techniques share numbers.
+// Numbers that shaders share with the C++ that runs them: texture units, image units, bindings of storage buffers, and
+// sizes of work groups. The file compiles as GLSL and as C++ (shaders/bindings.h). A technique's own numbers are in its
+// folder (e.g. half_angle/bindings.glsl). Within a program, each number of a kind is used once, which tests check
+// (gl/strict_programs.h). Programs of different techniques may use the same numbers.
 
-// The transmittance below which a ray of paper or consistent transport ends.
+// A ray of paper or consistent transport ends below this transmittance.
 const float kOpaqueTransmittance = 5e-3F;
 
-// Of a medium.
-const int kMediumPlaneUnit = 0;  // and the one after
+// Units of a medium.
+const int kMediumPlaneUnit = 0;  // also the next one
 const int kBricksUnit = 2;
 const int kPhaseCurvesUnit = 3;
-const int kDetailNoiseUnit = 8;  // and as many as there are noises
+const int kDetailNoiseUnit = 8;  // also the next ones, one for each noise
 const int kDetailControlUnit = 16;
-const int kBlocksBinding = 0;  // of cells that a ray may meet
+const int kBlocksBinding = 0;  // cells that a ray may meet
 
-// Of the ground and the picture.
+// Units of the ground and the picture.
 const int kGroundDistanceUnit = 7;
 const int kTerrainUnit = 8;
 const int kGroundShadowUnit = 9;
@@ -40,20 +40,21 @@ const int kChosenPlacesUnit = 18;
 const int kAureoleUnit = 4;
 const int kPackedUnit = 4;
 
-// Of whole targets that are computed.
+// Units of whole targets that are computed.
 const int kTargetLimitUnit = 17;
-const int kTargetImages = 6;  // and the one after
+const int kTargetImages = 6;  // also the next one
 
-// Table of sunlight by height: up to 24 km, above which air attenuates little.
+// Table of sunlight by height, up to 24 km. Above that height, air attenuates little.
 const int kSunlightLevels = 33;
 const float kSunlightStep_m = 750.0f;
 
-// Of packed rays (renderers::ChosenRays): pixels of a block, which software GL draws together, and blocks beside one another.
+// Layout of packed rays (renderers::ChosenRays): the pixels of a block, which software GL draws together, and the
+// number of blocks in a row.
 const int kPackedBlockWidth = 4;
 const int kPackedBlockHeight = 2;
 const int kPackedBlocksInRow = 128;
 
-// Invocations in a work group: along each of two sides, or in total.
+// Invocations in a work group, along each of two sides or in total.
 const int kLightGroupSide = 8;
 const int kMeterGroupSize = 64;
 const int kTargetGroupSide = 8;

@@ -1,9 +1,9 @@
-// Rays and boxes whose sides lie along the axes.
+// Rays and axis-parallel boxes.
 
-// No component is zero, so that it may be divided by.
+// Returns the direction without zero components, so that division by it is safe.
 vec3 safe_direction(vec3 direction) { return mix(direction, vec3(1e-7), lessThan(abs(direction), vec3(1e-7))); }
 
-// The part of the ray that is in the box; x > y where it misses it. `direction` is safe.
+// Returns the part of the ray that is in the box. If the ray misses it, x > y. `direction` must be safe.
 vec2 path_through_box(vec3 low_m, vec3 high_m, vec3 origin_m, vec3 direction) {
   vec3 a = (low_m - origin_m) / direction;
   vec3 b = (high_m - origin_m) / direction;

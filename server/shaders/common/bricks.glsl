@@ -1,9 +1,9 @@
-// Rays through a medium that leap over its empty bricks (volume/brick_map.h).
+// Rays through a medium that skip its empty bricks (volume/brick_map.h).
 #include "common/bindings.glsl"
 #include "common/box.glsl"
 #include "common/medium_box.glsl"
 
-layout(binding = kBricksUnit) uniform usampler3D bricks;  // volume::BrickMap::content
+layout(binding = kBricksUnit) uniform usampler3D bricks;  // content as in volume::BrickMap::content
 
 uniform vec3 brick_from_local_scale;
 uniform vec3 brick_from_local_offset;
@@ -12,7 +12,7 @@ uniform ivec3 brick_count;
 const uint kThickBrick = 0u;
 const uint kThinBrick = 255u;
 
-// A ray in the coordinates of the medium's texture and of its bricks: where it starts, and what a metre adds.
+// A ray in the coordinates of the medium's texture and of its bricks: its start, and the change per metre.
 struct MediumRay {
   vec3 start;
   vec3 step;
@@ -20,10 +20,10 @@ struct MediumRay {
   vec3 brick_step;
   vec3 per_brick_step;
   vec3 highest_brick;
-  vec3 per_brick;  // texture coordinates
+  vec3 per_brick;  // texture coordinates per brick
 };
 
-// `direction` is safe.
+// `direction` must be safe.
 MediumRay medium_ray(vec3 origin_m, vec3 direction) {
   MediumRay ray;
   ray.start = origin_m * texture_from_local_scale + texture_from_local_offset;
@@ -36,7 +36,8 @@ MediumRay medium_ray(vec3 origin_m, vec3 direction) {
   return ray;
 }
 
-// The part of the ray that is in the medium's box with `margin_m` around; x > y where it misses it. `direction` is safe.
+// Returns the part of the ray that is in the medium's box extended by `margin_m`. If the ray misses it, x > y.
+// `direction` must be safe.
 vec2 path_in_medium(vec3 origin_m, vec3 direction, float margin_m) {
   return path_through_box(medium_low_m - margin_m, medium_high_m + margin_m, origin_m, direction);
 }
@@ -45,19 +46,19 @@ vec3 medium_place(MediumRay ray, float distance_m) { return ray.start + distance
 
 vec3 brick_place(MediumRay ray, float distance_m) { return ray.brick_start + distance_m * ray.brick_step; }
 
-// The middle of the brick at a place; beyond all bricks of the nearest one.
+// Returns the middle of the brick at a place, or that of the nearest brick outside of all bricks.
 vec3 brick_middle(MediumRay ray, vec3 place) { return floor(clamp(place, vec3(0.0), ray.highest_brick)) + 0.5; }
 
-// The brick's content. By texture(): texelFetch takes software twice as long.
+// Returns the brick's content. It uses texture(), because texelFetch takes twice as long in software.
 uint brick_content(MediumRay ray, vec3 place) { return texture(bricks, brick_middle(ray, place) * ray.per_brick).r; }
 
-// True where there is something in the brick.
+// Returns true if the brick is not empty.
 bool is_filled(uint content) { return content == kThickBrick || content == kThinBrick; }
 
-// The distance along the ray from `place` (in bricks) to the end of the cube of empty bricks around it, whose size is
-// `content`; with 1, to the end of the brick itself.
+// Returns the distance along the ray from `place` (in bricks) to the end of the cube of empty bricks around it, whose
+// size is `content`. With 1, it is the distance to the end of the brick itself.
 float empty_path(MediumRay ray, vec3 place, uint content) {
-  vec3 across = abs(ray.per_brick_step);  // the path through a brick
+  vec3 across = abs(ray.per_brick_step);  // path length through a brick along each axis
   vec3 path = (brick_middle(ray, place) - place) * ray.per_brick_step + (float(content) - 0.5) * across;
   float beyond = 1e-3 * min(across.x, min(across.y, across.z));
   return min(path.x, min(path.y, path.z)) + beyond;

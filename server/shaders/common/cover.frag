@@ -1,2 +1,2 @@
-// Depth only.
+// Writes only the depth.
 void main() {}

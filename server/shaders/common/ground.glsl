@@ -1,16 +1,17 @@
-// Where a view ray meets the ground, in metres from the middle of the medium's box or any other origin that the uniforms
-// have. The ground is level (RELIEF 0) or the terrain, which goes on beyond the domain as at its edge. It falls away from
-// where the world's plane touches the Earth (scene/view.h); curvature 0 is a plane.
+// The intersection of a view ray with the ground, in metres from the origin that the uniforms define, such as the
+// middle of the medium's box. The ground is level (RELIEF 0) or the terrain, whose edge values continue beyond the
+// domain. The ground falls away from the point where the world's plane touches the Earth (scene/view.h). A curvature of
+// 0 is a plane.
 #include "common/bindings.glsl"
 
 uniform float lowest_ground_m;
 uniform float ground_curvature_per_m;
-uniform vec2 touch_m;  // where the plane touches
+uniform vec2 touch_m;  // where the world's plane touches the Earth
 
 const float kFarthestGround_m = 5e5;
 
-// Distance along a ray of the level surface that has the given height where the plane touches; below zero where the ray,
-// coming from above, misses it, 0 under it.
+// Returns the distance along a ray of the level surface with the given height where the plane touches. It is negative
+// if a ray from above misses the surface, and 0 below the surface.
 float level_distance_m(vec3 origin_m, vec3 ray, float level_m) {
   vec2 off_m = origin_m.xy - touch_m;
   float above_m = origin_m.z - level_m + 0.5 * ground_curvature_per_m * dot(off_m, off_m);
@@ -24,9 +25,9 @@ float level_distance_m(vec3 origin_m, vec3 ray, float level_m) {
 #if RELIEF
 layout(binding = kTerrainUnit) uniform sampler2D terrain;  // height above sea level
 
-uniform vec2 terrain_from_ground_scale;  // texture coordinates from metres
+uniform vec2 terrain_from_ground_scale;  // texture coordinates per metre
 uniform vec2 terrain_from_ground_offset;
-uniform float terrain_offset_m;  // of sea level
+uniform float terrain_offset_m;  // height of sea level in these coordinates
 uniform float highest_ground_m;
 uniform float steepest_ground;  // largest slope of the terrain, as a tangent
 
@@ -47,8 +48,9 @@ vec3 ground_normal(vec2 place_m) {
 }
 #endif
 
-// Distance of the ground along the ray; below zero where the ray misses it or starts under it. No step is longer than the
-// steepest slope allows, so that no mountain is missed; rays that graze for very long end where they are.
+// Returns the distance of the ground along the ray. It is negative if the ray misses the ground or starts below it. No
+// step is longer than the steepest slope allows, so that no mountain is missed. A ray that grazes the ground for very
+// long ends where the steps run out.
 float ground_distance_m(vec3 origin_m, vec3 ray) {
   float lowest = level_distance_m(origin_m, ray, lowest_ground_m);
 #if !RELIEF

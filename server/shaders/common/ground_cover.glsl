@@ -1,21 +1,21 @@
-// The ground's cover where a view ray meets it. Coordinates are metres from the eye. Variants: COVER (0 plain, 1 fields,
-// 2 land use), BORDERS, RINGS.
+// The ground's cover at the intersection with a view ray. Coordinates are metres from the eye. Variants: COVER (0
+// plain, 1 fields, 2 land use), BORDERS, RINGS.
 #include "common/bindings.glsl"
 #include "common/ground.glsl"
 #include "physics/ground_cover.glsl"
 #include "physics/sky.glsl"
 #include "physics/water.glsl"
 
-uniform vec3 ground_reflectance;  // radiance per irradiance; for land use that of a reflectance of 1
+uniform vec3 ground_reflectance;  // radiance per irradiance; for land use, that of a reflectance of 1
 
 #if COVER != 0 || BORDERS || RINGS
-uniform vec2 pixel_width;  // of a pixel: at the eye, and what a metre of distance adds
+uniform vec2 pixel_width;  // width of a pixel at the eye, and its increase per metre of distance
 #endif
 
 #if COVER != 0
 layout(binding = kGroundGrainUnit) uniform sampler2D fields;  // physics::FieldPattern
 
-uniform vec2 pattern_origin_m;  // of the eye
+uniform vec2 pattern_origin_m;  // place of the eye in the pattern
 uniform float ground_contrast;
 #endif
 
@@ -25,8 +25,8 @@ layout(binding = kGroundSkyUnit) uniform sampler2D ground_sky_table;
 
 uniform vec2 land_scale;  // texture coordinates per metre
 uniform vec2 land_offset;
-uniform vec3 land_mean;   // reflectance of all land
-uniform float land_fades_cells;  // beyond the domain's edge, by e
+uniform vec3 land_mean;  // mean reflectance of all land
+uniform float land_fades_cells;  // distance beyond the domain's edge at which land fades by a factor e
 uniform float coast_cells;       // width of a coast
 #endif
 
@@ -44,7 +44,7 @@ uniform vec2 ring_middle_m;
 
 struct Cover {
   vec3 reflectance;  // radiance per irradiance
-  float water;       // share
+  float water;  // share of water
 };
 
 #if COVER != 0 || BORDERS || RINGS
@@ -71,7 +71,7 @@ Cover cover_of(vec2 place_m, vec2 footprint_m) {
   return Cover(ground_reflectance * relative * grain_at(place_m, footprint_m), 0.0);
 }
 #elif COVER == 2
-// Beyond the domain the coast goes on as at its edge, and land takes its mean colour (volume/land_surface.h).
+// Beyond the domain, the coast continues from its edge, and land fades to its mean colour (volume/land_surface.h).
 Cover cover_of(vec2 place_m, vec2 footprint_m, vec2 from_eye_m) {
   vec2 place = from_eye_m * land_scale + land_offset;
   vec2 cells = vec2(textureSize(land, 0));
@@ -79,13 +79,13 @@ Cover cover_of(vec2 place_m, vec2 footprint_m, vec2 from_eye_m) {
   vec2 footprint = abs(land_scale) * footprint_m * cells;
   vec4 texel = textureLod(land, place, mip_level(footprint));
   texel.rgb = mix(texel.rgb, land_mean, 1.0 - exp(-max(outside.x, outside.y) / land_fades_cells));
-  // The coast is where half is water.
+  // The coast is where half of the texel is water.
   float softness = clamp(max(footprint.x, footprint.y), coast_cells, 1.0);
   float water = clamp((texel.a - 0.5) / softness + 0.5, 0.0, 1.0);
   return Cover(ground_reflectance * texel.rgb * grain_at(place_m, footprint_m), water);
 }
 
-// The clear sky as the ground sees it.
+// Returns the clear sky as seen from the ground.
 vec3 sky_of_ground(vec3 direction, vec3 towards_sun) {
   vec2 size = vec2(2 * kSkyAzimuths, kSkyElevations);
   vec2 cell = sky_cell(direction, towards_sun, 0.0) + 0.5;
@@ -96,14 +96,14 @@ vec3 sky_of_ground(vec3 direction, vec3 towards_sun) {
 #endif
 
 #if BORDERS || RINGS
-// Something painted on the ground, over a share of it.
+// Paints a share of the ground with a reflectance.
 void paint(inout Cover cover, vec3 reflectance, float share) {
   cover.reflectance = mix(cover.reflectance, reflectance / 3.14159265, share);
   cover.water *= 1.0 - share;
 }
 #endif
 
-// Of the ground at a point of the view ray.
+// Returns the cover of the ground at a point of the view ray.
 Cover ground_cover(vec3 point_m, vec3 ray, float distance_m) {
 #if COVER != 0 || BORDERS || RINGS
   float across_m = pixel_width.x + pixel_width.y * distance_m;

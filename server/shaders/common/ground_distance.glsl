@@ -1,11 +1,12 @@
-// Distance of the ground along each pixel's ray, from ground/distance.frag. Variant: GROUND (it may hide something).
+// The distance of the ground along each pixel's ray, from ground/distance.frag. Variant: GROUND (ground may hide
+// something).
 #include "common/bindings.glsl"
 
 #if GROUND
 layout(binding = kGroundDistanceUnit) uniform sampler2D ground_distance;
 #endif
 
-// `end_m`, or where the ground hides what is farther along this pixel's ray.
+// Returns `end_m`, or the distance at which the ground hides everything beyond on this pixel's ray.
 float until_ground(float end_m) {
 #if GROUND
   return min(end_m, texelFetch(ground_distance, ivec2(gl_FragCoord.xy), 0).r);

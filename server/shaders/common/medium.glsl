@@ -1,8 +1,11 @@
-// The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1; channels that a
-// plane does not have must be weighted with zero. GROUPS is the number of groups, DETAILS that of the noises that change
-// shares of them (physics/detail.glsl): the first displaces the medium, all multiply it. Without any there is no code for them.
-// Uniforms that a loop needs are read before it: inside, where some invocations may have ended, Mesa's software renderer
-// reads a uniform once for every invocation (gallivm 22.3).
+// The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1. Channels that a
+// plane does not have must have the weight zero.
+//
+// GROUPS is the number of groups. DETAILS is the number of noises that change shares of them (physics/detail.glsl). The
+// first noise displaces the medium, and all multiply it. Without noises there is no code for them.
+//
+// Uniforms needed in a loop are read before the loop. Inside a loop some invocations may have ended, and Mesa's
+// software renderer then reads a uniform once for every invocation (gallivm 22.3).
 #include "common/bindings.glsl"
 #include "common/medium_box.glsl"
 #include "physics/detail.glsl"
@@ -17,25 +20,25 @@ layout(binding = kMediumPlaneUnit) uniform sampler3D medium_plane_0;
 layout(binding = kMediumPlaneUnit + 1) uniform sampler3D medium_plane_1;
 #endif
 
-uniform vec4 extinction_weights[PLANES];  // texel to extinction, 1/m; zero for channels that no group has
+uniform vec4 extinction_weights[PLANES];  // from texel to extinction in 1/m; zero for unused channels
 
 #if DETAILS > 0
 layout(binding = kDetailNoiseUnit) uniform sampler3D detail_noise[DETAILS];
-layout(binding = kDetailControlUnit) uniform sampler3D detail_control;  // cell by cell as the medium
-uniform vec3 detail_tile_size[DETAILS];    // of a tile in the medium's texture coordinates
-uniform vec3 detail_tile_corner[DETAILS];  // and where one begins: it drifts with the wind
-uniform mat3 detail_fibres;                // tiles of fibres from those of billows
-uniform vec3 detail_warp;                  // the full displacement, in the medium's texture coordinates
-uniform vec4 detail_shares[DETAILS * PLANES];  // of each channel that noise multiplies
-uniform float detail_left_out[DETAILS];        // share of the noise that is not in its texture
-uniform float detail_fade_at_start[DETAILS];   // and share of the rest that fades, at a distance of 0
-uniform float detail_fade_per_m[DETAILS];      // and what a metre adds
+layout(binding = kDetailControlUnit) uniform sampler3D detail_control;  // one texel a cell, like the medium
+uniform vec3 detail_tile_size[DETAILS];  // size of a tile in the medium's texture coordinates
+uniform vec3 detail_tile_corner[DETAILS];  // corner of a tile, which drifts with the wind
+uniform mat3 detail_fibres;  // from tiles of billows to tiles of fibres
+uniform vec3 detail_warp;  // full displacement in the medium's texture coordinates
+uniform vec4 detail_shares[DETAILS * PLANES];  // share of each channel that noise multiplies
+uniform float detail_left_out[DETAILS];  // share of the noise that is missing from its texture
+uniform float detail_fade_at_start[DETAILS];  // share of the rest that fades at a distance of 0
+uniform float detail_fade_per_m[DETAILS];  // increase of that share per metre
 
 vec3 tiles_scale[DETAILS];
 vec3 tiles_offset[DETAILS];
 #endif
 
-// Call first.
+// Must be called first.
 void begin_medium() {
 #if DETAILS > 0
   for (int i = 0; i < DETAILS; ++i) {
@@ -49,10 +52,10 @@ struct Medium {
   vec4 plane[PLANES];
 };
 
-// Texel values at `place` in texture coordinates, `distance_m` from the eye.
+// Returns the texel values at `place` in texture coordinates, `distance_m` from the eye.
 Medium medium_at_place(vec3 place, float distance_m) {
 #if DETAILS > 0
-  // An amplitude of 0 is a texel of 128 of 255.
+  // An amplitude of 0 is stored as 128 of 255.
   vec4 here = texture(detail_control, place);
   vec2 control = here.rg * vec2(1.0, 255.0 / 127.0) - vec2(0.0, 128.0 / 127.0);
   float column_factor = detail_column_factor(here.b);
@@ -89,7 +92,7 @@ Medium mixed(Medium a, Medium b, float at) {
   return a;
 }
 
-// The sum over groups of weight times value.
+// Returns the sum over groups of weight times value.
 float weigh(Medium medium, vec4 weights[PLANES]) {
   float sum = dot(medium.plane[0], weights[0]);
 #if PLANES > 1
@@ -98,7 +101,7 @@ float weigh(Medium medium, vec4 weights[PLANES]) {
   return sum;
 }
 
-// `weights` times `factor`, for a loop to use in their place.
+// Returns `weights` times `factor`, to be used instead of `weights` in a loop.
 vec4[PLANES] scaled(vec4 weights[PLANES], float factor) {
   for (int plane = 0; plane < PLANES; ++plane) weights[plane] *= factor;
   return weights;

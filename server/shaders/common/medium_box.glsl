@@ -1,5 +1,5 @@
-// The box of a medium, and places in the textures of its cells.
+// The box of a medium, and the transformation to texture coordinates of its cells.
 uniform vec3 texture_from_local_scale;
 uniform vec3 texture_from_local_offset;
-uniform vec3 medium_low_m;   // the box, in local metres
+uniform vec3 medium_low_m;  // the box in local metres
 uniform vec3 medium_high_m;

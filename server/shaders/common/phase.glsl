@@ -1,25 +1,26 @@
-// Phase functions of a medium's groups, looked up by scattering angle. Variants: COLORED (per-group colours), CONSISTENT
-// (transport). GROUPS is the number of groups.
+// Phase functions of a medium's groups, looked up by scattering angle. Variants: COLORED (groups have colours),
+// CONSISTENT (transport). GROUPS is the number of groups.
 #include "common/bindings.glsl"
 #include "physics/phase_curve.glsl"
 
-layout(binding = kPhaseCurvesUnit) uniform sampler2D phase_curves;  // a row a group over phase_curve_place: red, green, blue
+// One row a group over phase_curve_place: red, green, blue.
+layout(binding = kPhaseCurvesUnit) uniform sampler2D phase_curves;
 
-uniform float phase_cut;             // haversine within which phase functions are held
+uniform float phase_cut;  // haversine of the angle within which phase functions are cut
 uniform vec2 phase_display[GROUPS];  // offset and slope of the paper's display normalisation
 uniform vec3 group_color[GROUPS];
 
 const float kFourPi = 12.5663706;
-const float kPaperWhite = 0.5;  // radiance of the paper's display value 1
+const float kPaperWhite = 0.5;  // radiance at the paper's display value 1
 
-// Of the angle between two unit vectors.
+// Returns the haversine of the angle between two unit vectors.
 float haversine_between(vec3 a, vec3 b) {
   vec3 apart = a - b;
   return 0.25 * dot(apart, apart);
 }
 
-// The phase function of a group for red, green and blue, its mean over the sphere 1. Two fetches and a mix:
-// filtering units round weights to 8 bits, which shows in steep peaks.
+// Returns the phase function of a group for red, green and blue, with a mean of 1 over the sphere. It uses two fetches
+// and a mix, because filtering units round weights to 8 bits, which is visible in steep peaks.
 vec3 group_phase(int group, float haversine) {
   int last = textureSize(phase_curves, 0).x - 1;
   float place = phase_curve_place(haversine) * float(last);
@@ -29,7 +30,7 @@ vec3 group_phase(int group, float haversine) {
   return mix(low, high, place - float(texel));
 }
 
-// Scattered radiance per unit of irradiance and optical depth, of one group.
+// Returns the scattered radiance of one group per unit of irradiance and optical depth.
 vec3 phase_term(int group, float haversine) {
   vec3 value = group_phase(group, max(haversine, phase_cut));
 #if CONSISTENT

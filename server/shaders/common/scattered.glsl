@@ -1,19 +1,21 @@
-// Light scattered towards the eye along a ray, summed by group: phase functions, albedo and colour depend on the ray or
-// the group alone, so they are multiplied in after the last sample. Needs common/medium.glsl and common/phase.glsl.
-// Variants: GROUPS, COLORED (per-group colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all),
-// GLOWS (the radiance includes what add_isotropic adds).
-uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
-uniform float albedo;                     // of every group
+// Light scattered towards the eye along a ray, summed by group. Phase functions, albedo and colour depend only on the
+// ray or the group, so they are multiplied in after the last sample. This file needs common/medium.glsl and
+// common/phase.glsl.
+//
+// Variants: GROUPS, COLORED (groups have colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all),
+// GLOWS (the radiance includes the light of add_isotropic).
+uniform vec4 scattering_weights[PLANES];  // from texel to scattering in 1/m
+uniform float albedo;  // albedo of every group
 uniform vec3 ambient;                     // mean radiance from sky and ground
 
 struct Scattered {
-  vec4 direct[PLANES];  // texel values, by the share of the sunlight that arrives and of its light that is seen
+  vec4 direct[PLANES];  // texel values times the arriving share of sunlight and the visible share of their light
 #if EVEN_ALBEDO
-  float ambient;        // share of the light from all around that is seen; summed, as differences lose thin slices
-  float multiple;       // mean intensity of light scattered many times, by the share of it that is seen
+  float ambient;  // visible share of the ambient light; summed, because differences lose thin slices
+  float multiple;  // mean intensity of multiply scattered light times its visible share
 #else
-  vec4 ambient[PLANES];   // texel values over extinction, by the share of the light from all around that is seen
-  vec4 multiple[PLANES];  // the same of light scattered many times
+  vec4 ambient[PLANES];  // texel values over extinction, times the visible share of the ambient light
+  vec4 multiple[PLANES];  // as ambient, for multiply scattered light
 #endif
 };
 
@@ -50,7 +52,7 @@ void add_direct(inout Scattered scattered, Medium medium, float factor) {
   for (int plane = 0; plane < PLANES; ++plane) scattered.direct[plane] += factor * medium.plane[plane];
 }
 
-// Of a sample of which `seen` of what it sends shows: `mean_intensity` is that of light scattered many times,
+// Adds a sample whose light is visible by the share `seen`. `mean_intensity` is that of multiply scattered light.
 // `extinctions` are the weights of a texel's extinction.
 void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PLANES], float seen, float mean_intensity) {
 #if EVEN_ALBEDO
@@ -65,8 +67,8 @@ void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PL
 #endif
 }
 
-// The radiance of a ray whose samples' extinctions were by `step_m`, where the sun's irradiance is `sunlight`; `haversine`
-// is that of the scattering angle of sunlight.
+// Returns the radiance of a ray whose extinctions were per `step_m`. `sunlight` is the sun's irradiance. `haversine` is
+// that of the scattering angle of sunlight.
 vec3 radiance_of(Scattered scattered, vec3 sunlight, float step_m, float haversine) {
   vec3 radiance = vec3(0.0);
   for (int group = 0; group < GROUPS; ++group) {

@@ -1,12 +1,12 @@
-// The view ray of a place in the picture; perspective and parallel rays alike (scene/view.h).
-uniform vec3 ray_origin_m;        // of the middle's ray
-uniform vec3 ray_origin_right_m;  // what x = 1 adds to the origin
+// The view ray of a place in the picture, for perspective and for parallel rays (scene/view.h).
+uniform vec3 ray_origin_m;  // of the ray in the picture's middle
+uniform vec3 ray_origin_right_m;  // origin's change from x = 0 to x = 1
 uniform vec3 ray_origin_up_m;
 uniform vec3 ray_forward;
-uniform vec3 ray_right;           // what x = 1 adds to the direction
+uniform vec3 ray_right;  // direction's change from x = 0 to x = 1
 uniform vec3 ray_up;
 
-// `place` runs from (-1, -1), left and bottom, to (1, 1).
+// `place` ranges from (-1, -1), left and bottom, to (1, 1).
 vec3 ray_origin(vec2 place) { return ray_origin_m + place.x * ray_origin_right_m + place.y * ray_origin_up_m; }
 
 vec3 ray_direction(vec2 place) { return normalize(ray_forward + place.x * ray_right + place.y * ray_up); }

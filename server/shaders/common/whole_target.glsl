@@ -1,5 +1,5 @@
-// The end of a fragment shader of gl::WholeTarget that runs as a compute shader (gl/computed_target.h): an invocation draws
-// one pixel.
+// The end of a fragment shader of gl::WholeTarget that runs as a compute shader (gl/computed_target.h). Each invocation
+// draws one pixel.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kTargetGroupSide, local_size_y = kTargetGroupSide) in;
@@ -8,7 +8,7 @@ layout(binding = kTargetLimitUnit) uniform sampler2D target_limit;  // depth of 
 uniform ivec2 target_size;
 uniform ivec2 first_pixel;
 uniform ivec2 end_pixel;
-uniform int limited_to;  // pixels whose depth is 1: farther than 0.5, -1: nearer, 0: all
+uniform int limited_to;  // pixels to draw; 1: depth above 0.5, -1: below 0.5, 0: all
 
 bool is_drawn(ivec2 pixel) {
   if (any(greaterThanEqual(pixel, end_pixel))) return false;

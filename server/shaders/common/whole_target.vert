@@ -1,4 +1,4 @@
-// One triangle that covers the whole target; `position` runs from (-1, -1) to (1, 1).
+// Draws one triangle that covers the whole target. `position` ranges from (-1, -1) to (1, 1).
 out vec2 position;
 
 void main() {

@@ -1,5 +1,5 @@
-// Texture units, image units and bindings of storage buffers that cumulus uses beside those of common/bindings.glsl.
-// Compiles as GLSL and as C++ (renderers/cumulus/bindings.h).
+// Texture units, image units and bindings of storage buffers that cumulus uses in addition to common/bindings.glsl. The
+// file compiles as GLSL and as C++ (renderers/cumulus/bindings.h).
 const int kCoreDepthUnit = 4;
 const int kSunDepthUnit = 5;
 const int kResolvedDepthUnit = 6;

@@ -1,10 +1,11 @@
-// How far the nearest core is: what lies deeper than the corona. Variants of cumulus/meeting.glsl.
+// Writes the distance of the nearest core, which is the part deeper than the corona. Variants are those of
+// cumulus/meeting.glsl.
 #include "cumulus/meeting.glsl"
 
 layout(depth_greater) out float gl_FragDepth;
 
 uniform float corona_m;
-uniform float per_far;  // 1 over the distance that is depth 1
+uniform float per_far;  // 1 over the distance of depth 1
 
 void main() {
   Meeting meeting;

@@ -1,14 +1,14 @@
-// The surface's shadow from the sun's depths, as common/storm_shadow.glsl takes it.
+// Computes the surface's shadow from the sun's depths, in the format of common/storm_shadow.glsl.
 #include "cumulus/bindings.glsl"
 
 layout(binding = kSunDepthUnit) uniform sampler2D depth;
 
-uniform vec2 place_of_depth;  // slope and offset
+uniform vec2 place_of_depth;  // slope and offset from depth to place
 
 in vec2 position;
 out vec4 shadow;
 
-const int kAlong = 4;  // depths a texel along each side
+const int kAlong = 4;  // depths per texel along each side
 
 void main() {
   vec2 size = vec2(textureSize(depth, 0));

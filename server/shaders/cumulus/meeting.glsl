@@ -1,5 +1,5 @@
-// Where the fragment's ray meets its bubble. Variants: BASE (the surface is cut off below base_m), GROUND (what it hides is
-// left out).
+// The intersection of the fragment's ray with its bubble. Variants: BASE (the surface is cut off below base_m), GROUND
+// (parts hidden by the ground are omitted).
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
 #include "cumulus/bubble.glsl"
@@ -18,18 +18,19 @@ struct Meeting {
   vec3 ray;
   float entry_m;  // along the ray; 0 if it starts inside
   float exit_m;
-  float depth_m;  // below the surface where the ray is deepest
+  float depth_m;  // depth below the surface at the ray's deepest point
   vec3 normal;    // at the entry
 };
 
-// False where the ray misses the bubble.
+// Returns false if the ray misses the bubble.
 bool meet(out Meeting meeting) {
   vec2 place = gl_FragCoord.xy * per_pixel - 1.0;
   meeting.ray = ray_direction(place);
   meeting.origin_m = ray_origin(place);
   vec3 o = to_unit(unit_x.xyz, unit_y, unit_z, meeting.origin_m - centre_m);
   vec3 d = to_unit(unit_x.xyz, unit_y, unit_z, meeting.ray);
-  // From the point nearest to the middle: the quadratic's own discriminant cancels for small bubbles far away.
+  // The intersection is computed from the point nearest to the middle. The discriminant of the original quadratic
+  // suffers from cancellation for small bubbles far away.
   float square = dot(d, d);
   float nearest_m = -dot(o, d) / square;
   vec3 nearest = o + nearest_m * d;
@@ -47,7 +48,7 @@ bool meet(out Meeting meeting) {
   if (entry_m > until_ground(entry_m)) return false;
   meeting.entry_m = entry_m;
   meeting.exit_m = exit_m;
-  // In the unit ball surfaces of even depth are balls; a metre there is as long as the normal's image says.
+  // In the unit ball, surfaces of constant depth are balls. The normal's image gives the length of a metre there.
   vec3 deepest = o + clamp(nearest_m, entry_m, exit_m) * d;
   float away = max(length(deepest), 1e-6);
   vec3 gradient = from_unit_normal(unit_x.xyz, unit_y, unit_z, deepest) / away;

@@ -1,30 +1,30 @@
-// Neyret's shading of a cumulus (2000, section 4): Lambert's law on a rough surface, light traps between bubbles, the light
-// map of sky and ground, and a corona that scatters forwards. Core and corona are mixed by the density rho at the ray's
-// deepest point, 0 to 1 through the corona; where two bubbles are closer than its thickness their cores are mixed too.
-// Writes the cores that lie together, weighted, and what lies in front of them as a layer.
-// Variants: PLAIN (Lambert's law alone), and those of cumulus/meeting.glsl.
+// Neyret's shading of a cumulus (2000, section 4): Lambert's law on a rough surface, light traps between bubbles, the
+// light map of sky and ground, and a corona that scatters forwards. Core and corona are mixed by the density rho at the
+// ray's deepest point, which is 0 to 1 through the corona. If two bubbles are closer than its thickness, their cores
+// are mixed too. The output is the weighted cores that lie together, and a layer of everything in front of them.
+// Variants: PLAIN (only Lambert's law), and those of cumulus/meeting.glsl.
 #include "common/sunlight.glsl"
 #include "cumulus/bindings.glsl"
 #include "cumulus/meeting.glsl"
 
-layout(binding = kCoreDepthUnit) uniform sampler2D core_depth;    // of depth.frag
-layout(binding = kSunDepthUnit) uniform sampler2D shadow_depth;  // the same from the sun
+layout(binding = kCoreDepthUnit) uniform sampler2D core_depth;  // from depth.frag
+layout(binding = kSunDepthUnit) uniform sampler2D shadow_depth;  // from depth.frag, as seen from the sun
 layout(binding = kRoughnessNoiseUnit) uniform sampler3D roughness_noise;
 
-uniform float corona_m;       // dR
+uniform float corona_m;  // dR of the paper
 uniform float per_far;
 uniform vec3 towards_sun;
-uniform vec3 light_map[9];    // radiance that a white surface sends of sky's and ground's light, by its normal's harmonics
-uniform vec4 component;       // shares shown of direct light, inter-reflection, ambient light and corona
-uniform float trap_share;     // of the sky that the deepest valley of one scale hides
-uniform float transmission;   // share of sunlight that comes through the cloud
+uniform vec3 light_map[9];  // radiance of a white surface in the light of sky and ground, by its normal's harmonics
+uniform vec4 component;  // weights of direct light, inter-reflection, ambient light and corona
+uniform float trap_share;  // share of the sky that the deepest valley of one scale hides
+uniform float transmission;  // share of sunlight that passes through the cloud
 uniform float roughness;
 uniform float noise_wave_m;   // wavelength of the noise's first octave
-uniform float noise_per_m;    // tiles
+uniform float noise_per_m;  // tiles of noise per metre
 uniform vec3 noise_offset;
-uniform float pixel_share;    // size of a pixel over its distance, or in metres of parallel rays
+uniform float pixel_share;  // size of a pixel over its distance; in metres for parallel rays
 uniform bool parallel;
-uniform vec4 shadow_x;        // texture coordinates and depth from a point
+uniform vec4 shadow_x;  // from a point to texture coordinates and depth
 uniform vec4 shadow_y;
 uniform vec4 shadow_z;
 uniform float shadow_texel_m;
@@ -35,17 +35,19 @@ layout(location = 1) out vec4 layer;  // radiance, transmittance
 const float kPi = 3.14159265;
 const float kTrapSharpness = 4.0;       // the paper's k
 const int kTrapScales = 6;
-const float kCoronaVariance = 0.16;     // of the scattering angle at the deepest corona: sigma_max 0.4 rad
-const float kNarrowest = 400.0;         // power of the cosine of droplets' own forward lobe
+const float kCoronaVariance = 0.16;  // variance of the scattering angle at the deepest corona: sigma_max 0.4 rad
+const float kNarrowest = 400.0;  // power of the cosine in the forward lobe of a single droplet
 const int kReliefScales = 3;
-// Wavelengths of the roughness over the noise's, and its heights over them. Light scattered inside the cloud smooths
-// out whatever is smaller than the distance it travels, so the finest scale is the lowest.
+// Wavelengths of the roughness relative to the noise's, and its heights relative to the wavelengths. Light scattered
+// inside the cloud smooths out structure smaller than the distance it travels. The finest scale therefore has the
+// smallest height.
 const vec3 kReliefWave = vec3(4.0, 1.0, 0.25);
 const vec3 kReliefHeight = vec3(0.35, 0.2, 0.06);
 
 float noise_root(vec3 point_m) { return texture(roughness_noise, point_m * noise_per_m + noise_offset).r; }
 
-// The share of sunlight that other bubbles let through to a texel of the shadow and the next ones.
+// Returns the share of sunlight that other bubbles transmit, interpolated between a texel of the shadow and its
+// neighbours.
 float lit_texels(vec2 texel, float depth) {
   ivec2 size = textureSize(shadow_depth, 0);
   ivec2 low = ivec2(floor(texel));
@@ -60,22 +62,23 @@ float lit_texels(vec2 texel, float depth) {
   return mix(rows.x, rows.y, share.y);
 }
 
-// Texel of the shadow (xy) and depth from the sun of a point.
+// Returns the texel of the shadow (xy) and the depth from the sun of a point.
 vec3 shadow_place(vec3 point_m) {
   vec4 p = vec4(point_m, 1.0);
   return vec3(vec2(dot(shadow_x, p), dot(shadow_y, p)) * vec2(textureSize(shadow_depth, 0)) - 0.5, dot(shadow_z, p));
 }
 
-// The share of sunlight that reaches a point.
+// Returns the share of sunlight that reaches a point.
 float lit(vec3 point_m) {
   vec3 place = shadow_place(point_m);
   return lit_texels(place.xy, place.z);
 }
 
-// The share of sunlight that reaches a surface: the mean over places on it that are two coronas apart, as light spreads
-// sideways inside the cloud and blurs shadows to that width. `cosine` is that of the sun's angle to the normal.
+// Returns the share of sunlight that reaches a surface. It is the mean over places on the surface two coronas apart,
+// because light spreads sideways inside the cloud and blurs shadows to that width. `cosine` is that of the sun's angle
+// to the normal.
 float lit_softly(vec3 point_m, vec3 normal, float cosine) {
-  const float kMinCosine = 0.05;  // a steeper surface's places lie too far apart in depth
+  const float kMinCosine = 0.05;  // on steeper surfaces the places would be too far apart in depth
   vec3 place = shadow_place(point_m);
   vec2 tilt = vec2(dot(normalize(shadow_x.xyz), normal), dot(normalize(shadow_y.xyz), normal)) / max(cosine, kMinCosine);
   float per_m = length(shadow_z.xyz);
@@ -94,10 +97,10 @@ vec3 from_surroundings(vec3 n) {
   return max(sum, vec3(0.0));
 }
 
-// The share (0 to 1) of noise of a wavelength that pixels of a size resolve.
+// Returns the share (0 to 1) of noise of a wavelength that pixels of a size resolve.
 float resolved(float wave_m, float pixel_m) { return clamp(1.5 - 3.0 * pixel_m / wave_m, 0.0, 1.0); }
 
-// The normal of a surface that is rough at all scales. Roughness finer than pixels is left out.
+// Returns the normal of a surface that is rough at all scales. Roughness finer than pixels is omitted.
 vec3 roughened(vec3 normal, vec3 point_m, float pixel_m) {
   if (roughness <= 0.0) return normal;
   vec3 right = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
@@ -117,12 +120,13 @@ vec3 roughened(vec3 normal, vec3 point_m, float pixel_m) {
   return normalize(rough);
 }
 
-// Light that comes back between bubbles (section 4.3). At each scale the valley around a bubble hides a share of the sky
-// that the paper's arc tangent gives by the height on the bubble; the hidden share 2 pi - Omega sends
-// (2 pi - Omega) / Omega of the mean light that arrives at the valley, which is Lambert's law on the underlying surface. Of
-// a coarser scale the finer ones let their share of sky pass, so that any number of scales sends at most
-// 1 / (1 - trap_share) of it. Surroundings as bright everywhere look the same in a valley: their light is neither lost nor
-// gained.
+// Returns the light reflected between bubbles (section 4.3). At each scale the valley around a bubble hides a share of
+// the sky. The paper's arc tangent gives that share from the height on the bubble. The hidden share 2 pi - Omega sends
+// (2 pi - Omega) / Omega of the mean light that arrives at the valley, by Lambert's law on the underlying surface.
+//
+// At a coarser scale, the finer scales transmit their share of the sky. Any number of scales therefore sends at most 1
+// / (1 - trap_share) of the light. Uniformly bright surroundings look the same in a valley, because their light is
+// neither lost nor gained.
 vec3 trapped(vec3 point_m, vec3 sunlight, out float sky_share) {
   vec3 sum = vec3(0.0);
   sky_share = 1.0;
@@ -130,7 +134,7 @@ vec3 trapped(vec3 point_m, vec3 sunlight, out float sky_share) {
   for (int scale = 0; scale < kTrapScales && at >= 0; ++scale) {
     Bubble bubble = bubbles[at];
     vec3 outward = bubble.outward.xyz;
-    if (outward == vec3(0.0)) break;  // it stands alone: no valley
+    if (outward == vec3(0.0)) break;  // a single bubble has no valley
     float height = dot(outward, normalize(point_m - bubble.centre_m.xyz));
     float valley = trap_share * min(atan(kTrapSharpness * (1.0 - height)) / atan(kTrapSharpness), 1.0);
     int parent = int(bubble.outward.w);
@@ -152,7 +156,7 @@ vec3 trapped(vec3 point_m, vec3 sunlight, out float sky_share) {
   return sum;
 }
 
-// Radiance of the core.
+// Returns the radiance of the core.
 vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #if PLAIN
   return sunlight_at(point_m.z) * (max(dot(meeting.normal, towards_sun), 0.0) / kPi);
@@ -171,8 +175,8 @@ vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #endif
 }
 
-// Radiance of the corona with the sun behind it (section 4.2, appendix A): the variance of the
-// scattering angle grows with the droplets on the path, and the lobe is a power of the cosine, scaled to conserve energy.
+// Returns the radiance of the corona with the sun behind it (section 4.2, appendix A). The variance of the scattering
+// angle grows with the droplets on the path. The lobe is a power of the cosine, scaled to conserve energy.
 vec3 corona(Meeting meeting, float rho) {
   float mu = dot(meeting.ray, towards_sun);
   if (mu <= 0.0) return vec3(0.0);
@@ -198,7 +202,7 @@ void main() {
   vec3 point_m = meeting.origin_m + meeting.entry_m * meeting.ray;
   float pixel_m = parallel ? pixel_share : pixel_share * meeting.entry_m;
   float rho = min(meeting.depth_m / corona_m, 1.0);
-  // The corona is thinner where the noise is low; densities of 0 and 1 stay.
+  // The corona is thinner where the noise is low. Densities of 0 and 1 do not change.
   if (rho < 1.0 && roughness > 0.0) {
     float fine = mix(0.7, noise_root(4.0 * point_m), resolved(0.25 * noise_wave_m, pixel_m));
     rho = pow(rho, exp(3.0 * roughness * (1.4 - noise_root(point_m) - fine)));

@@ -1,4 +1,5 @@
-// Distance of the ground along each pixel's ray; very large where the ray meets none. Variants: RELIEF, CHOSEN.
+// Writes the distance of the ground along each pixel's ray, or a very large value if the ray does not meet it.
+// Variants: RELIEF, CHOSEN.
 #include "common/ray_place.glsl"
 #include "common/view.glsl"
 #include "common/ground.glsl"

@@ -1,11 +1,13 @@
-// The medium's shadow, one sun ray a texel, as common/storm_shadow.glsl takes it. Variants: GROUPS, DETAILS.
+// Computes the medium's shadow with one sun ray a texel, in the format of common/storm_shadow.glsl. Variants: GROUPS,
+// DETAILS.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 
 uniform vec3 towards_sun;
-uniform vec3 light_right_m;  // metres across the picture's half width and height, from the middle of the box
+// Half the picture's width, in metres from the middle of the box; light_up_m: half its height.
+uniform vec3 light_right_m;
 uniform vec3 light_up_m;
-uniform float half_depth_m;  // of the box, along the sun's rays
+uniform float half_depth_m;  // of the box along the sun's rays
 uniform float step_m;
 uniform vec4 light_weights[PLANES];
 
@@ -13,7 +15,7 @@ in vec2 position;
 out vec4 shadow;
 
 const int kMaxSamples = 4096;
-const float kOpaqueDepth = 12.0;  // optical depth at which a ray ends
+const float kOpaqueDepth = 12.0;  // a ray ends at this optical depth
 
 void main() {
   begin_medium();
@@ -25,7 +27,7 @@ void main() {
   float per_step = 1.0 / step_m;
   float distance_m = path.x;
   float depth = 0.0;
-  float before = 1.0;  // transmittance
+  float before = 1.0;  // transmittance so far
   vec2 moments = vec2(0.0);
   for (int i = 0; i < kMaxSamples && distance_m < path.y && depth < kOpaqueDepth; ++i) {
     vec3 place = brick_place(ray, distance_m);

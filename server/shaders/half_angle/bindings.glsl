@@ -1,5 +1,5 @@
-// Texture units, image units and bindings of storage buffers that half-angle slicing uses beside those of common/bindings.glsl.
-// Compiles as GLSL and as C++ (renderers/half_angle/bindings.h).
+// Texture units, image units and bindings of storage buffers that half-angle slicing uses in addition to
+// common/bindings.glsl. The file compiles as GLSL and as C++ (renderers/half_angle/bindings.h).
 const int kSliceLightUnit = 4;
 const int kSliceThicknessUnit = 5;
 const int kEyeBeforeUnit = 6;

@@ -1,10 +1,11 @@
-// The eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and the transmittance for
-// light from behind (a). Goes through the points at which the ray meets the slices, in the order in which sunlight does, and
-// leaps over those in empty bricks. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18; the light comes from
-// carry.comp.
-// Variants: GROUND (what lies behind it is left out), GROUPS, COLORED (per-group colours), EVEN_ALBEDO (one albedo and
-// colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER: 1 where all rays meet the slices in their order, 0 where
-// all meet them against it, 2 where a wide view has both.
+// Draws the eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and the
+// transmittance for light from behind (a). It visits the points at which the ray meets the slices in the order in which
+// sunlight does, and skips those in empty bricks. The method is Riley et al. 2003 (Vis), eq. 5 with the phase of eq.
+// 18. The light comes from carry.comp.
+//
+// Variants: GROUND (everything behind it is omitted), GROUPS, COLORED (groups have colours), EVEN_ALBEDO (one albedo
+// and colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER. ORDER is 1 if all rays meet the slices in their
+// order, 0 if all meet them against it, and 2 if a wide view has both.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
@@ -16,31 +17,32 @@
 #include "half_angle/bindings.glsl"
 #include "physics/light_transport.glsl"
 
-// Light that enters each slice of the slab, a layer a slice. r: share of sunlight, g: optical depth towards the sun.
+// Light that enters each slice of the slab, with one layer a slice. r is the share of sunlight, g the optical depth
+// towards the sun.
 layout(binding = kSliceLightUnit) uniform sampler2DArray light;
 layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
 
 layout(binding = kEyeBeforeUnit) uniform sampler2D eye;  // before the slab
 layout(binding = kDistanceBeforeUnit) uniform sampler2D distance_before;
 uniform vec3 towards_sun;
-uniform vec3 slice_normal;    // to the sun's side
+uniform vec3 slice_normal;  // points to the sun's side
 uniform float first_plane_m;  // distance of the first slice's plane from the middle of the box, along the normal
 uniform float spacing_m;
 uniform float light_path_m;   // length of a sun ray between two slices
 uniform float slab_begin;     // first slice of the slab
-uniform float slab_end;       // one after its last slice
-uniform float begin_layer;    // of the light
-uniform vec4 eye_weights[PLANES];        // texel to the extinction that the eye sees, 1/m
-uniform vec4 light_weights[PLANES];      // texel to the extinction that the light buffer sees, 1/m
-uniform vec4 transport_weights[PLANES];  // texel to similarity-scaled extinction, 1/m
+uniform float slab_end;  // one after the slab's last slice
+uniform float begin_layer;  // first layer of the light
+uniform vec4 eye_weights[PLANES];  // from texel to the extinction along the eye's ray, 1/m
+uniform vec4 light_weights[PLANES];  // from texel to the extinction in the light buffer, 1/m
+uniform vec4 transport_weights[PLANES];  // from texel to similarity-scaled extinction, 1/m
 uniform vec3 light_u;                // light buffer axes, scaled to its texture coordinates
 uniform vec3 light_v;
 
 in vec2 position;
 layout(location = 0) out vec4 radiance_and_transmittance;
-layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
+layout(location = 1) out float opacity_distance_m;  // opacity times the mean distance of what is visible
 
-const float kEndTransmittance = 2e-3;  // below which a ray ends
+const float kEndTransmittance = 2e-3;  // a ray ends below this transmittance
 
 void main() {
   begin_medium();
@@ -59,7 +61,7 @@ void main() {
   const bool front_to_back = ORDER == 1;
 #endif
   if (!front_to_back) {
-    // Sunlight meets the slices from behind: from here on distances are counted towards the eye.
+    // Sunlight meets the slices from behind, so from here on distances are counted towards the eye.
     safe = -safe;
     path = -path.yx;
   }
@@ -76,7 +78,7 @@ void main() {
   float slice = max(slab_begin, ceil((path.x - first_m) * per_apart));
   float end = min(slab_end, floor((path.y - first_m) * per_apart) + 1.0);
 
-  // A ray along the slices would have no end.
+  // The limit is needed for rays parallel to the slices, whose path would be infinite.
   float path_m = spacing_m / max(falling, 0.05);
   vec4 eye_depths[PLANES] = scaled(eye_weights, path_m);
   vec4 light_depths[PLANES] = scaled(light_weights, light_path_m);
@@ -116,7 +118,7 @@ void main() {
     }
     shown_m += shows * (1.0 - slice_transmittance) * (towards * distance_m);
 #if CONSISTENT
-    // The buffer holds the light that enters the slice; inside, light fades as the view does.
+    // The buffer holds the light that enters the slice. Inside the slice, light and view are both attenuated.
     float light_depth = weigh(medium, light_depths);
     float lit_and_seen = front_to_back ? mean_transmittance(depth + light_depth)
                                        : mean_counter_transmittance(depth, light_depth);
@@ -125,7 +127,7 @@ void main() {
 #if TRANSLUCENT
     float total = texture(thickness, light_place).r;
     float slice_depth = weigh(medium, transport_depths);
-    // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) inside it.
+    // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) below its surface.
     float within = front_to_back ? mean_seen_place(depth) : 1.0 - mean_seen_place(depth);
     float tau = min(arrived.g + within * slice_depth + 2.0 / 3.0, total);
     mean_intensity = diffuse_mean_intensity(tau, total);
@@ -138,7 +140,7 @@ void main() {
     slice += 1.0;
     if (front_to_back && transmittance < kEndTransmittance) end = 0.0;
   }
-  // Sunlight is taken at one height, the mean of all that the ray shows of the slab.
+  // One height represents the sunlight: the mean height of everything in the slab that the ray shows.
   float opacity = max((front_to_back ? before.a : 1.0) - transmittance, 1e-30);
   vec3 sunlight = sunlight_at(origin_m.z + shown_m / opacity * direction.z);
   vec3 radiance = radiance_of(scattered, sunlight, path_m, haversine_between(direction, towards_sun));

@@ -1,4 +1,5 @@
-// The similarity-scaled optical depth along each whole sun ray, added up over slices across it. Variant: GROUPS.
+// Computes the similarity-scaled optical depth along each whole sun ray, summed over slices perpendicular to it.
+// Variant: GROUPS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"

@@ -1,12 +1,14 @@
-// The light that arrives at the centres of cells that a ray may meet: a work group for each block of them
-// (volume::CellBlocks). Next to the cell the medium is sampled towards the sun; from there on the sun-aligned volume of
-// carry.comp holds what the light has lost. Cells' centres are where the medium's linear interpolation has its kinks, so
-// that in a cloud's edge, where extinction rises linearly from such a centre, the square root of the light's optical depth
-// rises linearly too.
-// r: the square root of the light's optical depth; g: the mean intensity of light scattered many times, over the sun's
-// irradiance. Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE; NEAR: of the optical depth next to a cell by the
-// medium over that by the light's medium (light_medium.comp), which changes little while the sun moves, 1 keeps the ratio, 2
-// takes it in place of the medium.
+// Computes the light that arrives at the centres of cells that a ray may meet, with one work group for each block of
+// cells (volume::CellBlocks). Close to the cell, the medium is sampled towards the sun. Farther away, the sun-aligned
+// volume of carry.comp holds the light's optical depth.
+//
+// r is the square root of the light's optical depth. The interpolated medium has its kinks at cell centres. In a
+// cloud's edge, extinction rises linearly from such a centre, so the square root of the optical depth rises linearly
+// too. g is the mean intensity of multiply scattered light over the sun's irradiance.
+//
+// Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE, NEAR. NEAR concerns the ratio of two optical depths
+// close to a cell: by the medium over by the light's medium (light_medium.comp). The ratio changes little while the sun
+// moves. NEAR 1 stores the ratio, and NEAR 2 uses it instead of sampling the medium.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/box.glsl"
@@ -28,32 +30,35 @@ layout(binding = kNearRatioUnit) uniform sampler3D near_ratio;
 
 uniform mat4x3 light_from_local;
 uniform vec3 towards_sun;
-uniform float near_m;  // sampled next to the cell
+uniform float near_m;  // length of the path that is sampled next to the cell
 uniform vec4 light_weights[PLANES];
 
-// At Gauss and Legendre's two places. Against 64 samples no pixel of the mature storm changes by more than 1 of 255.
+// The samples are at the two Gauss-Legendre points. Compared with 64 samples, no pixel of the mature storm changes by
+// more than 1 of 255.
 const int kNearSamples = 2;
 const float kFirstNearSample = 0.21132487;
 const float kNearSamplesApart = 0.57735027;
 
-// The texel of a ratio of 1; ratios up to nearly 2 are kept, between optical depths with this added: next to nothing they mean nothing.
+// The texel of a ratio of 1, which allows ratios up to nearly 2. kLeastNearDepth is added to both optical depths,
+// because ratios of tiny depths are meaningless.
 const float kRatioOne = 128.0 / 255.0;
 const float kLeastNearDepth = 0.01;
 
-// Inputs of give_light that cells share, in the coordinates of the medium's texture and of the light's volume.
+// Inputs of give_light that all cells share, in the coordinates of the medium's texture and of the light's volume.
 struct Surroundings {
   int near_samples;
-  vec3 near_path;            // sampled towards the sun
+  vec3 near_path;  // path that is sampled towards the sun
   vec3 per_near_path;
-  vec3 out_place;            // where the medium's box ends towards the sun
-  vec4 near_depths[PLANES];  // texel to a sample's share of the optical depth of that path
-  float near_smoother;       // the same of the light's medium
+  vec3 out_place;  // end of the medium's box towards the sun
+  vec4 near_depths[PLANES];  // from texel to a sample's part of that path's optical depth
+  float near_smoother;  // the same factor for the light's medium
   float light_layers;
 };
 
-// `far_place` is where the light's volume takes over, `here_place` the cell's own place in it.
+// Computes the light of one cell. `far_place` is the end of the sampled path in the light's volume. `here_place` is the
+// cell's own place there.
 void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroundings around) {
-  // The part of that path inside the medium's box; a block reaches beyond it.
+  // Only the part of that path inside the medium's box counts. A block may extend beyond the box.
   vec3 inside = (around.out_place - place) * around.per_near_path;
   float share = clamp(min(min(inside.x, inside.y), inside.z), 0.0, 1.0);
   float depth = 0.0;    // by the medium
@@ -73,13 +78,13 @@ void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroun
   float ratio = texelFetch(near_ratio, cell, 0).r / kRatioOne;
   depth = max(ratio * (smoother + kLeastNearDepth) - kLeastNearDepth, 0.0);
 #endif
-  // Between the sun's side of the volume and the middle of its first layer light begins to fade.
+  // Light begins to fade between the sun's side of the volume and the middle of its first layer.
   float begun = clamp(2.0 * around.light_layers * far_place.z, 0.0, 1.0);
   float far = begun * texture(carried, far_place).r;
   float multiple = 0.0;
 #if DIFFUSE
   float total = texture(thickness, here_place.xy).r;
-  // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) inside it.
+  // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) below its surface.
   multiple = diffuse_mean_intensity(min(texture(carried, here_place).g + 2.0 / 3.0, total), total);
 #endif
   imageStore(arrived, cell, vec4(sqrt(depth + far * far), multiple, 0.0, 0.0));
@@ -89,7 +94,7 @@ void main() {
   begin_medium();
   Block block = block_of_group();
   if (!block.listed) return;
-  // A thin block takes little light near a cell; the paper's transport depends on the steps of carry.comp.
+  // A thin block has little optical depth near a cell. The paper's transport must use only the steps of carry.comp.
   bool looks_near = block.thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
   vec3 direction = safe_direction(towards_sun);
   vec3 box_low = medium_low_m * texture_from_local_scale + texture_from_local_offset;

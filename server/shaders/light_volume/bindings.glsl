@@ -1,5 +1,5 @@
-// Texture units, image units and bindings of storage buffers that the light volume uses beside those of common/bindings.glsl.
-// Compiles as GLSL and as C++ (renderers/light_volume/bindings.h).
+// Texture units, image units and bindings of storage buffers that the light volume uses in addition to
+// common/bindings.glsl. The file compiles as GLSL and as C++ (renderers/light_volume/bindings.h).
 const int kArrivedUnit = 4;
 const int kCarriedUnit = 5;
 const int kThicknessUnit = 6;

@@ -1,10 +1,11 @@
-// Carries sunlight once through the medium into a volume whose depth runs along the sun's rays: one invocation a ray.
-// r: the square root of the light's effective optical depth, -log of the share that arrives; g: the similarity-scaled
-// optical depth from the sun, which at the ray's end is its thickness. `shadow` is that of the whole medium
-// (common/storm_shadow.glsl). Layers that arrive.comp does not use are left as they are.
-// Variants: CONSISTENT, TRANSLUCENT, DIFFUSE. The light model is that of half_angle/carry.comp but for the
-// exchange with neighbouring rays, whose width (one cell's path at 3/8 theta_f) is below a texel of this volume at the
-// usual angles.
+// Propagates sunlight once through the medium into a volume whose depth is along the sun's rays, with one invocation a
+// ray. r is the square root of the light's effective optical depth, -log of the arriving share. g is the
+// similarity-scaled optical depth from the sun, which at the ray's end is its thickness. `shadow` is that of the whole
+// medium (common/storm_shadow.glsl). Layers that arrive.comp does not use stay unchanged.
+//
+// The light model is that of half_angle/carry.comp without the exchange between neighbouring rays. The width of that
+// exchange (one cell's path at 3/8 theta_f) is below a texel of this volume at the usual angles. Variants: CONSISTENT,
+// TRANSLUCENT, DIFFUSE.
 #include "common/bricks.glsl"
 #include "light_volume/light_medium.glsl"
 
@@ -16,23 +17,23 @@ layout(binding = kThicknessImage, r32f) uniform writeonly image2D thickness;
 #endif
 
 uniform ivec3 light_size;
-uniform int first_row;  // of the rays that are carried now
+uniform int first_row;  // first row of this dispatch
 uniform vec3 towards_sun;
-uniform vec3 light_right_m;  // metres across the volume's half width and height
+uniform vec3 light_right_m;  // half the volume's width in metres; light_up_m: half its height
 uniform vec3 light_up_m;
 uniform float light_reach_m;  // half its depth
-uniform float read_m;         // from cells that scatter, within which arrive.comp reads this volume
-uniform int read_bricks;      // the same in bricks
-uniform int half_layer_steps;  // samples in half a layer
+uniform float read_m;  // distance from scattering cells within which arrive.comp reads this volume
+uniform int read_bricks;  // read_m in bricks
+uniform int half_layer_steps;  // number of samples in half a layer
 uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
 
-// Optical depth that the light loses where the medium's is `depth`; `turned` is the share of scattered light that leaves
-// the beam.
+// Returns the light's optical depth for an optical depth `depth` of the medium. `turned` is the share of scattered
+// light that leaves the beam.
 float lost(float depth, float turned) {
 #if CONSISTENT || !TRANSLUCENT
   return depth;
 #else
-  // Riley et al. 2003 (Vis), eq. 14 to 17 as printed, in a light that does not vary across the rays.
+  // Riley et al. 2003 (Vis), eq. 14 to 17 as printed, for light that does not vary across the rays.
   return depth < 1e-3 ? depth * turned : -log(1.0 - turned * (1.0 - exp(-depth)));
 #endif
 }
@@ -71,7 +72,7 @@ void main() {
     bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
     uint content = brick_content(ray, place);
     if (!outside && !is_filled(content) && content > uint(read_bricks)) {
-      // The light is not read so far from anything that scatters.
+      // Nothing reads the light this far from scattering cells.
       int leap = int(empty_path(ray, place, content - uint(read_bricks)) * per_layer);
       if (leap > 0) {
         layer += leap;

@@ -1,4 +1,4 @@
-// Blocks of cells that a ray may meet (volume::CellBlocks), one a work group of kBlockGroupSize invocations.
+// Blocks of cells that a ray may meet (volume::CellBlocks), one for each work group of kBlockGroupSize invocations.
 #include "common/bindings.glsl"
 #include "light_volume/bindings.glsl"
 
@@ -7,17 +7,17 @@ layout(std430, binding = kBlocksBinding) readonly buffer Blocks { uint blocks[];
 
 uniform ivec3 cell_count;
 uniform ivec3 cells_per_block;
-uniform int first_block;  // of those that are worked on now
+uniform int first_block;  // first block of this dispatch
 uniform int end_block;
 
 const uint kThickBlock = 1u << 31;
 
 struct Block {
-  bool listed;  // groups in rows may be more than blocks
+  bool listed;  // false for surplus groups in the last row
   bool thick;
   ivec3 first_cell;
   int cells;
-  float per_row;  // the reciprocals of the numbers of cells in a row and in a layer
+  float per_row;  // reciprocal of the number of cells in a row; per_layer: in a layer
   float per_layer;
 };
 
@@ -34,7 +34,8 @@ Block block_of_group() {
   return block;
 }
 
-// Cell `i` of a block, from its first. Not by integers: software divides those one by one.
+// Returns cell `i` of a block relative to its first cell. It avoids integer division, which software GL does not
+// vectorize.
 ivec3 cell_within(Block block, int i) {
   int row = int((float(i) + 0.5) * block.per_row);
   int layer = int((float(i) + 0.5) * block.per_layer);

@@ -1,4 +1,5 @@
-// The correction of what a ray sees (renderers::LightCorrection), by place in the medium's box, 0 to 1, and direction.
+// The correction of a ray's radiance (renderers::LightCorrection), by direction and by place in the medium's box, 0 to
+// 1.
 #include "light_volume/bindings.glsl"
 
 layout(binding = kCorrectionRedUnit) uniform sampler3D correction_red;

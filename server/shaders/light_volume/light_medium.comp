@@ -1,23 +1,24 @@
-// The medium as the light that is carried sees it: one value a cell, whatever its groups and detail, so that a sample along the
-// sun's rays is one of one texture. With detail that is the mean over the cell, which keeps what light loses on its way, but for
-// what the mean spreads into cells of empty bricks, where carry.comp does not look.
-// r: extinction of the light; g: similarity-scaled extinction, kept by textures that have it; both over `light_medium_per_m`.
-// Variants: GROUPS, DETAILS.
+// Computes the medium for propagating light: one value a cell, independent of groups and detail. A sample along the
+// sun's rays then needs only one texture. With detail, the value is the mean over the cell, which preserves the light's
+// attenuation. The only exception is the part of the mean that spreads into cells of empty bricks, which carry.comp
+// skips. r is the extinction of the light. g is the similarity-scaled extinction, in textures that have this channel.
+// Both are divided by `light_medium_per_m`. Variants: GROUPS, DETAILS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "light_volume/cell_blocks.glsl"
 
 layout(binding = kLightMediumImage) uniform writeonly image3D light_medium;
 
-uniform vec4 light_weights[PLANES];  // to the value of a texel
+uniform vec4 light_weights[PLANES];  // from extinction to the value of a texel
 uniform vec4 transport_weights[PLANES];
 
 #if DETAILS > 0
-// Corners of a tetrahedron: its four samples have the mean of the eight of a cube, but for products of all three coordinates.
+// Corners of a tetrahedron. Its four samples have the same mean as the eight of a cube, except for products of all
+// three coordinates.
 const vec3 kWithin[4] = vec3[4](vec3(-0.25, -0.25, -0.25), vec3(0.25, 0.25, -0.25), vec3(0.25, -0.25, 0.25),
                                 vec3(-0.25, 0.25, 0.25));
 #else
-// The medium is linear between cells' centres.
+// The medium is linear between cell centres, so one sample is enough.
 const vec3 kWithin[1] = vec3[1](vec3(0.0));
 #endif
 

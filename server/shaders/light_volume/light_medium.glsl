@@ -1,4 +1,4 @@
-// The medium as the light that is carried sees it (light_medium.comp), of one value a cell and linear between cells.
+// The medium for propagating light (light_medium.comp), with one value a cell and linear between cells.
 #include "common/medium_box.glsl"
 #include "light_volume/bindings.glsl"
 

@@ -1,11 +1,14 @@
-// Radiance of the medium (rgb) and transmittance of the background (a). Marches through the medium along the view ray;
-// the light comes from arrive.comp. Riley et al. 2003 (Vis), eq. 5 with the phase of eq. 18.
-// Between two samples extinction, scattering and the square root of the light's optical depth are linear. A segment's
-// source is taken where half of its opacity is reached: exact for a source that is linear in opacity, whatever the
-// segment's optical depth. Errors against many samples: docs/performance.md.
-// With DIFFUSION, light scattered many times and the background are attenuated as light_volume/diffuse_seen.glsl says;
-// light scattered once keeps the medium's own extinction.
-// Variants: those of renderers::MarchVariant.
+// Computes the radiance of the medium (rgb) and the transmittance of the background (a). It marches through the medium
+// along the view ray. The light comes from arrive.comp. The method is Riley et al. 2003 (Vis), eq. 5 with the phase of
+// eq. 18.
+//
+// Between two samples, extinction, scattering and the square root of the light's optical depth are linear. A segment's
+// source is evaluated where half of the segment's opacity is reached. That is exact for a source that is linear in
+// opacity, for any optical depth of the segment. Errors relative to many samples are in docs/performance.md.
+//
+// With DIFFUSION, multiply scattered light and the background are attenuated as described in
+// light_volume/diffuse_seen.glsl. Singly scattered light keeps the medium's own extinction. Variants: those of
+// renderers::MarchVariant.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
@@ -26,27 +29,28 @@
 #include "light_volume/correction.glsl"
 #endif
 
-layout(binding = kArrivedUnit) uniform sampler3D arrived;  // of arrive.comp, cell by cell as the medium
+layout(binding = kArrivedUnit) uniform sampler3D arrived;  // from arrive.comp; one texel a cell, like the medium
 
 uniform vec3 towards_sun;
-uniform float step_m;  // between samples, at most
-uniform vec2 near_step;  // the same near the eye: in paths through a cell, and by the metre of distance, whichever is longer
-uniform vec4 eye_weights[PLANES];  // texel to the extinction that the eye sees, 1/m
+uniform float step_m;  // maximum distance between samples
+uniform vec2 near_step;  // step near the eye, in paths through a cell and per metre of distance; the longer one applies
+uniform vec4 eye_weights[PLANES];  // from texel to the extinction along the eye's ray, 1/m
 
 layout(location = 0) out vec4 radiance_and_transmittance;
-layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
+layout(location = 1) out float opacity_distance_m;  // opacity times the mean distance of what is visible
 
 const int kMaxSamples = 16384;
-const float kOnwards = 1.0 + 2.4e-7;  // the next number but one: far away a distance has coarser steps than a leap's margin
+// Two floating-point steps up: far away, these are larger than the margin of empty_path.
+const float kOnwards = 1.0 + 2.4e-7;
 const bool kDiffusion = DIFFUSION == 1;
-const bool kGlows = CONSISTENT == 1 && !kDiffusion;  // samples send light scattered many times
-const float kEndTransmittance = kDiffusion ? 0.02 : kOpaqueTransmittance;  // below which a ray ends
+const bool kGlows = CONSISTENT == 1 && !kDiffusion;  // samples add multiply scattered light
+const float kEndTransmittance = kDiffusion ? 0.02 : kOpaqueTransmittance;  // a ray ends below this transmittance
 
-// A segment is split where its optical depth and the transmittance in front of it exceed these.
+// A segment is split if its optical depth and the transmittance in front of it exceed these.
 const float kFaceDepth = 1.0;
 const float kFaceSeen = 0.1;
 
-// Weights of extinctions by the step, not by the metre.
+// Weights that give extinctions per step instead of per metre.
 vec4 eye_depths[PLANES];
 vec4 extinction_depths[PLANES];
 float per_step;
@@ -61,8 +65,8 @@ void begin_march() {
 
 struct Sample {
   Medium medium;
-  float extinction;  // that the eye sees, by the step; below 0: no sample yet
-  vec2 light;        // as arrive.comp has it
+  float extinction;  // along the eye's ray, per step; below 0: no sample yet
+  vec2 light;  // as written by arrive.comp
   DiffuseSample diffuse;
 };
 
@@ -87,9 +91,9 @@ Sample sample_at(vec3 place, float distance_m) {
 // Sums over the ray so far.
 struct Seen {
   Scattered scattered;
-  float transmittance;      // for light scattered once
-  float shown;              // sum of the weights that segments are seen with
-  float shown_distance_m;   // and of weight times distance
+  float transmittance;  // for light scattered once
+  float shown;  // sum of the segments' visible weights
+  float shown_distance_m;  // sum of weight times distance
   DiffuseSeen diffuse;
 };
 
@@ -102,11 +106,11 @@ Seen nothing_seen() {
   return seen;
 }
 
-// For the background.
+// Returns the transmittance for the background.
 float background_transmittance(Seen seen) { return kDiffusion ? seen.diffuse.transmittance : seen.transmittance; }
 
-// Advances `distance_m` to the next sample, at most `limit_m` inside bricks, leaping over empty ones. Returns the length of
-// the segment that ends there: 0 for the first sample and after a leap, where a sample only starts a segment.
+// Advances `distance_m` to the next sample, at most `limit_m` inside bricks, and skips empty bricks. Returns the length
+// of the segment that ends there. It is 0 for the first sample and after a skip, where a sample only starts a segment.
 float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, float limit_m, bool first) {
   float from_m = distance_m;
   float sampled_m = min(min(max(near_step.x * cell_m, near_step.y * distance_m), step_m), limit_m);
@@ -116,7 +120,7 @@ float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, 
     uint content = brick_content(ray, place);
     if (content == kThickBrick) break;
     if (content == kThinBrick) {
-      // No farther than a sample of thick bricks into the next one, which may be thick.
+      // The step enters the next brick by no more than a sample of thick bricks, because that brick may be thick.
       longest_m = min(clamp(empty_path(ray, place, 1u), sampled_m, max(sampled_m, cell_m)), limit_m);
       break;
     }
@@ -127,7 +131,7 @@ float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, 
   return segment_m;
 }
 
-// Adds the segment between two samples; `end_m` is the distance of the second.
+// Adds the segment between two samples. `end_m` is the distance of the second.
 void see_segment(inout Seen seen, Sample before, Sample here, float segment_m, float end_m) {
   float segment = segment_m * per_step;
   float start = max(before.extinction, 0.0);
@@ -151,13 +155,13 @@ void see_segment(inout Seen seen, Sample before, Sample here, float segment_m, f
 
 float mean_distance_m(Seen seen) { return seen.shown_distance_m / max(seen.shown, 1e-30); }
 
-// The mean place of what has been seen, 0 to 1 in the medium's box.
+// Returns the mean place of what is visible, 0 to 1 in the medium's box.
 vec3 seen_place(Seen seen, vec3 origin_m, vec3 direction) {
   vec3 place_m = origin_m + direction * mean_distance_m(seen);
   return (place_m - medium_low_m) / (medium_high_m - medium_low_m);
 }
 
-// A face of a cloud: a segment that would take much of what is still seen, and can be shorter.
+// Returns true for the face of a cloud: a segment with much of the remaining visible opacity that can be shorter.
 bool is_face(Seen seen, Sample before, Sample here, float segment_m, float finest_m) {
   float depth = 0.5 * (max(before.extinction, 0.0) + here.extinction) * segment_m * per_step;
   return depth > kFaceDepth && seen.transmittance > kFaceSeen && segment_m > 1.5 * finest_m;
@@ -182,7 +186,7 @@ Seen march(MediumRay ray, float distance_m, float end_m) {
     }
     see_segment(seen, before, here, segment_m, distance_m);
     before = here;
-    limit_m = min(1.3 * limit_m, longest_m);  // slowly: behind a gap the next wall is near
+    limit_m = min(1.3 * limit_m, longest_m);  // increases slowly, because the next wall behind a gap is near
   }
   return seen;
 }
@@ -196,7 +200,7 @@ void main() {
   vec2 path = path_in_medium(origin_m, safe, 0.0);
   Seen seen = march(medium_ray(origin_m, safe), max(path.x, 0.0), until_ground(path.y));
 
-  // One height stands for all that the ray shows.
+  // One height represents everything that the ray shows.
   vec3 sunlight = sunlight_at(origin_m.z + mean_distance_m(seen) * direction.z);
   vec3 radiance = radiance_of(seen.scattered, sunlight, step_m, haversine_between(direction, towards_sun));
   if (kDiffusion) {

@@ -1,4 +1,4 @@
-// Replaces light_volume/diffuse_seen.glsl where no diffusion is solved: the same functions, which add no light.
+// Replaces light_volume/diffuse_seen.glsl if no diffusion is solved. It has the same functions, which add no light.
 struct DiffuseSample {
   float transport;
 };

@@ -1,6 +1,6 @@
-// The medium as the diffusion equation sees it: extinction in each of its cells, the mean over the medium's own cells
-// that one of them stands for. rgb: that of the light's, of transport (similarity scaled), and absorption.
-// Variants: GROUPS, DETAILS.
+// Computes the medium as input of the diffusion equation: the extinction in each of its cells, as the mean over the
+// medium's own cells in it. r is the extinction of the light, g that of transport (similarity scaled), b the
+// absorption. Variants: GROUPS, DETAILS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "light_volume/bindings.glsl"
@@ -9,7 +9,7 @@ layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kSampledCellsImage, rgba32f) uniform writeonly image3D cells;
 
 uniform ivec3 cell_count;
-uniform ivec3 samples;  // of the medium, along each side of a cell
+uniform ivec3 samples;  // number of samples of the medium along each side of a cell
 uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
 uniform vec4 absorption_weights[PLANES];

@@ -1,4 +1,5 @@
-// The light that has arrived (arrive.comp), at the cells of the diffusion equation: the root of its optical depth.
+// Samples the light that has arrived (arrive.comp) at the cells of the diffusion equation: the root of its optical
+// depth.
 #include "common/bindings.glsl"
 #include "light_volume/bindings.glsl"
 

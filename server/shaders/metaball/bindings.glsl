@@ -1,5 +1,5 @@
-// Image units and bindings of storage buffers that metaballs use beside those of common/bindings.glsl.
-// Compiles as GLSL and as C++ (renderers/metaball/bindings.h).
+// Image units and bindings of storage buffers that metaballs use in addition to common/bindings.glsl. The file compiles
+// as GLSL and as C++ (renderers/metaball/bindings.h).
 const int kBallLightImage = 0;
 const int kBallsBinding = 0;
 const int kBallArrivedBinding = 1;

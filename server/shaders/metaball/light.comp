@@ -1,10 +1,11 @@
-// The first pass (Man, 4.1): one light through the balls, the nearest to it first. A work group takes one ball of a level,
-// whose balls touch no common texel: it reads back what of the light buffer lies under the ball, gives the ball its light,
-// and splats the ball into the buffer. The buffer never leaves the device.
-// Variants: PAPER (eq. 26 and 27 as printed) or not: the buffer then holds optical depths, r of the light's extinction and
-// g similarity scaled, so that what a ball takes from the light is what it scatters, however thick it is.
-// PASS: 0 splats; 1, after all levels, gives the light scattered many times, which depends on what is behind the ball too.
-// DIFFUSE (with PASS 1): the light is no beam but the sky above and the ground below: their shares.
+// The first pass (Man, 4.1): propagates one light through the balls, the nearest to it first. A work group processes
+// one ball of a level, whose balls touch no common texel. It reads the light buffer under the ball, stores the ball's
+// light, and splats the ball into the buffer. The buffer never leaves the device.
+//
+// Variants: PAPER, PASS, DIFFUSE. PAPER is eq. 26 and 27 as printed. Otherwise the buffer holds optical depths: r of
+// the light's extinction, g similarity scaled. A ball of any thickness then scatters exactly the light that it removes.
+// PASS 0 splats. PASS 1, after all levels, computes multiply scattered light, which also depends on the medium behind
+// the ball. With DIFFUSE (and PASS 1), the light is the sky above and the ground below instead of a beam.
 #include "metaball/balls.glsl"
 #include "metaball/bindings.glsl"
 #include "physics/light_transport.glsl"
@@ -12,21 +13,22 @@
 
 layout(local_size_x = kBallGroupSize) in;
 layout(binding = kBallLightImage, rg32f) uniform image2D light;
-// By light and ball: x the share of the beam that arrives, or that of the sky; y the mean intensity of light scattered
-// many times over the beam's irradiance. Between the passes y is the scaled optical depth before the ball's middle.
+// Light by light source and ball. x is the arriving share of the beam, or that of the sky. y is the mean intensity of
+// multiply scattered light over the beam's irradiance. Between the passes, y is the scaled optical depth before the
+// ball's centre.
 layout(std430, binding = kBallArrivedBinding) buffer Arrived { vec2 arrived[]; };
 
-uniform int first;          // of this dispatch in `order`
-uniform int arrived_first;  // of this light
+uniform int first;  // first ball of this dispatch in `order`
+uniform int arrived_first;  // first element of this light
 uniform vec3 light_right;   // texels per metre
 uniform vec3 light_up;
 uniform float texels_per_m;
-uniform vec2 light_middle;  // in texels
+uniform vec2 light_middle;  // centre in texels
 uniform float paper_albedo;
-uniform float scattered_often;  // 1, or 0 where light that strikes a particle is lost
+uniform float scattered_often;  // 1, or 0 if light that strikes a particle is lost
 
 const float kFourPi = 12.5663706;
-const float kForwardPhase = 1.5;  // Rayleigh's function straight on, eq. 25
+const float kForwardPhase = 1.5;  // Rayleigh's function in the forward direction, eq. 25
 
 shared vec3 sums[kBallGroupSize];
 
@@ -43,7 +45,7 @@ void main() {
   ivec2 low = max(ivec2(floor(middle - reach)), ivec2(0));
   ivec2 high = min(ivec2(ceil(middle + reach)), imageSize(light) - 1);
   ivec2 size = max(high - low + 1, ivec2(0));
-  float light_depth = ball.optics.y * radius_m * thinned;      // times the column
+  float light_depth = ball.optics.y * radius_m * thinned;  // to be multiplied by the column
   float scaled_depth = ball.optics.z * radius_m * thinned;
 
   vec3 sum = vec3(0.0);
@@ -57,7 +59,7 @@ void main() {
     sum += vec3(before.r, 0.0, 1.0);
 #elif PASS == 0
     float column = wyvill_column(s);
-    // In the mean over the ball's own matter the light that enters is weakened by the half that is before.
+    // In the mean over the ball's own matter, the half in front of it attenuates the entering light.
     float enters = exp(-before.r) * mean_transmittance(column * light_depth);
     sum += column * vec3(enters, before.g + 0.5 * column * scaled_depth, 1.0);
 #else
@@ -80,10 +82,10 @@ void main() {
   float total = mean.x;
   float before = min(arrived[slot].y, total);
 #if DIFFUSE
-  // Both faces lit, each by diffuse light of its own: Eddington's mean intensity between them is linear.
+  // Both faces are lit, each by its own diffuse light. Eddington's mean intensity between them is linear.
   arrived[slot] = vec2((total - before + 2.0 / 3.0) / (total + 4.0 / 3.0), 0.0);
 #else
-  // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) inside it.
+  // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) below its surface.
   arrived[slot].y = scattered_often * diffuse_mean_intensity(min(before + 2.0 / 3.0, total), total);
 #endif
 #else

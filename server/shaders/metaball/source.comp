@@ -1,22 +1,22 @@
-// The radiance of each ball per opacity. The phase functions are looked up once a ball (Man, 4.2): its light comes from
-// one direction, and the eye sees it in one.
-// Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (as common/phase.glsl has it), PAPER, ISOTROPIC, PARALLEL (view rays).
+// Computes the radiance of each ball per opacity. The phase functions are looked up once a ball (Man, 4.2), because its
+// light comes from one direction and the eye sees it in one. Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (see
+// common/phase.glsl), PAPER, ISOTROPIC, PARALLEL (view rays).
 #include "common/phase.glsl"
 #include "common/sunlight.glsl"
 #include "metaball/balls.glsl"
 #include "metaball/bindings.glsl"
 
 layout(local_size_x = kBallGroupSize) in;
-layout(std430, binding = kBallArrivedBinding) readonly buffer Arrived { vec2 arrived[]; };  // of light.comp
-// rgb: radiance; a: extinction in the middle.
+layout(std430, binding = kBallArrivedBinding) readonly buffer Arrived { vec2 arrived[]; };  // from light.comp
+// rgb is the radiance, a the extinction at the centre.
 layout(std430, binding = kBallSourcesBinding) writeonly buffer Sources { vec4 sources[]; };
 
 uniform int ball_count;
 uniform vec3 eye_forward;
 uniform vec3 eye_m;
 uniform vec3 towards_light[LIGHTS];
-uniform vec3 irradiance[LIGHTS];  // that of the first, the sun, is by height
-uniform vec3 sky_radiance;     // means over the upper and the lower half
+uniform vec3 irradiance[LIGHTS];  // the sun, the first, has its irradiance by height instead
+uniform vec3 sky_radiance;  // means over the upper and the lower hemisphere
 uniform vec3 ground_radiance;
 uniform float paper_albedo;
 

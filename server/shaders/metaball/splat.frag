@@ -1,11 +1,11 @@
-// The second pass (Man, 4.2): the balls over a pixel, composited by eq. 29 from front to back until the pixel is opaque.
-// Each tile of the picture has a list of the balls that may lie over it, in that order: the same sum as blending their
-// splats from back to front, without reading and writing the picture for each. A ball's optical depth is the integral of
-// its field along the ray, from the eye and up to the ground.
-// With DETAIL noise at all scales that pixels show moves the balls' surfaces inwards, and a place shows the mean light of all
-// balls there, weighted by their fields, so that balls cannot be told apart.
-// Variants: GROUND (what lies behind it is left out), PAPER (the field's own value is the depth: eq. 12 splatted as it
-// is), DETAIL.
+// The second pass (Man, 4.2): composites the balls over a pixel by eq. 29 from front to back until the pixel is opaque.
+// Each tile of the picture has a list of the balls that may lie over it, in that order. The result equals blending
+// their splats from back to front, without reading and writing the picture for each. A ball's optical depth is the
+// integral of its field along the ray, from the eye up to the ground.
+//
+// With DETAIL, noise at all scales that pixels resolve moves the balls' surfaces inwards. A place then shows the mean
+// light of all balls there, weighted by their fields, so that single balls are not recognisable. Variants: GROUND
+// (everything behind it is omitted), PAPER (the field's own value is the depth: eq. 12 splatted unchanged), DETAIL.
 #include "common/bindings.glsl"
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
@@ -14,43 +14,43 @@
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 
-// Each tile's first place in `order`, row by row, and the end.
+// The first index in `order` of each tile, row by row, and the end.
 layout(std430, binding = kBallTilesBinding) readonly buffer TileStarts { uint tile_starts[]; };
-layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sources[]; };  // of source.comp
+layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sources[]; };  // from source.comp
 
 uniform int tile_px;
 uniform int tiles_across;
 #if DETAIL
 layout(binding = kDetailNoiseUnit) uniform sampler3D noise;  // physics/detail_tile.h
-uniform float noise_per_m;   // tiles
+uniform float noise_per_m;  // tiles of noise per metre
 uniform vec3 noise_offset;
 uniform float roughness;     // 0 to 1
-uniform float largest_radius_m;  // of a ball
+uniform float largest_radius_m;  // largest radius of a ball
 #endif
 
 in vec2 position;
 layout(location = 0) out vec4 radiance_and_transmittance;
-layout(location = 1) out float opacity_distance_m;  // the opacity times the mean distance of what shows
+layout(location = 1) out float opacity_distance_m;  // opacity times the mean distance of what is visible
 
 #if DETAIL
-const float kRelief = 0.5;      // the deepest valley's share of a ball's squared radius
-const float kDisplaced = 0.5;   // radii
-// The logarithm of the factor by which noise reduces a ball's optical depth, in the mean over its disc, at roughness 1.
+const float kRelief = 0.5;  // depth of the deepest valley, as a share of a ball's squared radius
+const float kDisplaced = 0.5;  // displacement in radii
+// The logarithm of the factor by which noise reduces a ball's optical depth, averaged over its disc, at roughness 1.
 const float kEroded = 0.7;
-const float kMinSeen = 0.01;  // share of a pixel below which a ball keeps its own light
+const float kMinSeen = 0.01;  // a ball with a smaller share of a pixel keeps its own light
 
-// The ball's w across its middle, 1 - (u / R)^2, as noise at its surface leaves it.
+// Returns the ball's w across its middle, 1 - (u / R)^2, after erosion by the noise at its surface.
 float eroded(float s, vec3 origin_m, vec3 ray, vec3 across_m, float surface_m, float per_radius) {
   vec4 here = texture(noise, (origin_m + surface_m * ray) * noise_per_m + noise_offset);
   vec3 moved = across_m * per_radius + (roughness * kDisplaced) * (here.gba * 2.0 - 1.0);
   return min(s, 1.0 - dot(moved, moved)) - roughness * kRelief * (1.0 - here.r) * (1.0 - 0.7 * s);
 }
 
-// The distance that balls are ordered by (renderers/metaball/tiles.cc).
+// Returns the distance by which balls are sorted (renderers/metaball/tiles.cc).
 float ordered_by_m(vec3 off_m, vec3 ray) { return ray_right == vec3(0.0) ? dot(off_m, ray) : length(off_m); }
 
-// Adds the light of a ball to that of others at a place, each by its extinction there. False if the ball, and all that come
-// after it in the order, away from the place, cannot contain it: it is farther off than the largest is wide.
+// Adds the light of a ball to that of others at a place, weighted by its extinction there. Returns false if neither the
+// ball nor any ball beyond it in the order can contain the place, because it is farther away than the largest radius.
 bool add_light(uint index, vec3 origin_m, vec3 ray, float place_distance_m, inout vec4 sum) {
   vec4 middle_radius = balls[index].middle_radius;
   vec3 from_eye_m = middle_radius.xyz - origin_m;
@@ -63,8 +63,8 @@ bool add_light(uint index, vec3 origin_m, vec3 ray, float place_distance_m, inou
   return true;
 }
 
-// The mean light at a place of the ray, by their extinctions there, of the tile's balls, which run from `first` to `end`; the
-// place is in ball `i` of the order.
+// Returns the mean light at a place of the ray of the tile's balls from `first` to `end`, weighted by their extinctions
+// there. The place is in ball `i` of the order.
 vec3 light_at(vec3 origin_m, vec3 ray, float distance_m, uint i, uint first, uint end) {
   vec4 sum = vec4(0.0);
   uint at = i;
@@ -96,7 +96,8 @@ void main() {
     vec4 middle_radius = balls[index].middle_radius;
     vec3 off_m = middle_radius.xyz - origin_m;
     float along_m = dot(off_m, ray);
-    // The component across the ray first: in the square of the whole, rounding would lose a small ball that is far away.
+    // The component across the ray is computed first. In the square of the whole vector, rounding would lose a small
+    // ball that is far away.
     vec3 across_m = off_m - along_m * ray;
     float per_radius = 1.0 / middle_radius.w;
     float s = 1.0 - dot(across_m, across_m) * (per_radius * per_radius);
@@ -130,9 +131,11 @@ void main() {
     vec3 light = source.rgb;
 #if DETAIL
     if (transmittance * taken > kMinSeen) {
-      // Where about half of what shows of the ball is in front: fields rise as the square of the depth below the surface.
+      // At this place about half of the ball's visible light is in front. Fields rise as the square of the depth below
+      // the surface.
       float before = half_chord * min(pow(1.4 / max(depth, 1e-6), 1.0 / 3.0), 1.0);
-      // Half of it: balls that lie deeper, which weigh more there, are darker than the surface.
+      // Only half of that light is used, because deeper balls, which have more weight there, are darker than the
+      // surface.
       light = 0.5 * (light + light_at(origin_m, ray, along_m + (before - half_chord) * middle_radius.w, i, first, end));
     }
 #endif

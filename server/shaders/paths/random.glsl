@@ -1,10 +1,10 @@
-// Random numbers by counter: Philox 4x32-10 (Salmon et al. 2011), as reference/philox.h has them. A path's numbers depend on its key and
-// counter alone, so results are the same however paths are dispatched.
+// Counter-based random numbers: Philox 4x32-10 (Salmon et al. 2011), as in reference/philox.h. A path's numbers depend
+// only on its key and counter, so results do not depend on how paths are dispatched.
 
 uvec2 random_key;
-uvec4 random_counter;  // of the next block; x counts them
+uvec4 random_counter;  // counter of the next block; x is incremented
 uvec4 random_words;
-int random_left = 0;  // of the words
+int random_left = 0;  // number of unused words
 
 void philox_round(inout uvec4 counter, uvec2 key) {
   uint high_0;
@@ -33,10 +33,10 @@ uint random_word() {
   return word;
 }
 
-// Uniform over (0, 1), in steps of 2^-23; never 0 or 1.
+// Returns a number uniform over (0, 1), in steps of 2^-23. It is never 0 or 1.
 float random_uniform() { return (float(random_word() >> 9) + 0.5) / 8388608.0; }
 
-// Exponential with mean 1. Optically thin media need very small values.
+// Returns an exponential number with mean 1. Optically thin media need very small values.
 float random_exponential() {
   float u = min((float(random_word()) + 0.5) / 4294967296.0, 0.99999994);
   return u < 0.01 ? u * (1.0 + u * (1.0 / 2.0 + u * (1.0 / 3.0 + u / 4.0))) : -log(1.0 - u);

@@ -1,17 +1,19 @@
-// Random paths through the medium, an invocation each: the estimator of reference/path_radiance.h, event by event. A pass follows each
-// path for some events, keeps it, and lists those that go on, so that no pass waits long for the longest path. What eyes see of the
-// air, the ground and the sky is the host's (reference/eye_segment.h), and so is the sky that a path leaves to.
+// Traces random paths through the medium, with one invocation each. It is the estimator of reference/path_radiance.h,
+// event by event. A pass traces each path for some events, stores it, and lists the paths that continue, so that no
+// pass waits long for the longest path. The host computes the air, the ground and the sky that eyes see
+// (reference/eye_segment.h), and the sky into which a path leaves.
 #include "paths/scattering.glsl"
 
 layout(local_size_x = kPathGroupSize) in;
 
 struct PathState {
-  vec4 place;       // in bricks; w: the farthest that it flies first, metres
+  vec4 place;  // in bricks; w: limit of its first flight in metres
   vec4 direction;   // unit vector; w: kPath...
   vec4 throughput;  // w: collisions so far
-  vec4 spectral;    // by colour, as the hero's phase functions are sampled; w: collisions at which it meets roulette
-  vec4 radiance;    // w: distance, transmittance
-  uvec4 counter;    // of its random numbers: x is the next block
+  // Weights by colour, because the hero's phase functions are sampled; w: collisions at the next roulette.
+  vec4 spectral;
+  vec4 radiance;  // w: also a distance or a transmittance
+  uvec4 counter;  // counter of its random numbers; x is the next block
 };
 layout(std430, binding = kPathStatesBinding) buffer States { PathState states[]; };
 layout(std430, binding = kPathListBinding) readonly buffer List {
@@ -22,22 +24,22 @@ layout(std430, binding = kPathNextListBinding) buffer NextList {
   uint next_count;
   uint next_listed[];
 };
-// Sunlight at steps of height, then for each other light the direction that it comes from and its irradiance.
+// Sunlight at steps of height. After that, for each other light, its direction and its irradiance.
 layout(std430, binding = kPathLightsBinding) readonly buffer Lights { vec4 lights[]; };
 
-uniform int first_path;  // of this dispatch
+uniform int first_path;  // first path of this dispatch
 uniform int end_path;
-uniform bool by_list;    // they are places in the list
+uniform bool by_list;  // true: paths are indices into the list
 uniform ivec2 key;
 uniform vec3 towards_sun;
 uniform int sun_heights;
 uniform float sun_step_m;
 uniform int other_lights;
-uniform int similar_after;    // collisions, 0: never
+uniform int similar_after;  // number of collisions; 0: never
 uniform vec3 brick_m;
-uniform float low_height_m;   // of the first brick, above sea level
+uniform float low_height_m;  // height of the first brick above sea level
 uniform bool has_ground;
-uniform vec3 low_from_touch_m;  // the first brick from where the ground touches its plane
+uniform vec3 low_from_touch_m;  // vector from the point where the ground touches its plane to the first brick
 uniform vec3 ground_albedo;
 uniform vec3 ground_radiance;
 uniform float ground_curvature_per_m;
@@ -75,7 +77,7 @@ vec3 sunlight_at(vec3 place) {
   return mix(lights[below].xyz, lights[min(below + 1, sun_heights - 1)].xyz, step - float(below));
 }
 
-// As reference/eye_segment.h has it.
+// Returns the distance of the ground, as reference/eye_segment.h does.
 float ground_distance_m() {
   if (!has_ground) return kEndlessPath_m;
   vec3 off_m = low_from_touch_m + path.place.xyz * brick_m;
@@ -87,13 +89,13 @@ float ground_distance_m() {
   return 2.0 * above_m / (closing + sqrt(discriminant));
 }
 
-// Onto the ground below or above.
+// Moves the path vertically onto the ground.
 void put_on_ground() {
   vec2 off_m = low_from_touch_m.xy + path.place.xy * brick_m.xy;
   path.place.z = -(low_from_touch_m.z + 0.5 * ground_curvature_per_m * dot(off_m, off_m)) / brick_m.z;
 }
 
-// Where the path is after its flight.
+// Places of the path after its flight.
 const int kAtEnd = 0;
 const int kAtParticle = 1;
 const int kAtGround = 2;
@@ -118,7 +120,7 @@ int fly(inout int what) {
   return kAtGround;
 }
 
-// One event; false when the path has ended.
+// Performs one event. Returns false when the path has ended.
 bool advances(inout int what) {
   if (what == kPathFlies && !survives()) {
     what = kPathEnded;
@@ -138,8 +140,8 @@ bool advances(inout int what) {
     int group = choose_group(path.place.xyz, random_uniform(), similar_before, factor);
     ends = group < 0;
     if (!ends) {
-      // By the optics of before this collision. Once it is counted, all light may count as light of the similar medium, this
-      // collision's sunlight, too.
+      // This collision uses the optics from before it. After it is counted, all light may count as light of the similar
+      // medium, including this collision's sunlight.
       optics = group_optics[2 * group + int(similar_before)];
       path.throughput.xyz *= factor * optics.albedo.xyz;
       ends = !survives() || !goes_on_at_length();
@@ -154,7 +156,7 @@ bool advances(inout int what) {
     return false;
   }
 
-  // Light that arrives directly.
+  // Adds the light that arrives directly.
   int count = at == kAtParticle ? 1 + other_lights : 1;
   for (int i = 0; i < count; ++i) {
     int other = sun_heights + 2 * (i - 1);
@@ -187,7 +189,7 @@ bool advances(inout int what) {
     path.spectral.xyz *= 3.0 / (path.spectral.x + path.spectral.y + path.spectral.z);
     path.direction.xyz = deflected(path.direction.xyz, x, 2.0 * kPi * random_uniform());
   } else {
-    float sine = sqrt(random_uniform());  // of the elevation
+    float sine = sqrt(random_uniform());  // sine of the elevation
     float azimuth = 2.0 * kPi * random_uniform();
     path.direction.xyz = vec3(sqrt(max(1.0 - sine * sine, 0.0)) * vec2(cos(azimuth), sin(azimuth)), sine);
   }

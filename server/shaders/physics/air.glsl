@@ -1,5 +1,5 @@
-// Clear air and haze, and what they do to light between an eye and what it sees: both thin out exponentially with height.
-// Compiles as GLSL and as C++ (physics/sky.h).
+// Clear air and haze, and their effect on light between an eye and an object. Both decrease exponentially with height.
+// The file compiles as GLSL and as C++ (physics/sky.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else
@@ -9,22 +9,23 @@
 const float kAirScaleHeight_m = 8000.0f;
 const float kHazeScaleHeight_m = 1200.0f;
 
-// Vertical optical depth of air (Rayleigh scattering) at 650, 550 and 450 nm.
+// Returns the vertical optical depth of air (Rayleigh scattering) at 650, 550 and 450 nm.
 PHYSICS_FUNCTION vec3 air_optical_depth() { return vec3(0.0495f, 0.0973f, 0.2209f); }
 
-// Of haze, as the wavelength to the power -1.3 (Angstrom 1929). Turbidity is the optical depth of air and haze over that
-// of air at 550 nm: 1 has no haze, 1.5 is very clear, 2 to 3 fair, 6 and more hazy.
+// Returns the vertical optical depth of haze, proportional to the wavelength to the power -1.3 (Angstrom 1929).
+// Turbidity is the optical depth of air and haze over that of air at 550 nm. A turbidity of 1 has no haze, 1.5 is very
+// clear, 2 to 3 fair, 6 and more hazy.
 PHYSICS_FUNCTION vec3 haze_optical_depth(float turbidity) {
   return (turbidity - 1.0f) * 0.0973f * vec3(0.805f, 1.0f, 1.298f);
 }
 
-// The share of its density at sea level that the air (x) and the haze (y) have at a height.
+// Returns the densities of air (x) and haze (y) at a height relative to those at sea level.
 PHYSICS_FUNCTION vec2 densities_of_air(float height_m) {
   return exp(-height_m / vec2(kAirScaleHeight_m, kHazeScaleHeight_m));
 }
 
-// exp(x^2) erfc(x) for x from 0 on, off by less than 6e-4: the form of its bounds (Abramowitz and Stegun, 7.1.13), led
-// from one to the other with the right slope at 0.
+// Returns exp(x^2) erfc(x) for x >= 0 with an error below 6e-4. It has the form of the function's bounds (Abramowitz
+// and Stegun, 7.1.13), interpolated between them with the right slope at 0.
 PHYSICS_FUNCTION float scaled_erfc(float x) {
   float bound = 2.0f - 0.72676046f / (1.0f + x * (0.848f + x * 0.45f));
   return 1.12837917f / (x + sqrt(x * x + bound));
@@ -32,58 +33,59 @@ PHYSICS_FUNCTION float scaled_erfc(float x) {
 
 // A straight path above the curved Earth.
 struct AirPath {
-  float height_m;         // of its start, above sea level
-  float sin_elevation;    // at its start
-  float curvature_per_m;  // of the Earth
-  float distance_m;       // its length
+  float height_m;  // of the path's start, above sea level
+  float sin_elevation;  // sine of the elevation at the path's start
+  float curvature_per_m;  // curvature of the Earth
+  float distance_m;  // length of the path
 };
 
-// The column of air or haze along `path`, in metres at the density of sea level; `density` is the relative one at the
-// path's start. The height is quadratic in the distance, so that the integral is a difference of error functions.
+// Returns the column of air or haze along `path`, in metres at the density of sea level. `density` is the relative one
+// at the path's start. The height is quadratic in the distance, so the integral is a difference of error functions.
 PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float density, AirPath path) {
-  // Without curvature the error functions would end in 0 / 0: a millionth of the Earth's is none.
+  // Without curvature the error functions would give 0 / 0. A millionth of the Earth's curvature is negligible.
   float bend = max(path.curvature_per_m * (1.0f - path.sin_elevation * path.sin_elevation), 1e-13f);
   float per_m = sqrt(0.5f * bend / scale_height_m);
-  float low = per_m * path.sin_elevation / bend;  // from the path's lowest point
+  float low = per_m * path.sin_elevation / bend;  // distance of the start from the path's lowest point
   float high = low + per_m * path.distance_m;
   float climb_m = path.distance_m * (path.sin_elevation + 0.5f * bend * path.distance_m);
   float from = density * scaled_erfc(abs(low));
   float to = exp(-(path.height_m + climb_m) / scale_height_m) * scaled_erfc(abs(high));
   float difference = low >= 0.0f ? from - to : to - from;
   if (low < 0.0f && high > 0.0f) {
-    // The lowest point is on the path; the density there, as that of the start may be zero.
+    // The lowest point is on the path. The density there is computed directly, because that of the start may be zero.
     float lowest_m = path.height_m - 0.5f * path.sin_elevation * path.sin_elevation / bend;
     difference = 2.0f * exp(-lowest_m / scale_height_m) - from - to;
   }
   return 0.886226925f / per_m * difference;
 }
 
-// Optical depth of the air masses of air (x) and haze (y), in units of the vertical ones of the whole atmosphere.
+// Returns the optical depth of the air masses of air (x) and haze (y), which are in units of the whole atmosphere's
+// vertical ones.
 PHYSICS_FUNCTION vec3 depth_of_air_mass(float turbidity, vec2 air_mass) {
   return air_optical_depth() * air_mass.x + haze_optical_depth(turbidity) * air_mass.y;
 }
 
-// Optical depth of air and haze along a straight path; `densities` are those at its start.
+// Returns the optical depth of air and haze along a straight path. `densities` are those at its start.
 PHYSICS_FUNCTION vec3 depth_of_air(float turbidity, vec2 densities, AirPath path) {
   return depth_of_air_mass(turbidity,
                            vec2(equivalent_m(kAirScaleHeight_m, densities.x, path) / kAirScaleHeight_m,
                                 equivalent_m(kHazeScaleHeight_m, densities.y, path) / kHazeScaleHeight_m));
 }
 
-// Light that air of this transmittance sends to the eye. The clear sky in that direction has radiance `sky` and the
-// optical depth `sky_depth` down to the ground or out of the atmosphere: the air gathers it in step with the light that it
-// takes away, beyond `sky_depth` too.
+// Returns the light that air of this transmittance sends to the eye. The clear sky in that direction has the radiance
+// `sky` and the optical depth `sky_depth` to the ground or out of the atmosphere. The air's light grows in proportion
+// to the light that the air removes, also beyond `sky_depth`.
 PHYSICS_FUNCTION vec3 airlight_before(vec3 transmittance, vec3 sky, vec3 sky_depth) {
   return sky * (vec3(1.0f) - transmittance) / max(vec3(1.0f) - exp(-sky_depth), vec3(1e-6f));
 }
 
-// Extinction coefficient of air and haze, 1/m, where their densities are those.
+// Returns the extinction coefficient of air and haze, in 1/m, at the given densities.
 PHYSICS_FUNCTION vec3 air_extinction_per_m(float turbidity, vec2 densities) {
   return air_optical_depth() * (densities.x / kAirScaleHeight_m) +
          haze_optical_depth(turbidity) * (densities.y / kHazeScaleHeight_m);
 }
 
-// The light that a metre of air adds to airlight_before, where `transmittance` is that of the air in front of it.
+// Returns the light that a metre of air adds to airlight_before. `transmittance` is that of the air in front of it.
 PHYSICS_FUNCTION vec3 airlight_per_m(vec3 transmittance, vec3 extinction_per_m, vec3 sky, vec3 sky_depth) {
   return sky * transmittance * extinction_per_m / max(vec3(1.0f) - exp(-sky_depth), vec3(1e-6f));
 }

@@ -1,24 +1,25 @@
-// The clear sky as a table of what varies slowly and phase functions that do not (physics/sky.h computes the table).
-// Compiles as GLSL and as C++.
+// The clear sky as a table of its slowly varying parts, and phase functions, which vary faster. physics/sky.h computes
+// the table. The file compiles as GLSL and as C++.
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else
 #define PHYSICS_FUNCTION
 #endif
 
-// Cells of one half of the table: across, the azimuth from the sun; up, the elevation, as many below the horizon as above.
-// The left half holds the light of air, the right half that of haze without its phase function; their fourth channels
-// hold how much air and haze the ray passes, in vertical depths of the whole.
+// Cells of one half of the table. The horizontal axis is the azimuth from the sun. The vertical axis is the elevation,
+// with equal numbers of rows above and below the horizon. The left half holds the light of air, the right half that of
+// haze without its phase function. Their fourth channels hold the ray's air mass of air and of haze, in vertical depths
+// of the whole atmosphere.
 const int kSkyAzimuths = 12;
 const int kSkyElevations = 64;
 
-// Where in the left half's cells, counted from the middle of the first, the table holds `direction` (z up).
-// `horizon_sine` is that of the horizon's elevation, below 0 for an eye above the ground.
+// Returns the position of `direction` (z up) in the left half's cells, counted from the middle of the first. The sine
+// of the horizon's elevation is `horizon_sine`, which is below 0 for an eye above the ground.
 PHYSICS_FUNCTION vec2 sky_cell(vec3 direction, vec3 towards_sun, float horizon_sine) {
   float across = dot(vec2(direction), vec2(towards_sun));
   float most = sqrt(max((1.0f - direction.z * direction.z) * (1.0f - towards_sun.z * towards_sun.z), 1e-12f));
   float azimuth = 0.5f - 0.5f * clamp(across / most, -1.0f, 1.0f);
-  // The square root gives the horizon most of the cells. Nothing lies between the two rows beside it.
+  // The square root gives most of the cells to the horizon. No position is between the two rows next to it.
   float above = (direction.z - horizon_sine) / (1.0f - horizon_sine);
   float below = (horizon_sine - direction.z) / (1.0f + horizon_sine);
   const float middle = 0.5f * float(kSkyElevations);
@@ -27,7 +28,7 @@ PHYSICS_FUNCTION vec2 sky_cell(vec3 direction, vec3 towards_sun, float horizon_s
   return vec2(azimuth * float(kSkyAzimuths - 1), row);
 }
 
-// Of continental haze: Henyey and Greenstein's function with g = 0.65, over 4 pi.
+// Returns the phase function of continental haze: Henyey and Greenstein's with g = 0.65, over 4 pi.
 PHYSICS_FUNCTION float haze_phase(float mu) {
   const float g = 0.65f;
   float base = 1.0f + g * g - 2.0f * g * mu;

@@ -1,5 +1,5 @@
-// The linear frame: what the eye buffer holds in front of sky and ground, all through the air. Coordinates are metres from
-// the eye. Variants: those of renderers::CompositeVariant.
+// Composes the linear frame: the eye buffer in front of sky and ground, all seen through the air. Coordinates are
+// metres from the eye. Variants: those of renderers::CompositeVariant.
 #include "common/bindings.glsl"
 #include "common/box.glsl"
 #include "common/ground.glsl"
@@ -18,7 +18,7 @@
 layout(binding = kEyeUnit) uniform sampler2D eye;
 #endif
 #if DISTANCES
-// Distance of what is in the eye buffer, times its opacity.
+// Distance of the eye buffer's content, times its opacity.
 layout(binding = kEyeDistanceUnit) uniform sampler2D eye_distance;
 #endif
 
@@ -29,39 +29,40 @@ uniform vec2 skylight_scale;  // texture coordinates per metre
 uniform vec2 skylight_offset;
 #endif
 
-uniform mat3 local_from_world;   // to east, north and up where the eye is
+uniform mat3 local_from_world;  // to east, north and up at the eye
 uniform vec3 towards_sun;
 uniform vec3 towards_sun_local;
 uniform float sky_scale;         // irradiance times brightness
 uniform float turbidity;
-uniform float altitude_m;        // of the eye above sea level, not below 0
-uniform vec2 air_densities;      // there
+uniform float altitude_m;  // height of the eye above sea level, not below 0
+uniform vec2 air_densities;  // at the eye
 uniform vec3 sunlight;           // irradiance on a plane facing the sun
 uniform vec3 skylight;           // irradiance on level ground
-uniform vec3 box_low_m;          // the medium's
+uniform vec3 box_low_m;  // box of the medium
 uniform vec3 box_high_m;
 
-out vec4 rgb_and_opacity;  // the opacity is that of the storm
+out vec4 rgb_and_opacity;  // alpha is the storm's opacity
 
 const float kJustBelow = 1e-5;
-const float kHardlyAnyHaze = 0.01;  // of its vertical depth
+const float kHardlyAnyHaze = 0.01;  // relative to its vertical depth
 const float kFarFromTheGround_m = 2e4;
 
 #if COVER == 2
-// Of level water under `sky`, the light of the sky on level ground, and the share of the sun that the storm leaves.
+// Returns the radiance of level water. `sky` is the skylight on level ground, and `open` the share of the sun that the
+// storm leaves.
 vec3 water_radiance(vec3 towards_eye, vec3 sky, float open) {
   vec3 sun = sunlight * open;
   towards_eye = normalize(vec3(towards_eye.xy, max(towards_eye.z, 1e-3)));
   vec3 below = water_albedo() / 3.14159265 * (sun * max(towards_sun.z, 0.0) + sky);
   vec3 clear = sky_scale * sky_of_ground(water_reflected(towards_eye), towards_sun);
-  // The storm dims the reflected sky as it dims all of it.
+  // The storm dims the reflected sky by the same factor as the whole sky.
   vec3 reflected = water_reflectance(towards_eye.z) * clear * sky / max(skylight, vec3(1e-9));
   return below + reflected + glint(towards_eye, towards_sun) * sun;
 }
 #endif
 
-// Lambert's law under sun and sky, which the storm shades both; the terrain shades itself by its slope only. Water reflects
-// besides, the clear sky alone.
+// Returns the ground's radiance by Lambert's law under sun and sky, both shaded by the storm. The terrain shades itself
+// only by its slope. Water also reflects the clear sky, but not the storm.
 vec3 ground_radiance(vec3 point_m, vec3 ray, float distance_m) {
 #if RELIEF
   vec3 normal = ground_normal(point_m.xy);
@@ -87,24 +88,25 @@ vec3 ground_radiance(vec3 point_m, vec3 ray, float distance_m) {
   return land;
 }
 
-// Optical depth of the air before a point of the ray, which is in the eye's local frame.
+// Returns the optical depth of the air before a point of the ray, which is in the eye's local frame.
 vec3 depth_before(vec3 ray, float distance_m) {
   return depth_of_air(turbidity, air_densities, AirPath(altitude_m, ray.z, ground_curvature_per_m, distance_m));
 }
 
-// The clear sky behind a ray. The horizon is that of a sphere, the ground a paraboloid or rough.
+// Returns the clear sky behind a ray. The table's horizon is that of a sphere, but the ground is a paraboloid or
+// terrain.
 Sky sky_behind(vec3 ray, float ground_m) {
   if (RELIEF == 0 && ground_m > 0.0) ray.z = min(ray.z, horizon_sine - kJustBelow);
   if (ground_m <= 0.0) ray.z = max(ray.z, horizon_sine);
   Sky sky = sky_at(ray, towards_sun_local);
 #if RELIEF
-  // Where the table's ray ends before it is lit, the air beyond is taken to be as bright as above the horizon.
+  // If the table's ray ends before it is lit, the air beyond counts as bright as above the horizon.
   if (sky.air_mass.y < kHardlyAnyHaze) sky = sky_at(vec3(ray.xy, max(ray.z, horizon_sine)), towards_sun_local);
 #endif
   return sky;
 }
 
-// Distance of the round Earth along a ray that meets it.
+// Returns the distance of the round Earth along a ray that meets it.
 float sphere_distance_m(float sine) {
   float from_middle_m = 1.0 / ground_curvature_per_m + altitude_m;
   float nearest_m = -from_middle_m * sine;
@@ -112,7 +114,7 @@ float sphere_distance_m(float sine) {
   return nearest_m - sqrt(max(inside, 0.0));
 }
 
-// Light that the air up to a distance sends to the eye, less what the storm's shadow takes from it.
+// Returns the light that the air up to a distance sends to the eye, without the part that the storm's shadow takes.
 vec3 shaded_airlight(vec3 airlight, vec3 ray, float distance_m, vec3 sky_radiance, vec3 sky_depth) {
 #if SHADED
   vec3 of_shaded = airlight;
@@ -131,7 +133,7 @@ vec3 shaded_sky(vec3 radiance) {
 #endif
 }
 
-// The ground through the air.
+// Returns the ground seen through the air.
 vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
 #if RELIEF
   vec3 transmittance = exp(-depth_before(ray, ground_m));
@@ -143,7 +145,7 @@ vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec
 }
 
 #if FRONT
-// The eye buffer seen through the air, and the transmittance of the background.
+// Returns the eye buffer seen through the air, and the transmittance of the background.
 vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
   vec4 front = at_pixel(eye);
   float opacity = 1.0 - front.a;
@@ -151,7 +153,7 @@ vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sk
 #if DISTANCES
   float distance_m = at_pixel(eye_distance).r / opacity;
 #else
-  // The middle of the ray's path through the box.
+  // The distance is the middle of the ray's path through the box.
   vec2 path_m = path_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
   path_m.x = max(path_m.x, 0.0);
   float end_m = ground_m > 0.0 ? min(path_m.y, ground_m) : path_m.y;
@@ -170,7 +172,8 @@ void main() {
   vec3 ray = local_from_world * world_ray;
   float ground_m = ground_distance_m(origin_m, world_ray);
 #if !RELIEF
-  // Seen from space the sphere is wider than the paraboloid: between their rims the picture had a band.
+  // Seen from space, the sphere is wider than the paraboloid. Without this correction, a band would show between their
+  // rims.
   if (altitude_m > kFarFromTheGround_m && ground_m <= 0.0 && ray.z < horizon_sine) ground_m = sphere_distance_m(ray.z);
 #endif
   Sky sky = sky_behind(ray, ground_m);

@@ -1,7 +1,6 @@
-// The luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity, or of the whole
-// picture's where there is next to no storm: one work group
-// makes a histogram of means over cells of the picture, each without its brightest sample, so that noise and single bright
-// pixels do not count.
+// Measures the luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity. If
+// there is almost no storm, it measures the whole picture. One work group makes a histogram of means over cells of the
+// picture. Each mean omits the cell's brightest sample, so that noise and single bright pixels have no effect.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kMeterGroupSize) in;
@@ -11,9 +10,9 @@ layout(binding = kMeterImage, r32f) uniform writeonly image2D brightest;
 uniform vec3 luminance_weights;  // of each colour, white balance included
 
 const int kCells = 32;         // along each side of the picture
-const int kPlaces = 3;         // of samples in a cell, along each side
+const int kPlaces = 3;  // samples in a cell, along each side
 const int kBins = 768;
-const float kBinsPerStop = 32.0;  // a jump of the exposure by a step of these is not seen
+const float kBinsPerStop = 32.0;  // an exposure change by one such step is not visible
 const float kLowestLog2 = -18.0;
 const uint kFullWeight = 255u;
 const float kFewestCells = 0.001;  // share of all cells
@@ -22,7 +21,7 @@ shared uint histogram[kBins];
 
 void count_cell(int cell, float least_opacity) {
   vec2 corner = vec2(cell % kCells, cell / kCells);
-  vec2 sum = vec2(0.0);  // of luminance times opacity, and of opacity
+  vec2 sum = vec2(0.0);  // sum of luminance times opacity, and of opacity
   vec2 brightest_sample = vec2(0.0);
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
     vec2 within = (vec2(i % kPlaces, i / kPlaces) + 0.5) / float(kPlaces);
@@ -45,7 +44,7 @@ uint counted() {
   return all;
 }
 
-// By all invocations.
+// All invocations must call this function.
 void count(float least_opacity) {
   int first = int(gl_LocalInvocationIndex);
   for (int i = first; i < kBins; i += kMeterGroupSize) histogram[i] = 0u;

@@ -1,4 +1,4 @@
-// A picture all of whose pixels' rays were drawn packed (renderers::ChosenRays::ChooseAll).
+// Draws a picture whose pixels' rays were all drawn packed (renderers::ChosenRays::ChooseAll).
 #include "common/bindings.glsl"
 
 layout(binding = kPackedUnit) uniform sampler2D packed_rays;

@@ -1,8 +1,8 @@
-// The sun's disc behind a medium, and the light that the medium scatters within the forward peaks that are cut off
-// its phase functions (physics/aureole.h), added to the linear frame. View rays so near to the sun take the same path as
-// its light: only the optical depths along them count. Light scattered once within the peak has its exact phase
-// function; what is scattered more often is the mean of what each group alone would give at the same depth of the peak,
-// weighted by the groups' shares in it. Variants: those of renderers::MediumVariant, CHOSEN.
+// Adds the sun's disc behind a medium to the linear frame. It also adds the light that the medium scatters within the
+// forward peaks that are cut off its phase functions (physics/aureole.h). View rays so close to the sun take the same
+// path as its light, so only the optical depths along them count. Light scattered once within the peak has its exact
+// phase function. For light scattered more often, each group's aureole is taken at the same depth of the peak, and the
+// mean is weighted by the groups' shares of the peak. Variants: those of renderers::MediumVariant, CHOSEN.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #define GROUND 1
@@ -20,7 +20,7 @@ uniform vec3 towards_sun;
 uniform vec3 sunlight;    // irradiance at the eye
 uniform float step_m;
 uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
-uniform float peak_share[GROUPS];         // of a group's scattering
+uniform float peak_share[GROUPS];  // share of a group's scattering
 uniform float aureole_end_rad;
 uniform float aureole_max_depth;
 
@@ -29,9 +29,9 @@ out vec4 added;
 const float kNoGround_m = 1e8;
 const int kMaxSamples = 16384;
 const float kOnwards = 1.0 + 2.4e-7;
-const float kOpaqueDepth = 30.0;  // half of it, at most, is the peak's
+const float kOpaqueDepth = 30.0;  // at most half of it is that of the peak
 
-// Texel values summed over metres of the ray.
+// Returns texel values integrated over metres of the ray.
 Medium medium_along(vec3 origin_m, vec3 direction) {
   Medium sum;
   for (int plane = 0; plane < PLANES; ++plane) sum.plane[plane] = vec4(0.0);

@@ -14,12 +14,13 @@ from collections import deque
 import google
 from google.protobuf.descriptor import Descriptor, FieldDescriptor, ServiceDescriptor
 
-# The largest values of settings that decide how long a picture takes. Mutations exceed them now and then; the server's limits hold then.
+# The largest values of settings that decide how long a picture takes. Some mutations exceed them; then the server's
+# limits apply.
 SMALL = {"width_px": 40, "height_px": 40, "slices": 16, "count": 40, "scales": 2, "octaves": 2, "max_size_px": 32, "samples": 32,
          "error_seconds": 0.02, "frames_per_second": 10}
 # Fields that are nearly always set: keys, and the size of pictures, whose default is large.
 NEEDED = {"output", "width_px", "height_px", "session_id", "session_key", "job_id", "pictures"}
-# Where a response tells a name that requests may use, and the requests' fields for it.
+# The fields of responses with names that requests may use, and the requests' fields for them.
 TOLD = {"CreateSessionResponse.session_id": "session", "CreateSessionResponse.viewer_key": "session", "StormSummary.id": "storm_id",
         "RenderJob.id": "job_id", "Joined.participant_key": "participant_key"}
 ASKED = {"session_id": "session", "session_key": "session", "storm_id": "storm_id", "job_id": "job_id",
@@ -62,12 +63,12 @@ class Messages:
     """Makes random messages, with the names that the server told."""
 
     limits = None  # the module of limits.proto
-    scene = None  # the descriptor of Scene, whose fields update masks name
+    scene = None  # the descriptor of Scene, whose fields are named by update masks
 
     def __init__(self, chance: random.Random) -> None:
         self.chance = chance
         self.known = {name: deque(maxlen=64) for name in {*TOLD.values()}}
-        self.used: list[str] = []  # names in the messages since it was cleared
+        self.used: list[str] = []  # names in the messages since the list was cleared
         self.wild = 0.0
         self.option = {}
 
@@ -182,12 +183,12 @@ class Messages:
             out[at:at] = chance.randbytes(chance.randint(1, 20))
         elif kind == 5:
             out += out[at:]
-        elif kind == 6:  # an unknown field of any wire type, groups and field 0 among them
+        elif kind == 6:  # an unknown field of any wire type, including groups and field 0
             out += varint(chance.choice([0, 1, 2, 3, 100, 19000, 2**29 - 1]) << 3 | chance.randint(0, 7)) + chance.randbytes(chance.randint(0, 9))
-        elif kind == 7:  # messages or groups within each other
+        elif kind == 7:  # nested messages or groups
             number, depth = chance.randint(1, 12), chance.choice([20, 101, 3000])
             out += varint(number << 3 | 3) * depth if chance.random() < 0.5 else (varint(number << 3 | 2) + b"\x7f") * depth
-        elif kind == 8:  # a number of too many bytes, a length beyond the end
+        elif kind == 8:  # a number of too many bytes, or a length beyond the end
             out += varint(chance.randint(1, 20) << 3 | chance.choice([0, 2])) + b"\xff" * chance.choice([4, 9, 10, 11])
         else:
             out[at:at] = chance.choice(ODD_TEXTS)

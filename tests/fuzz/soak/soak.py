@@ -22,7 +22,7 @@ import sys
 import tempfile
 import time
 
-# ctest counts a test that ends with this as skipped.
+# The exit code that ctest counts as skipped.
 SKIPPED = 77
 if importlib.util.find_spec("google.protobuf") is None or shutil.which("protoc") is None:
     print("SKIPPED: python3-protobuf or protobuf-compiler is not installed; ./dev install python does that")
@@ -35,7 +35,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 # Calls that cost much more than others are made less often, so that they do not take most of the time.
 SELDOM = {"RenderImage": 0.1, "RenderImageWithProgress": 0.1, "GenerateCloud": 0.05, "CreateRenderJob": 0.05, "Interact": 0.5,
           "WatchFrames": 0.3, "WatchRenderJob": 0.3}
-# Small, so that what the server may keep is full when the warm-up ends.
+# The limits are small, so that the server's tables are full when the warm-up ends.
 SERVER_FLAGS = ["--max-requests", "0", "--max-sessions", "24", "--max-sessions-each", "24", "--max-picture", "0.003", "--max-samples", "0.1",
                 "--max-render-time", "0.5", "--max-jobs", "10", "--max-jobs-each", "10", "--max-job-pictures", "20",
                 "--max-kept-pictures", "50", "--jobs-quota", "0.01", "--memory-budget", "128MiB"]
@@ -43,7 +43,7 @@ GRPC_STATUSES = ["OK", "CANCELLED", "UNKNOWN", "INVALID_ARGUMENT", "DEADLINE_EXC
                  "RESOURCE_EXHAUSTED", "FAILED_PRECONDITION", "ABORTED", "OUT_OF_RANGE", "UNIMPLEMENTED", "INTERNAL", "UNAVAILABLE",
                  "DATA_LOSS", "UNAUTHENTICATED"]
 UNKNOWN, INTERNAL = 2, 13
-# Answers of gRPC's library itself to headers that no gRPC client sends. Thunderhead never sees such calls.
+# Matches answers of gRPC's own library to headers that no gRPC client sends. Thunderhead never sees such calls.
 OF_THE_LIBRARY = re.compile(r"(Bad|Missing) :?(te|path|method|scheme|status|authority) header")
 CONTENT_TYPES = ["", "application/grpc", "application/grpc+json", "application/grpc-web", "application/grpc-web-text", "application/json",
                  "application/grpc-web+proto; charset=utf-8", "APPLICATION/GRPC-WEB+PROTO", "text/plain", "application/grpcx", "*/*",
@@ -86,7 +86,7 @@ class Caller:
         self.chance = random.Random(seed)
         self.messages = Messages(self.chance)
         self.rpcs = rpcs
-        self.intact = True  # whether the messages of the last call are as they were made
+        self.intact = True  # whether the messages of the last call were left unmodified
         self.weights = [SELDOM.get(rpc.name, 1.0) for rpc in rpcs]
         self.transports = {"grpc": Grpc(ports["grpc"]), "web": GrpcWeb(ports["http"]), "websocket": WebSocket(ports["http"])}
 
@@ -106,10 +106,10 @@ class Caller:
         if transport != "websocket":
             kind = "application/grpc" if transport == "grpc" else "application/grpc-web+proto"
             headers.append(("content-type", chance.choice(CONTENT_TYPES) if self.odd(0.03) else kind))
-        # A session or job whose answer nobody reads would take a place until the end.
+        # A session or job whose answer is not read would take a place until the end.
         keeps = rpc.name.startswith("Create")
         if self.odd(0.03) and not keeps:
-            # A stream that has nothing to tell ends by its timeout alone. gRPC ignores one that it cannot read.
+            # A stream without messages ends only by its timeout. gRPC ignores a timeout that it cannot parse.
             headers.append(("grpc-timeout", chance.choice(SHORT_TIMEOUTS if rpc.server_streaming else TIMEOUTS)))
         elif rpc.server_streaming:
             headers.append(("grpc-timeout", f"{chance.randint(5, 200)}m"))
@@ -166,7 +166,7 @@ class Caller:
     def next(self) -> tuple[str, Call, Answer, str]:
         """Makes a call; returns its rpc, what was sent, the answer, and what is wrong with it."""
         rpc = self.chance.choices(self.rpcs, self.weights)[0]
-        # A few sessions for each worker, so that none takes the places of all.
+        # Each worker has a few sessions, so that none takes all places.
         keys = len(self.messages.known["session"])
         if (keys == 0 or keys > 6) and self.odd(0.3):
             rpc = next(rpc for rpc in self.rpcs if rpc.name == ("CreateSession" if keys == 0 else "CloseSession"))
@@ -181,7 +181,7 @@ class Caller:
                 self.messages.learn(rpc.output_type._concrete_class.FromString(message))
             except Exception as error:
                 wrong = wrong or f"the answer cannot be parsed: {error}"
-        # A key that was damaged on its way is no reason to forget the session.
+        # A session is kept if its key was damaged in the request.
         if (self.intact and "no session" in answer.text) or (answer.status == 0 and rpc.name in ("CloseSession", "DeleteCloud")):
             self.messages.forget()
         return rpc.name, call, answer, wrong
@@ -191,7 +191,7 @@ def fault(call: Call, answer: Answer) -> str:
     """What is wrong with the answer to a call; nothing of most."""
     if answer.status in (UNKNOWN, INTERNAL) and not OF_THE_LIBRARY.fullmatch(answer.text):
         return f"{GRPC_STATUSES[answer.status]}: {answer.text}"
-    # gRPC's library resets a call whose message says that it is compressed, and is not.
+    # gRPC's library resets a call whose message is marked as compressed but is not.
     if answer.status == "reset 2" and any(piece[:1] != b"\0" for piece in call.pieces):
         return ""
     if answer.status in ("no trailers", "closed 1011", "reset 2", "http 500", "http 502"):
@@ -311,7 +311,7 @@ class Soak:
                 except EOFError:
                     pipes.remove(pipe)
             if self.server.process.poll() is not None:
-                continue  # until every worker has told its last calls
+                continue  # until every worker has reported its last calls
             if time.monotonic() - told > (5 if sys.stdout.isatty() else 30):
                 told = time.monotonic()
                 print(f"{self.done} of {self.options.calls} calls, {self.done / (told - self.began):.0f} a second, "

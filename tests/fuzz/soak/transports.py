@@ -8,7 +8,7 @@ import dataclasses
 import socket
 import struct
 
-# Longest wait before a call counts as hung. It is no requirement on speed.
+# The longest wait before a call counts as hung. It is not a requirement on speed.
 HANG_LIMIT_S = 600.0
 Headers = list[tuple[str, str]]
 
@@ -75,7 +75,7 @@ class Grpc(Connection):
     def open(self) -> None:
         super().open()
         self.stream, self.window, self.first_window, self.unacknowledged = -1, 65535, 65535, 0
-        # No table, no push, and the largest windows.
+        # The settings are no header table, no push, and the largest windows.
         settings = struct.pack(">HIHIHI", 1, 0, 2, 0, 4, 2**31 - 1)
         self.socket.sendall(b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + self.frame(self.SETTINGS, 0, 0, settings)
                             + self.frame(self.WINDOW, 0, 0, struct.pack(">I", 2**31 - 1 - 65535)))

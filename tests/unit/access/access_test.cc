@@ -1,4 +1,4 @@
-// Who may enter: tokens and their file, JWTs, quotas, and the audit.
+// Tests of access control: tokens and their file, JWTs, quotas, and the audit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <jwt.h>
@@ -45,7 +45,8 @@ std::string LineOf(const std::string& name, const std::string& role, const std::
   return absl::StrCat(name, " ", role, " ", Sha256(token), "\n");
 }
 
-// The files' storage is waited for however slow the machine is: time stands still.
+// Time stands still, so that reads of the files wait as long as they need, however slow the machine
+// is.
 const base::TimeSource& StandingTime() {
   static const testing::ManualTime time;
   return time;
@@ -55,7 +56,7 @@ class SecretFile {
  public:
   explicit SecretFile(const std::string& text) { Write(text); }
   void Write(const std::string& text) {
-    // In one step, as an administrator should.
+    // The file is replaced in one step, as an administrator should do it.
     const std::string next = folder_.File("next");
     std::ofstream(next) << text;
     std::filesystem::permissions(next, std::filesystem::perms::owner_read);
@@ -78,7 +79,7 @@ TEST(TokenListTest, FindsTheNameAndRoleOfAToken) {
   EXPECT_EQ(list->Find("two")->role, Role::kPipeline);
   EXPECT_FALSE(list->Find("three").has_value());
   EXPECT_FALSE(list->Find("").has_value());
-  // The file's own content is no token.
+  // The file's own content is not a valid token.
   EXPECT_FALSE(list->Find(Sha256("one")).has_value());
 }
 
@@ -103,7 +104,7 @@ TEST(TokenFileTest, IsReadAgainWhenItChanges) {
   file.Write(LineOf("ben", "viewer", "two"));
   EXPECT_TRUE(absl::IsUnauthenticated((*tokens)->Identify({"one", ""}).status()));
   EXPECT_TRUE((*tokens)->Identify({"two", ""}).ok());
-  // A slip locks nobody out.
+  // A mistake in the file locks no user out.
   file.Write("ben viewer");
   EXPECT_TRUE((*tokens)->Identify({"two", ""}).ok());
 }
@@ -134,10 +135,10 @@ struct Claims {
 
 class JwtTest : public ::testing::Test {
  protected:
-  // Of all tokens and all that are asked about them, however long a test takes.
+  // The time of all tokens and all checks, however long a test takes.
   static inline const system_clock::time_point kNow = system_clock::now();
 
-  // With the fields of a JSON object in the header besides.
+  // Signs a token whose header also contains the fields of a JSON object.
   static std::string Sign(const Claims& claims, jwt_alg_t algorithm, const std::string& key,
                           const std::string& header = "") {
     jwt_t* jwt = nullptr;
@@ -169,7 +170,7 @@ class JwtTest : public ::testing::Test {
     return Sign({}, JWT_ALG_HS256, secret_, header);
   }
 
-  // Empty if the token is believed.
+  // Returns the error; empty if the token is accepted.
   std::string Complaint(const std::string& token, const JwtClaims& wanted = {}) const {
     const auto identity = JwtKey::Parse(secret_)->Verify(token, wanted, kNow);
     return std::string(identity.status().message());
@@ -190,17 +191,17 @@ TEST_F(JwtTest, ForgedTokensAreNot) {
   EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS256, std::string(32, 'x'))), HasSubstr("not signed"));
   EXPECT_THAT(Complaint(Sign({}, JWT_ALG_NONE, "")), HasSubstr("the form"));
   EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS512, std::string(64, 's'))), HasSubstr("not signed"));
-  // Another payload under the signature.
+  // Changes the payload under the signature.
   std::string token = Sign();
   token[token.find('.') + 5] ^= 1;
   EXPECT_THAT(Complaint(token), HasSubstr("not signed"));
-  // Without its signature, as with alg none.
+  // Removes the signature, as with alg none.
   EXPECT_THAT(Complaint(token.substr(0, token.rfind('.') + 1)), HasSubstr("the form"));
   EXPECT_THAT(Complaint("nonsense"), HasSubstr("the form"));
   EXPECT_THAT(Complaint(std::string(10'000, 'a')), HasSubstr("too long"));
 }
 
-// libjwt ends a part at the first character of another alphabet.
+// libjwt ends a part at the first character outside the Base64 alphabet.
 TEST_F(JwtTest, NothingMayFollowAPart) {
   const std::string token = Sign();
   for (const char* const more : {"=", "==", "!", "=forged", " ", "\n", ".", ".x", "%00"}) {
@@ -218,13 +219,13 @@ TEST_F(JwtTest, ExtensionsAreNotUnderstood) {
 }
 
 TEST_F(JwtTest, TimesAndClaimsAreChecked) {
-  EXPECT_EQ(Complaint(Sign({.expires_in_s = -10})), "");  // within the clocks' difference
+  EXPECT_EQ(Complaint(Sign({.expires_in_s = -10})), "");  // within the tolerated clock difference
   EXPECT_THAT(Complaint(Sign({.expires_in_s = -60})), HasSubstr("has expired"));
   EXPECT_THAT(Complaint(Sign({.expires_in_s = 0})), HasSubstr("no time at which it expires"));
   EXPECT_EQ(Complaint(Sign({.expires_in_s = 253'402'300'799})), "") << "beyond the year 9999";
   EXPECT_THAT(Complaint(Sign({.begins_in_s = 120})), HasSubstr("not valid yet"));
   EXPECT_THAT(Complaint(Sign({.begins_in_s = 253'402'300'799})), HasSubstr("not valid yet"));
-  // kNow and an hour, in forms that are no whole number.
+  // These are kNow plus an hour, in forms that are not whole numbers.
   const auto later = std::chrono::system_clock::to_time_t(kNow) + 3600;
   for (const std::string& nbf :
        {absl::StrCat(later, ".5"), std::string("1e300"), absl::StrCat("\"", later, "\""),
@@ -241,7 +242,7 @@ TEST_F(JwtTest, TimesAndClaimsAreChecked) {
   EXPECT_EQ(Complaint(Sign({.issuer = "us"}), {.issuer = "us"}), "");
   EXPECT_THAT(Complaint(Sign({.audience = "mail"}), {.audience = "storms"}), HasSubstr("(aud)"));
   EXPECT_EQ(Complaint(Sign({.audience = "storms"}), {.audience = "storms"}), "");
-  // A list is for each text in it, and for nothing that only contains the text.
+  // A list is for each text in it, but not for texts that it only contains as a part.
   for (const char* const list : {R"(["storms"])", R"(["mail", "storms"])"}) {
     const std::string json = absl::StrCat(R"({"aud": )", list, "}");
     EXPECT_EQ(Complaint(Sign({.json = json}), {.audience = "storms"}), "") << list;
@@ -273,7 +274,7 @@ TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
   EXPECT_TRUE(key->Verify(token, {}, kNow).ok());
   EXPECT_FALSE(key->Verify(token + "=forged", {}, kNow).ok());
   EXPECT_FALSE(key->Verify(token + "AAAA", {}, kNow).ok());
-  // Everybody knows the public key, so nobody may sign with it as if it were a secret.
+  // The public key is known to all, so it must not be accepted as if it were a secret to sign with.
   EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_HS256, public_key), {}, kNow).ok());
   EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_NONE, ""), {}, kNow).ok());
   EXPECT_THAT(std::string(JwtKey::Parse(private_key).status().message()),

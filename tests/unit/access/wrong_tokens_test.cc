@@ -1,4 +1,4 @@
-// Who tries tokens, and those behind the same address who have one.
+// Tests of clients that guess tokens, and of clients behind the same address that have a valid one.
 #include "access/wrong_tokens.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(WrongTokensTest, OthersAreNotHeldUp) {
   EXPECT_TRUE(wrong.MayShow(anna, kStart).ok()) << "behind the same address";
   EXPECT_TRUE(wrong.MayShow({"ben's", "192.0.2.8:1"}, kStart).ok()) << "from elsewhere";
   EXPECT_TRUE(wrong.MayShow({"", "192.0.2.7:1"}, kStart).ok()) << "shows none";
-  // It was taken away.
+  // The token was revoked.
   wrong.WasWrong(anna, kStart);
   EXPECT_FALSE(wrong.MayShow(anna, kStart).ok());
 }

@@ -14,8 +14,8 @@ using Law = std::function<glm::dvec3(const glm::dvec3& place, const glm::dvec3& 
 
 class CorrectionFitTest : public testing::Test {
  protected:
-  // Rays through random places of the box `low` to `high` in random directions, drawn with
-  // brightness 0.2 to 1; estimates are `law` times that, times noise of mean 1.
+  // Adds rays through random places of the box `low` to `high` in random directions, drawn with
+  // brightness 0.2 to 1. Their estimates are `law` times that brightness, times noise of mean 1.
   void AddRays(int count, const Law& law, double noise, const glm::dvec3& low = glm::dvec3(0.0),
                const glm::dvec3& high = glm::dvec3(1.0)) {
     for (int i = 0; i < count; ++i) {
@@ -25,14 +25,14 @@ class CorrectionFitTest : public testing::Test {
       ray.place = low + (high - low) * glm::dvec3(uniform(), uniform(), uniform());
       ray.direction = glm::normalize(glm::dvec3(uniform(), uniform(), uniform()) - glm::dvec3(0.5));
       ray.drawn = glm::dvec3(0.2 + 0.8 * uniform());
-      // Distributed like path estimates: mostly too small, sometimes far too large.
+      // The noise is distributed like path estimates: mostly too small, sometimes far too large.
       const double luck = uniform() < 0.2 ? 1.0 + 4.0 * noise : 1.0 - noise;
       ray.estimate = luck * law(ray.place, ray.direction) * ray.drawn;
       fit_.Add(ray);
     }
   }
 
-  // The factor of a texel along `direction`.
+  // Returns the factor of a texel along `direction`.
   glm::dvec3 FactorAt(const glm::ivec3& texel, const glm::dvec3& direction) const {
     const Factors factors =
         fit_.Solve()[static_cast<std::size_t>((texel.z * 16 + texel.y) * 16 + texel.x)];
@@ -77,7 +77,8 @@ TEST_F(CorrectionFitTest, FactorsFollowPlaceAndDirection) {
 }
 
 TEST_F(CorrectionFitTest, NoiseIsAveragedOverMoreThanATexel) {
-  // 50 rays a texel with a standard error of twice their value: a texel alone would be off by 0.28.
+  // There are 50 rays per texel, with a standard error of twice their value. A texel fitted alone
+  // would be off by 0.28.
   AddRays(
       50 * 1024, [](const auto&, const auto&) { return glm::dvec3(1.4); }, 1.0);
   double squares = 0.0;
@@ -94,8 +95,9 @@ TEST_F(CorrectionFitTest, ManyNoisyRaysSettleATexelByItself) {
   EXPECT_NEAR(FactorAt({5, 10, 1}, kUp).x, 1.3, 0.1);
 }
 
-// With the same noise and few rays, factors that differ much must not be drawn to their mean, nor
-// those that are alike follow the noise: how much they differ is found from the rays.
+// The noise is the same and rays are few. Factors that differ much must not be pulled to their
+// mean, and similar factors must not follow the noise. The fit determines from the rays how much
+// factors differ.
 TEST_F(CorrectionFitTest, FactorsThatDifferMuchAreFollowedSooner) {
   for (const double half : {0.0, 0.6}) {
     fit_ = CorrectionFit({16, 16, 4});
@@ -108,12 +110,12 @@ TEST_F(CorrectionFitTest, FactorsThatDifferMuchAreFollowedSooner) {
       squares += std::pow(FactorAt({x, 9, 1}, kUp).x - (1.0 - half), 2);
       squares += std::pow(FactorAt({x, 6, 1}, kUp).x - (1.0 + half), 2);
     }
-    // Steps of 0.1 and directions of 0.05, whatever the rays, leave 0.06 and 0.25.
+    // Fixed steps of 0.1 and directions of 0.05, independent of the rays, leave 0.06 and 0.25.
     EXPECT_LT(std::sqrt(squares / 32.0), half > 0.0 ? 0.2 : 0.04) << half;
   }
 }
 
-// A factor that was found from rays of one direction is not taken for rays of another.
+// A factor fitted to rays of one direction must not be used for rays of another.
 TEST_F(CorrectionFitTest, AFactorOfOneDirectionSaysLittleOfTheOpposite) {
   const Law law = [](const auto&, const glm::dvec3& direction) {
     return glm::dvec3(direction.z > 0.0 ? 1.3 : 1.0);
@@ -136,7 +138,7 @@ TEST_F(CorrectionFitTest, AFactorOfOneDirectionSaysLittleOfTheOpposite) {
 }
 
 TEST_F(CorrectionFitTest, BrightRaysCountForMore) {
-  // A texel's factor conserves its total light: the factor 3 of the dim rays hardly counts.
+  // A texel's factor conserves its total light, so the factor 3 of the dim rays hardly counts.
   AddRays(
       20'000, [](const auto&, const auto&) { return glm::dvec3(1.0); }, 0.0);
   for (int i = 0; i < 640; ++i) {

@@ -1,4 +1,4 @@
-// Fitting the cost of a frame, on plain values.
+// Tests of fitting the cost of a frame, on plain values.
 #include "accuracy/cost_model.h"
 
 #include "gtest/gtest.h"
@@ -39,11 +39,11 @@ TEST(CostModelTest, FollowsAMachineThatSlowsDown) {
 }
 
 TEST(CostModelTest, SmallFramesSayLittleOfLargeOnes) {
-  // As a server draws at its start on software GL: 20 ms, nearly all of it fixed.
+  // A server draws such frames at its start on software GL: 20 ms, nearly all of it fixed cost.
   CostModel start;
   for (int i = 0; i < 3; ++i) start.Observe(0.03, 20.0, {{scene::FrameStage::kSlices, 1.0}});
   EXPECT_LT(start.EstimateMs(4000.0, scene::Stage::kView), 20e3);
-  // Two sizes that hardly differ, and noise.
+  // The frames have two sizes that hardly differ, and noise.
   CostModel noisy;
   noisy.Observe(0.01, 10.0, {{scene::FrameStage::kSlices, 1.0}});
   noisy.Observe(0.03, 20.0, {{scene::FrameStage::kSlices, 1.0}});

@@ -11,24 +11,26 @@ namespace {
 // A picture of mean radiance about 1 whose error varies from pixel to pixel, and paths whose
 // estimates are mostly too small and sometimes far too large.
 struct Picture {
-  double bias = 0.1;    // (drawn - truth) / truth, of every pixel
-  double spread = 0.2;  // of the pixels' errors besides
-  double noise = 1.5;   // standard deviation of a path over the truth
+  double bias = 0.1;    // (drawn - reference) / reference, of every pixel
+  double spread = 0.2;  // of the pixels' errors about the bias
+  double noise = 1.5;   // standard deviation of a path over the reference
   double truth = 1.0;
-  double spikes = 0.0;   // share of the light that comes by far brighter paths
-  double spike = 100.0;  // so many times as bright
+  double spikes = 0.0;   // share of the light that comes from far brighter paths
+  double spike = 100.0;  // how many times as bright these are
 
   double Error() const { return std::sqrt(bias * bias + spread * spread); }
 
   ErrorEstimate Traced(int pixels, int paths, std::uint64_t seed) const {
-    // The mean of what is drawn is known; half of the errors' spread is above it.
+    // The drawn picture's mean is known. Half of the pixels' errors lie above its bias, and half
+    // below.
     ErrorEstimate estimate(truth * (1.0 + bias));
     for (int i = 0; i < pixels; ++i) {
       reference::RandomStream random(seed, static_cast<std::uint64_t>(i), 0);
       const double error = bias + (random.Uniform() < 0.5 ? -spread : spread);
       PixelTruth pixel(truth);
       for (int path = 0; path < paths; ++path) {
-        // With share p at the high value, mean 0 and standard deviation 1.
+        // The noise has the high value with probability p; its mean is 0 and its standard deviation
+        // 1.
         constexpr double kShare = 0.1;
         const double luck = random.Uniform() < kShare ? std::sqrt((1.0 - kShare) / kShare)
                                                       : -std::sqrt(kShare / (1.0 - kShare));
@@ -49,7 +51,8 @@ TEST(ErrorEstimate, TheTruthsNoiseIsNoError) {
     const auto error = right.Traced(2000, 16, seed).Result();
     ASSERT_TRUE(error.has_value());
     EXPECT_LT(error->relative_rmse.low, 0.05);
-    // Paths alone, taken for the truth, would say 1.5 / sqrt(16) = 0.375.
+    // If the path estimates were taken for the reference, the result would be 1.5 / sqrt(16) =
+    // 0.375.
     EXPECT_LT(error->relative_rmse.high, 0.15);
     mean += error->relative_bias.value / 20.0;
   }
@@ -71,8 +74,9 @@ TEST(ErrorEstimate, IntervalsHoldTheErrorAsOftenAsTheySay) {
       const Estimated& bias = error->relative_bias;
       held_bias += bias.low <= picture.bias && picture.bias <= bias.high ? 1 : 0;
     }
-    // 95 % of 200 is 190 +- 3. Intervals of the error are wider by what clamping may have misplaced
-    // and by what a reference does not know either; how wide they are, other tests say.
+    // The expected number is 95 % of 200, or 190 +- 3. Intervals of the error are wider by the
+    // possible bias of clamping, and by what a reference does not know either. Other tests check
+    // their width.
     EXPECT_GE(held, 180);
     EXPECT_GE(held_bias, 180);
     EXPECT_LE(held_bias, 199);
@@ -107,7 +111,7 @@ TEST(ErrorEstimate, TheBestNumberOfPathsGivesTheNarrowestInterval) {
 }
 
 TEST(ErrorEstimate, RarePathsOfGreatBrightnessWidenNothing) {
-  // Their variance, 0.003 * 1000, is twelve times that of all others.
+  // The variance of these paths, 0.003 * 1000, is twelve times that of all others.
   const auto width = [](const Picture& picture) {
     double sum = 0.0;
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -124,7 +128,7 @@ TEST(ErrorEstimate, ClampedLightIsGivenBack) {
   pixel.Add(glm::dvec3(1.0, 2.0, 3.0));
   pixel.Add(glm::dvec3(10.0, 20.0, 30.0));
   EXPECT_EQ(pixel.Clamped(kClamps.size() - 1).first, glm::dvec3(11.0, 22.0, 33.0));
-  // 4 times 2, with the same hue.
+  // The limit is 4 times 2, with the same hue.
   EXPECT_NEAR(pixel.Clamped(0).first.x, 1.0 + 4.0, 1e-12);
   EXPECT_NEAR(pixel.Clamped(0).first.z, 3.0 + 12.0, 1e-12);
   double mean = 0.0;
@@ -136,8 +140,8 @@ TEST(ErrorEstimate, ClampedLightIsGivenBack) {
 }
 
 TEST(ErrorEstimate, PixelsCountByTheirWeight) {
-  // Twice as many pixels of the left half are traced as of the right, whose error is three times as
-  // large.
+  // Twice as many pixels are traced in the left half as in the right half, whose error is three
+  // times as large.
   ErrorEstimate estimate(1.0);
   for (int i = 0; i < 30000; ++i) {
     reference::RandomStream random(3, static_cast<std::uint64_t>(i), 0);

@@ -1,4 +1,4 @@
-// The measured error of pictures that are wrong by a known amount, on a traced tower.
+// Tests of the measured error of pictures that are wrong by a known amount, on a traced tower.
 #include "accuracy/error_meter.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// A tower in a wider domain of level ground.
+// Returns a tower in a wider domain of level ground.
 std::shared_ptr<volume::HydrometeorFields> MakeTower() {
   auto fields = std::make_shared<volume::HydrometeorFields>(
       *support::MakeSlab(8000.0, 6000.0, 0.02, {20, 20, 15}));
@@ -62,7 +62,7 @@ struct Wrong {
   double bias = 0.0;
 };
 
-// The picture with every other block of pixels 40 % too bright and the rest 10 % too dark.
+// Returns the picture with every other block of pixels 40 % too bright and the rest 10 % too dark.
 Wrong WrongBy(const picture::LinearPicture& truth) {
   Wrong wrong{truth};
   double squares = 0.0;
@@ -75,7 +75,7 @@ Wrong WrongBy(const picture::LinearPicture& truth) {
     for (int color = 0; color < 3; ++color) {
       const double right = truth.radiance[i][color];
       const double noise = truth.standard_error[i][color];
-      // The truth itself is off by its noise, and so is the picture made from it.
+      // The reference itself has noise, and so has the picture made from it.
       squares += std::pow((factor - 1.0) * right, 2) + (2.0 * factor - 1.0) * noise * noise;
       difference += (factor - 1.0) * right;
       sum += right;
@@ -127,7 +127,7 @@ TEST(ErrorMeter, PathsCountForTheNextPictureToo) {
   const std::int64_t paths = meter->Result()->paths;
   meter->Show(truth);
   EXPECT_EQ(meter->Result()->paths, paths);
-  // All that is wrong with it is its own noise.
+  // The picture's only error is its own noise.
   EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
   EXPECT_LT(meter->Result()->relative_rmse.value, 0.5 * wrong.error);
   picture::LinearPicture smaller{{16, 12}, std::vector<glm::vec3>(192, glm::vec3(0.1F))};
@@ -146,7 +146,7 @@ TEST(ErrorMeter, FalseColorsAreNoError) {
   EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
 }
 
-// The tower against the sun, which stands just above it.
+// Returns a scene with the sun just above the tower.
 scene::Scene AgainstTheSun() {
   scene::Scene scene = TowerScene();
   auto& camera = std::get<scene::OrbitCamera>(scene.camera);
@@ -213,7 +213,7 @@ TEST(ErrorMeters, DrawThenTraceAndDrawAgainAsTheLightGetsBetter) {
   EXPECT_EQ(meters.Step(scene, fields, 0, draw)->traced_s, 0.0);
   EXPECT_GT(meters.Step(scene, fields, 0, draw)->traced_s, 0.0);
   EXPECT_EQ(drawn, 1);
-  scene.display.exposure_ev = 3.0;  // the same light
+  scene.display.exposure_ev = 3.0;  // the light stays the same
   EXPECT_TRUE(meters.Step(scene, fields, 0, draw)->error.has_value());
   EXPECT_EQ(drawn, 1);
   ASSERT_TRUE(meters.Step(scene, fields, 100'000, draw).ok());

@@ -1,4 +1,4 @@
-// The progress of tracing light, on plain values.
+// Tests of the progress of tracing light, on plain values.
 #include "accuracy/light_progress.h"
 
 #include "gtest/gtest.h"

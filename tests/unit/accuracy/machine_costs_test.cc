@@ -1,4 +1,4 @@
-// The costs that a machine learns from its frames, on fake times.
+// Tests of the costs that a machine learns from its frames, on fake times.
 #include "accuracy/machine_costs.h"
 
 #include "gtest/gtest.h"
@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kView = "view";
 constexpr double kTableMs = 10.0;
 
-// With a row of 64 slices for views from the top.
+// Returns tables with a row of 64 slices for views from the top.
 OfferTables Tables() {
   PricedSettings table;
   table.size_px = {200, 100};

@@ -1,4 +1,4 @@
-// Choosing a setting from a table, on plain values.
+// Tests of choosing a setting from a table, on plain values.
 #include "accuracy/offers.h"
 
 #include <cmath>
@@ -23,7 +23,7 @@ Setting Slices(int slices, const PlainTechnique& plain = test_support::kLightVol
   return setting;
 }
 
-// More expensive ones are more accurate, except for the last.
+// More expensive settings are more accurate, except for the last.
 const std::vector<Offer> kOffers = {{Slices(32), 5.0, 0.40},
                                     {Slices(64), 10.0, 0.30},
                                     {Slices(128), 20.0, 0.20},
@@ -43,7 +43,7 @@ TEST(BestOfferTest, CheapestThatMeetsAnError) {
 TEST(BestOfferTest, MostAccurateThatMeetsATime) {
   EXPECT_EQ(Best(MaxMilliseconds{5.0}), kOffers[0]);
   EXPECT_EQ(Best(MaxMilliseconds{19.9}), kOffers[1]);
-  // More time than the best needs does not lead to a worse one.
+  // A limit above the time of the best setting does not select a worse one.
   EXPECT_EQ(Best(MaxMilliseconds{1000.0}), kOffers[2]);
 }
 
@@ -56,19 +56,19 @@ TEST(BestOfferTest, NearestWhereNoneMeets) {
 }
 
 TEST(BestOfferTest, WhatIsDrawnStaysWhileItIsLittleWorse) {
-  // Within a tenth of the limit, but twice as expensive as the best.
+  // The present setting is within a tenth of the limit, but twice as expensive as the best.
   EXPECT_EQ(Best(MaxError{0.5}, Slices(64)), kOffers[0]);
-  // 10.5 ms would give the second; the third is within a tenth of 18.5.
+  // The second setting is the best within the limit; the third is within a tenth of 18.5 ms.
   EXPECT_EQ(Best(MaxMilliseconds{18.5}), kOffers[1]);
   EXPECT_EQ(Best(MaxMilliseconds{18.5}, Slices(128)), kOffers[2]);
   EXPECT_EQ(Best(MaxMilliseconds{18.0}, Slices(128)), kOffers[1]);
-  // The fourth is a quarter worse than the best, which is the tolerance.
+  // The fourth setting is a quarter worse than the best, which is exactly the tolerance.
   EXPECT_EQ(Best(MaxMilliseconds{100.0}, Slices(256)), kOffers[3]);
-  // A setting outside the table is not kept.
+  // A present setting that is not in the table is not kept.
   EXPECT_EQ(Best(MaxError{0.5}, Slices(7)), kOffers[0]);
 }
 
-// A machine's choice and estimates by `tables`.
+// A machine's choice and estimates from `tables`.
 struct Desk {
   explicit Desk(OfferTables offer_tables) : tables(std::move(offer_tables)) {}
 
@@ -163,7 +163,7 @@ TEST_F(OffersTest, TimesAreCorrectedByWhatFramesCost) {
   EXPECT_EQ(scene::CountOf(decided.rendering.technique), 128);
   desk_.Observe(decided, 45.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 32);
-  // A cheaper machine than the table's, once that is known of the setting itself.
+  // The machine is faster than the table's, once that is known for the setting itself.
   for (int i = 0; i < 30; ++i) desk_.Observe(decided, 10.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 128);
 }
@@ -177,13 +177,13 @@ TEST_F(OffersTest, ReportsWhatItBelieves) {
   EXPECT_EQ(report.model_error, 0.30);
   EXPECT_EQ(report.estimated_error, 0.30);
   EXPECT_FALSE(report.unmet.has_value());
-  // A coarse frame reports its own error, and that of the full frame meets the limit.
+  // A coarse frame reports its own error; the error of the full frame meets the limit.
   report = *desk_.estimator.Report(decided, {0.5, 0.5}, {});
   EXPECT_EQ(report.slices, 32);
   EXPECT_EQ(report.image_scale, 0.5);
   EXPECT_EQ(report.estimated_error, 0.40);
   EXPECT_FALSE(report.unmet.has_value());
-  // The discretisation error of this view is so large that the limit is missed after all.
+  // The discretisation error of this view is so large that the limit is missed.
   report = *desk_.estimator.Report(decided, {}, {0, 0.4});
   EXPECT_DOUBLE_EQ(report.estimated_error, 0.5);
   EXPECT_EQ(report.discretisation_error, 0.4);
@@ -256,7 +256,7 @@ TEST_F(OffersTest, FramesThatAskForNothingAreReportedWhereTheTableKnowsThem) {
 
 class TracedOffersTest : public ::testing::Test {
  protected:
-  // Two settings of diffusion, the second also with traced light.
+  // Returns two settings of diffusion, the second also with the path-traced correction.
   static OfferTables Tables() {
     PricedSettings table;
     table.size_px = {200, 100};
@@ -290,9 +290,9 @@ TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.09})), scene::TracedLight::kAwaited);
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.06})), scene::TracedLight::kAwaited);
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})),
-            scene::TracedLight::kAwaited);  // the nearest
+            scene::TracedLight::kAwaited);  // the nearest setting
   EXPECT_EQ(scene::CountOf(TechniqueFor(MaxError{0.01})), 128);
-  // With a limit of time no light is traced.
+  // With a time limit no light is traced.
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxMilliseconds{50.0})), scene::TracedLight::kOff);
 }
 
@@ -306,7 +306,7 @@ TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
   EXPECT_EQ(error_after(90'000), 0.11);
   EXPECT_EQ(error_after(100'000), 0.08);
   EXPECT_EQ(error_after(4'000'000), 0.05);
-  // A picture with few paths is not yet the requested one.
+  // A picture with few paths does not yet meet the request.
   EXPECT_EQ(desk_.estimator.Report(decided, {}, {})->unmet, std::nullopt);
   scene_.accuracy = MaxError{0.01};
   const scene::Scene nearest = *desk_.Decide(scene_);
@@ -323,7 +323,7 @@ TEST_F(TracedOffersTest, APictureWaitsForTheFewestPathsThatItsErrorNeeds) {
   EXPECT_EQ(paths_for(MaxError{0.06}), 1'000'000);
   EXPECT_EQ(paths_for(MaxError{0.01}), kTracedPaths) << "out of reach";
   EXPECT_EQ(paths_for(std::monostate()), kImagePaths);
-  // Measured with 100 000 paths, it has one and a half times the error of the table.
+  // Measured with 100 000 paths, the picture has one and a half times the error of the table.
   scene_.accuracy = MaxError{0.09};
   Setting drawn = SettingOf(*desk_.Decide(scene_));
   drawn.million_paths = 0.1;
@@ -341,7 +341,7 @@ TEST_F(TracedOffersTest, FramesOfTracedLightTeachTheirSettingsTime) {
 }
 
 TEST(DiscretisationErrorTest, IsTheRelativeDifferenceOfColours) {
-  // Differences of 1 and 0 at a mean of 2; the fourth value is not a colour.
+  // The differences are 1 and 0 at a mean of 2. The fourth value is not a colour.
   EXPECT_NEAR(DiscretisationError({3.0F, 2.0F, 2.0F, 9.0F}, {2.0F, 2.0F, 2.0F, 1.0F}),
               std::sqrt(1.0 / 3.0) / 2.0, 1e-7);
   EXPECT_EQ(DiscretisationError({0.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 0.0F}), 0.0);

@@ -89,7 +89,8 @@ TEST(PricedSettings, ALineThatIsNoRowIsNamed) {
   }
 }
 
-// The server's own data: fails if a column or name is added that nothing reads yet.
+// Reads the server's own tables. The test fails if a column or name is added that no code reads
+// yet.
 TEST(PricedSettings, TheTablesOfTheProjectAreUnderstood) {
   for (const std::string_view view : {"orbit", "spotter", "top-down"}) {
     const auto text = EmbeddedTradeTableTexts().find(view);

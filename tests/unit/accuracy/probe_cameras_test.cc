@@ -23,12 +23,12 @@ TEST(ProbeCameras, AroundTheStormAllSidesAreSeenAlike) {
     const auto camera =
         std::get<scene::OrbitCamera>(AroundStorm(kBox, 1.5, static_cast<std::uint64_t>(i)));
     EXPECT_EQ(glm::dvec2(camera.target_m), kMiddle_m);
-    EXPECT_GT(camera.distance_m, 3e4);  // outside
+    EXPECT_GT(camera.distance_m, 3e4);  // outside the storm
     lowest_deg = std::min(lowest_deg, camera.elevation_deg);
     highest_deg = std::max(highest_deg, camera.elevation_deg);
     sum += scene::Direction(camera.azimuth_deg, camera.elevation_deg);
   }
-  // The mean over directions distributed evenly over the upper hemisphere.
+  // The expected values are means over directions distributed evenly over the upper hemisphere.
   EXPECT_NEAR(sum.x / kMany, 0.0, 0.02);
   EXPECT_NEAR(sum.y / kMany, 0.0, 0.02);
   EXPECT_NEAR(sum.z / kMany, 0.5, 0.02);

@@ -1,4 +1,4 @@
-// Details stay with a status on its way, and those of the innermost place win.
+// Tests that details stay with a status as it is passed on, and that the innermost details win.
 #include "base/error_details.h"
 
 #include <chrono>
@@ -85,7 +85,7 @@ TEST(ErrorDetails, AnInvalidFieldIsNamedInTheMessage) {
 }
 
 TEST(Executor, SaysWhyItRefusesAndWhenToComeAgain) {
-  Executor executor({.threads = 0, .max_waiting = 1});  // nothing ever runs
+  Executor executor({.threads = 0, .max_waiting = 1});  // no task ever runs
   absl::Status first;
   absl::Status second;
   executor.Submit("", [&](const absl::Status& status) { first = status; });

@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 using testing::ManualTime;
 using testing::WaitFor;
 
-// Tasks that hang until they are let go, with what they own.
+// Tasks that hang until they are released, and the object they own.
 class Hang {
  public:
   Executor::Task Task() {
@@ -31,7 +31,7 @@ class Hang {
       gate.wait();
     };
   }
-  // Waits until so many of them have begun.
+  // Waits until so many of the tasks have begun.
   bool AwaitBegun(int count) const {
     return WaitFor([&] { return *begun_ >= count; });
   }
@@ -92,7 +92,7 @@ TEST(ExecutorTest, WhereTooManyHangWhoWaitsIsRefusedInTime) {
 }
 
 TEST(ExecutorTest, StopWaitsForAllThatHangTogether) {
-  static ManualTime time;  // threads that are left behind outlive the test
+  static ManualTime time;  // abandoned threads outlive the test
   Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(20)}, time);
   Hang hang;
   for (int i = 0; i < 8; ++i) executor.Submit("", hang.Task());
@@ -103,7 +103,7 @@ TEST(ExecutorTest, StopWaitsForAllThatHangTogether) {
   ASSERT_TRUE(hang.AwaitBegun(8));
   EXPECT_EQ(executor.Hanging(), 6);
   auto stopped = std::async(std::launch::async, [&] { executor.Stop(); });
-  // It stops when it refuses.
+  // The executor is stopping once it refuses tasks.
   ASSERT_TRUE(WaitFor([&] {
     const auto refused = std::make_shared<std::atomic<bool>>(false);
     executor.Submit("", [refused](const absl::Status& status) {

@@ -13,7 +13,7 @@ using std::chrono::steady_clock;
 
 TEST(UnchangedSince, IsTheFilesDateBetweenTheEarliestAndNow) {
   const steady_clock::time_point now = steady_clock::now();
-  // The clock that sets the dates of files.
+  // The wall clock sets the dates of files.
   const auto wall = std::chrono::system_clock::now();
   const auto date_before = [wall](nanoseconds age) {
     return (duration_cast<nanoseconds>(wall.time_since_epoch()) - age).count();
@@ -24,13 +24,14 @@ TEST(UnchangedSince, IsTheFilesDateBetweenTheEarliestAndNow) {
   const auto any = steady_clock::time_point::min();
   EXPECT_EQ(age(seconds(5), any), seconds(5));
   EXPECT_GE(age(hours(24 * 365 * 60), any), hours(24 * 300)) << "a date of long ago";
-  // The clock was set back by an hour since the file was written: it has rested for no time that is
-  // known, and for a second when it has been seen for a second.
+  // The clock was set back by an hour since the file was written, so its age is unknown. Once the
+  // file has been seen for a second, its age is a second.
   EXPECT_EQ(age(-hours(1), any), nanoseconds(0));
   const nanoseconds later =
       now + seconds(1) - UnchangedSince(date_before(-hours(1)), now, now, wall);
   EXPECT_EQ(later, seconds(1));
-  // A clock set forward, or a copy that keeps its date, does not age a file that was not there.
+  // The clock was set forward, or a copy kept its date. That does not age a file that did not exist
+  // before.
   EXPECT_EQ(age(hours(1), now - seconds(3)), seconds(3));
 }
 

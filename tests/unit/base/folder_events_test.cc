@@ -8,7 +8,8 @@
 namespace thunderhead::base {
 namespace {
 
-// A wait that ends by its deadline fails the test by its time limit.
+// Returns a deadline that no test reaches. A wait that reaches it would exceed the test's time
+// limit.
 std::chrono::steady_clock::time_point Never() {
   return std::chrono::steady_clock::now() + std::chrono::hours(1);
 }

@@ -38,10 +38,10 @@ TEST(LineWriterTest, ADiskThatHangsHoldsUpNobody) {
         time);
     writer.Write("0");
     begun.get_future().wait();
-    // The disk answers only after all of them.
+    // The disk answers only after all lines were written.
     for (int i = 1; i < 100; ++i) writer.Write(absl::StrCat(i));
     answers.set_value();
-    // Until there is room.
+    // Waits until the queue has space.
     EXPECT_TRUE(writer.Flush(kHangLimit));
     writer.Write("last");
   }
@@ -78,7 +78,7 @@ TEST(LineWriterTest, FlushWaitsNoLongerThanItIsTold) {
   writer.Write("hangs");
   auto flushed =
       std::async(std::launch::async, [&] { return writer.Flush(std::chrono::milliseconds(20)); });
-  // It may begin to wait only now.
+  // The flush may begin to wait only now, so the time is advanced repeatedly.
   EXPECT_TRUE(testing::WaitFor([&] {
     time.Advance(std::chrono::milliseconds(20));
     return flushed.wait_for(std::chrono::seconds(0)) == std::future_status::ready;

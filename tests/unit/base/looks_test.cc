@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 using testing::ManualTime;
 using testing::WaitFor;
 
-// What is looked at, and may hang.
+// A file that is checked and may hang.
 struct File {
   std::atomic<int> begun{0};
   std::atomic<int> looks{0};
@@ -32,7 +32,7 @@ std::function<void()> LookAt(const std::shared_ptr<File>& file) {
   };
 }
 
-// Looks again while the file hangs, for as long as there is patience.
+// Checks again while the file hangs, until the timeout.
 void LookInVain(Looks& looks, const File& file, ManualTime& time, milliseconds patience) {
   const int begun = file.begun;
   auto waiting = std::async(std::launch::async, [&] { looks.LookAgain(); });
@@ -74,7 +74,7 @@ TEST(LooksTest, OneThatHangsHoldsUpOnce) {
   looks.LookAgain();
   file->hangs = true;
   LookInVain(looks, *file, time, milliseconds(200));
-  // Others do not wait: time stands still.
+  // Later calls do not wait, because time stands still.
   for (int i = 0; i < 100; ++i) looks.LookAgain();
   EXPECT_EQ(file->looks, 1);
   file->hangs = false;
@@ -88,12 +88,12 @@ TEST(LooksTest, OneThatHangsHoldsUpOnce) {
 TEST(LooksTest, OneThatHangsIsLeftBehindAtTheEnd) {
   const auto file = std::make_shared<File>();
   file->hangs = true;
-  // The look outlives the test.
+  // The pending check outlives the test.
   static ManualTime time;
   {
     Looks looks("/file", LookAt(file), milliseconds(100), time);
     LookInVain(looks, *file, time, milliseconds(100));
-    // It ends while time stands still: it has been waited for.
+    // The destructor returns while time stands still, because the check has already timed out.
   }
   file->hangs = false;
   file->hangs.notify_all();

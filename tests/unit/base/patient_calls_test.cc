@@ -42,7 +42,7 @@ class Storage {
   const std::shared_future<void> answers_ = storage_.get_future().share();
 };
 
-// Calls the storage while time passes until there is no more patience.
+// Calls the storage while time passes, until the timeout.
 absl::Status CallInVain(PatientCalls& calls, Storage& storage, ManualTime& time) {
   const int begun = storage.Begun();
   auto hangs =
@@ -59,7 +59,7 @@ absl::Status CallInVain(PatientCalls& calls, Storage& storage, ManualTime& time)
   return hangs.get();
 }
 
-// As where the address space is limited. No system has room for such a stack.
+// A limited address space has the same effect: no system has space for such a stack.
 TEST(PatientCallsTest, ACallForWhichThereIsNoThreadIsRefused) {
   pthread_attr_t usual;
   pthread_attr_t huge;
@@ -95,7 +95,7 @@ TEST(PatientCallsTest, AStorageThatHangsHoldsUpOnceAndNoOtherStorage) {
   EXPECT_TRUE(absl::IsDeadlineExceeded(hangs)) << hangs;
   EXPECT_EQ(DetailsOf(hangs).reason, "STORAGE_HANGS");
   EXPECT_TRUE(DetailsOf(hangs).retry_after.has_value());
-  // That it hangs is known: these end while time stands still.
+  // The hang is known, so these calls end while time stands still.
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(calls.Run("/mnt/gone", storage.Call()).ok());
   EXPECT_EQ(storage.Begun(), 1);
   EXPECT_TRUE(calls.Run("/data", [] {}).ok());
@@ -135,7 +135,7 @@ TEST(PatientCallsTest, WhatHangsIsLeftBehindAtTheEnd) {
   {
     PatientCalls calls(kPatience, time);
     EXPECT_FALSE(CallInVain(calls, storage, time).ok());
-    // It ends while time stands still: it has been waited for.
+    // The destructor returns while time stands still, because the call has already timed out.
   }
   storage.Answer();
 }

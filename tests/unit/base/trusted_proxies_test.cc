@@ -26,7 +26,7 @@ TEST(TrustedProxiesTest, ATrustedProxyNamesItsClient) {
   EXPECT_EQ(proxies->ClientOf("127.0.0.1:51234", ""), "127.0.0.1:51234");
 }
 
-// The client sends a header of its own, to which the proxies append.
+// The client sends its own header, to which the proxies append.
 TEST(TrustedProxiesTest, WhatTheClientMadeUpIsNotBelieved) {
   const auto proxies = TrustedProxies::Parse({"127.0.0.1", "10.1.0.0/16"});
   ASSERT_TRUE(proxies.ok()) << proxies.status();

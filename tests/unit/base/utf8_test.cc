@@ -25,8 +25,8 @@ TEST(PrintableTest, ReplacesWhatForgesLines) {
   EXPECT_EQ(Printable("storm\naudit time=now"), "storm?audit time=now");
   EXPECT_EQ(Printable(std::string("a\0b\r\t\x1b[31m\x7f", 11)), "a?b???[31m?");
   EXPECT_EQ(Printable("a\u0085b\u009fc"), "a?b?c");            // C1 control characters
-  EXPECT_EQ(Printable("a\u2028b\u2029c"), "a?b?c");            // separators of lines and paragraphs
-  EXPECT_EQ(Printable("a\u202egpj.exe\u2066"), "a?gpj.exe?");  // direction of text
+  EXPECT_EQ(Printable("a\u2028b\u2029c"), "a?b?c");            // line and paragraph separators
+  EXPECT_EQ(Printable("a\u202egpj.exe\u2066"), "a?gpj.exe?");  // text direction
 }
 
 }  // namespace

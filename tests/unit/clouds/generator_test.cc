@@ -34,7 +34,7 @@ std::vector<float> Made(const CloudShape& shape) {
   return water.ok() ? *std::move(water) : std::vector<float>{};
 }
 
-// FNV-1a over the bits of every value.
+// Returns the FNV-1a hash of the bits of every value.
 std::uint64_t Hash(const std::vector<float>& values) {
   std::uint64_t hash = 14695981039346656037U;
   for (const float value : values) {
@@ -51,7 +51,7 @@ TEST(Quadric, IsOneAtTheCentreAndZeroAtTheEndsOfItsAxes) {
   const Ellipsoid ellipsoid{{100.0, -50.0, 900.0}, {300.0, 200.0, 100.0}, {25.0, -40.0, 110.0}};
   const Quadric quadric(ellipsoid);
   EXPECT_EQ(quadric.Value(ellipsoid.centre_m), 1.0);
-  // Turned about x, then y, then z.
+  // The rotations are about x, then y, then z.
   const auto turn = [](glm::dvec3 v, int axis, double degrees) {
     const double s = std::sin(degrees * M_PI / 180.0);
     const double c = std::cos(degrees * M_PI / 180.0);
@@ -73,7 +73,7 @@ TEST(Quadric, IsOneAtTheCentreAndZeroAtTheEndsOfItsAxes) {
   }
 }
 
-// Every cell by the plain formulas.
+// Compares every cell with the plain formulas.
 TEST(Generate, IsNoiseTimesModulationAboveTheThreshold) {
   CloudShape shape = Ball();
   shape.dynamics = 0.8;
@@ -101,7 +101,7 @@ TEST(Generate, IsNoiseTimesModulationAboveTheThreshold) {
   EXPECT_GT(filled, 100);
 }
 
-// The bits that this cloud has on every machine.
+// The cloud must have these bits on every machine.
 TEST(Generate, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(Hash(Made(Ball())), 8239800386922749215U);
   CloudShape cubic = Ball();
@@ -177,7 +177,7 @@ TEST(Presets, AreCloudsInsideTheirDomains) {
         }
       }
     }
-    // As measured in cumulus: some 0.1 to 1 g/m3, congestus up to 3.
+    // Measured values in cumulus are some 0.1 to 1 g/m3, in congestus up to 3.
     mean /= static_cast<double>(filled);
     EXPECT_GT(mean, 1e-4);
     EXPECT_LT(mean, 1.5e-3);
@@ -186,7 +186,7 @@ TEST(Presets, AreCloudsInsideTheirDomains) {
   }
 }
 
-// This program's reader reads back what WriteCfCloud writes.
+// The program's own reader reads back what WriteCfCloud writes.
 TEST(WriteCfCloud, ReadsBackAsItWas) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.File("ball.nc");

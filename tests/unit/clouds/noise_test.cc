@@ -10,7 +10,7 @@
 namespace thunderhead::clouds {
 namespace {
 
-// The same formula in 64-bit integers without overflow, taken modulo 2^31 at the end.
+// Evaluates the same formula in 64-bit integers without overflow, taken modulo 2^31 at the end.
 double InWideIntegers(std::int64_t x, std::int64_t y, std::int64_t z) {
   const std::uint64_t m = static_cast<std::uint64_t>(x + 57 * y + 57 * 57 * z) & 0xffffffffU;
   const std::uint64_t n = ((m << 13U) ^ m) & 0xffffffffU;
@@ -28,7 +28,7 @@ TEST(LatticeNoise, IsThePrintedFormulaInUnsignedArithmetic) {
       }
     }
   }
-  // By hand: m = 0 gives n = 0 and 1376312589.
+  // Computed by hand: m = 0 gives n = 0 and 1376312589.
   EXPECT_EQ(LatticeNoise(0, 0, 0), 1.0 - 1376312589.0 / 1073741824.0);
 }
 
@@ -44,13 +44,13 @@ TEST(LatticeNoise, IsUniformFromMinusOneToOne) {
     squares += value * value;
     ++count;
   }
-  // Standard errors 0.0029 and 0.0015; 5 of each.
+  // The tolerances are 5 standard errors of 0.0029 and 0.0015.
   EXPECT_NEAR(sum / count, 0.0, 0.015);
   EXPECT_NEAR(squares / count, 1.0 / 3.0, 0.008);
 }
 
 TEST(SmoothNoise, WeightsAddUpToOneByRing) {
-  // The sums of each ring by hand at one place.
+  // The expected value sums each ring by hand at one place.
   double expected = 9.0 / 18.0 * LatticeNoise(3, -4, 5);
   for (int i = 0; i < 27; ++i) {
     const int dx = i % 3 - 1;
@@ -90,7 +90,7 @@ TEST(RepeatableMath, IsSineAndCosine) {
   }
 }
 
-// Slices and the plain sum are the same function.
+// Slices and the plain sum must give the same function.
 TEST(NoiseSlices, AgreeWithTheFunctionAtEveryCell) {
   for (const auto interpolation :
        {NoiseInterpolation::kLinear, NoiseInterpolation::kCosine, NoiseInterpolation::kCubic}) {

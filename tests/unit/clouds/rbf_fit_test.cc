@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 
 volume::RegularGrid Grid() { return {{23, 18, 15}, {40.0, 50.0, 30.0}, {-460.0, -450.0, 600.0}}; }
 
-// Balls at random, some of which reach beyond the grid.
+// Returns random balls, some of which extend beyond the grid.
 std::vector<Metaball> SomeBalls(int count) {
   std::vector<Metaball> balls;
   physics::CounterRandom random(3, 0);
@@ -44,7 +44,7 @@ std::vector<double> WeightsOf(const std::vector<Metaball>& balls) {
   return weights;
 }
 
-// The sum of all balls at a point: eq. 19.
+// Returns the sum of all balls at a point, eq. 19.
 double ValueAt(const MetaballCloud& cloud, const glm::dvec3& point_m) {
   double sum = 0.0;
   for (const Metaball& ball : cloud.balls) {
@@ -58,7 +58,7 @@ glm::dvec3 MiddleOf_m(const volume::RegularGrid& grid, int x, int y, int z) {
   return grid.low_corner_m + (glm::dvec3(x, y, z) + 0.5) * grid.spacing_m;
 }
 
-// A lumpy cloud with holes.
+// Returns a lumpy cloud with holes.
 std::vector<float> Cloud(const volume::RegularGrid& grid) {
   std::vector<float> values;
   for (int z = 0; z < grid.cells.z; ++z) {
@@ -94,7 +94,7 @@ TEST(BasisOperator, IsTheSumOfBallsInEveryCell) {
     for (int z = 0; z < grid.cells.z; ++z) {
       for (int y = 0; y < grid.cells.y; ++y) {
         for (int x = 0; x < grid.cells.x; ++x) {
-          // At the cut-off a ball's value is 1.2e-4: rounding may put a cell there on either side.
+          // At the cut-off a ball's value is 1.2e-4. Rounding may put a cell on either side of it.
           EXPECT_NEAR(field[grid.Offset(x, y, z)], ValueAt(cloud, MiddleOf_m(grid, x, y, z)), 2e-6);
         }
       }
@@ -102,7 +102,7 @@ TEST(BasisOperator, IsTheSumOfBallsInEveryCell) {
   }
 }
 
-// <A v, f> = <v, A^T f>, and the norms are those of single balls.
+// Checks <A v, f> = <v, A^T f>, and that the norms are those of single balls.
 TEST(BasisOperator, TransposeIsTheAdjoint) {
   const std::vector<Metaball> balls = SomeBalls(30);
   const std::vector<float> field = Cloud(Grid());
@@ -143,7 +143,7 @@ TEST(OutputWeights, BothSolversFindTheWeightsThatMadeTheField) {
     }
     EXPECT_LT(direct.errors.back(), 1e-8 * direct.errors.front());
     EXPECT_TRUE(std::ranges::is_sorted(gradient.errors, [](double a, double b) {
-      return a > b * (1.0 + 1e-6) + 1e-9;  // rounding of float fields
+      return a > b * (1.0 + 1e-6) + 1e-9;  // tolerance for the rounding of float fields
     }));
   }
 }
@@ -198,8 +198,8 @@ TEST(Cluster, SigmasAreRootMeanSquareDistancesOfTheNearestPoints) {
     EXPECT_NEAR(clusters.sigmas_m[k], std::max(sigma, 1.0), 1e-6);
     within += squares[k];
   }
-  // Cubes of a 60th of the volume have a mean square distance of a quarter of their edge's square;
-  // no clustering does better, and k-means comes within 40 % of it.
+  // Cubes of a 60th of the volume have a mean square distance of a quarter of their edge's square.
+  // No clustering does better, and k-means comes within 40 % of it.
   const double edge = std::cbrt(1000.0 * 500.0 * 200.0 / 60.0);
   EXPECT_LT(within / 5000.0, 1.4 * 0.25 * edge * edge);
 }
@@ -273,7 +273,7 @@ TEST(Fit, RefusesWhatCannotBe) {
   options.balls = 1;
   options.overlap = 0.0;
   EXPECT_THAT(message(), HasSubstr("overlap"));
-  // One ball for one cell is that cell.
+  // With one ball for one cell, the ball fits that cell.
   options.overlap = 2.0;
   const auto fit = Fit(grid, values, options, {}, {});
   ASSERT_TRUE(fit.ok()) << fit.status();
@@ -315,14 +315,14 @@ TEST(Metaballs, AreSavedAsTextWithoutLoss) {
     EXPECT_TRUE(std::getline(file, line));
     return line;
   };
-  // The numbers of the next line, which begins with `word`.
+  // Returns the numbers of the next line, which begins with `word`.
   const auto numbers = [&](const std::string& word) {
     std::istringstream words(next());
     std::string first;
     words >> first;
     EXPECT_EQ(first, word);
     std::vector<double> values;
-    // Not by >>, which refuses denormal numbers.
+    // The operator >> would refuse denormal numbers.
     for (std::string number; words >> number;)
       values.push_back(std::strtod(number.c_str(), nullptr));
     return values;

@@ -9,7 +9,7 @@
 namespace thunderhead::codec {
 namespace {
 
-// A gradient from 0.25 to 0.5 whose steps are far finer than 8 bits.
+// Returns a gradient from 0.25 to 0.5 whose steps are far finer than 8 bits.
 frame::FineImage FineGradient(int width_px, int height_px) {
   frame::FineImage image{width_px, height_px, {}};
   for (int y = 0; y < height_px; ++y) {
@@ -35,7 +35,7 @@ TEST(Avif, KeepsWhatEightBitsLose) {
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     sum += std::pow((static_cast<double>(decoded->rgb[i]) - image.rgb[i]) / 257.0, 2);
   }
-  // Of 255 levels. Rounding to 8 bits alone, without any compression, is 0.289.
+  // The limit is in levels of 255. Rounding to 8 bits alone, without compression, gives 0.289.
   EXPECT_LT(std::sqrt(sum / static_cast<double>(image.rgb.size())), 0.28);
 }
 

@@ -1,4 +1,4 @@
-// Pictures that move, and how far apart two are.
+// Pictures that move, and the difference between two pictures.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace thunderhead::codec {
 
-// Soft blobs before a gradient, `shift_px` to the left.
+// Returns a picture of soft blobs in front of a gradient, moved by `shift_px` to the left.
 inline frame::RgbImage MovingPicture(int width_px, int height_px, int shift_px) {
   frame::RgbImage picture{width_px, height_px, {}};
   for (int y = 0; y < height_px; ++y) {
@@ -24,7 +24,7 @@ inline frame::RgbImage MovingPicture(int width_px, int height_px, int shift_px) 
   return picture;
 }
 
-// Peak signal-to-noise ratio in dB.
+// Returns the peak signal-to-noise ratio in dB.
 inline double Psnr_dB(const frame::RgbImage& a, const frame::RgbImage& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 
 constexpr int kWidth = 322;
 constexpr int kHeight = 178;
-// PSNR at which a viewer hardly sees a difference.
+// The PSNR at which a viewer hardly sees a difference.
 constexpr double kGood_dB = 34.0;
 
 class Vp9Test : public ::testing::Test {
@@ -22,7 +22,7 @@ class Vp9Test : public ::testing::Test {
     is_key_ = picture->key;
     return picture->bytes;
   }
-  // Of the decoded picture against that with the shift.
+  // Returns the PSNR of the decoded picture, compared with the picture of that shift.
   double Decoded_dB(const std::string& bytes, int shift_px) {
     const auto decoded = decoder_->Decode(bytes);
     if (!decoded.ok()) return 0.0;
@@ -53,7 +53,8 @@ TEST_F(Vp9Test, AKeyPictureComesOnDemandAndIsEnough) {
   EXPECT_GT(Decoded_dB(key, 18), kGood_dB);
 }
 
-// A viewer that misses droppable pictures sees the others exactly as one that got them all.
+// A viewer that misses droppable pictures sees the others exactly like a viewer that received them
+// all.
 TEST_F(Vp9Test, DroppablePicturesCanBeDropped) {
   auto all = *Vp9Decoder::Create();
   for (int i = 0; i < 24; ++i) {
@@ -72,7 +73,7 @@ TEST_F(Vp9Test, BytesStayWithinTheBudget) {
   constexpr int kPictures = 60;
   std::size_t bytes = 0;
   for (int i = 0; i < kPictures; ++i) {
-    // Noise of its own in each picture: what no prediction helps with.
+    // Each picture has different noise, which no prediction can compress.
     frame::RgbImage picture = MovingPicture(kWidth, kHeight, 40 * i);
     for (std::size_t at = 0; at < picture.rgb.size(); ++at) {
       picture.rgb[at] ^=

@@ -1,4 +1,4 @@
-// The hub alone: in flight, skipping, problems, closing.
+// Tests of the hub alone: frames in flight, skipping, problems, closing.
 #include "delivery/frame_hub.h"
 
 #include <array>
@@ -23,7 +23,7 @@ EncodedFrame FrameOf(std::uint64_t revision) {
   return frame;
 }
 
-// The sequence of the frame taken, or 0.
+// Returns the sequence of the frame taken, or 0.
 std::uint64_t TakeSequence(FrameHub& hub, std::uint64_t viewer_id) {
   const auto event = hub.Take(viewer_id);
   if (!event.has_value()) return 0;
@@ -146,9 +146,9 @@ TEST_F(FrameHubTest, ViewersAreWokenAndDemandIsTold) {
   EXPECT_FALSE(hub_.Acknowledge(id, 2));
 }
 
-using Made = std::array<int, kTiers>;  // of each tier
+using Made = std::array<int, kTiers>;  // number made for each tier
 
-// Counts what it makes.
+// Returns a function that counts the frames it makes.
 EncodeFrame CountingReduction(Made* made) {
   return [made](const EncodedFrame& described, int tier) {
     ++(*made)[static_cast<std::size_t>(tier)];
@@ -181,7 +181,7 @@ TEST_F(FrameHubTest, ASizeIsMadeOnceForAllWhoWantIt) {
   for (const std::uint64_t phone : phones) EXPECT_EQ(TakeTier(hub_, phone, now), 1);
   for (const std::uint64_t wall : walls) EXPECT_EQ(TakeTier(hub_, wall, now), 0);
   EXPECT_EQ(made, once);
-  // A window that grows gets the same frame larger.
+  // When a window grows, its viewer gets the same frame in a larger size.
   hub_.SetWants(phones[0], {.window_width_px = 1280});
   EXPECT_EQ(TakeTier(hub_, phones[0], now), 0);
   EXPECT_EQ(made, once) << "it was made for others";

@@ -1,4 +1,4 @@
-// The size of picture that suits a link, on simulated links.
+// Tests of choosing the picture size that suits a link, on simulated links.
 #include "delivery/link_estimate.h"
 
 #include <algorithm>
@@ -12,20 +12,20 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Time = LinkEstimate::Time;
 
-// A link that carries frames one after another, two in flight, as the hub sends them.
+// A link that carries frames one after another, with two in flight, as the hub sends them.
 class Link {
  public:
   Link(double kbit_per_s, milliseconds round_trip)
       : kbit_per_s_(kbit_per_s), round_trip_(round_trip) {}
 
-  // Sends frames of `full_kbyte` at tier 0 for so long, a new one every `frame_interval`; returns
-  // the frames a second that arrived.
+  // Sends frames of `full_kbyte` at tier 0 for `duration`, a new one every `frame_interval`.
+  // Returns the frames per second that arrived.
   double Run(seconds duration, double full_kbyte, milliseconds frame_interval = milliseconds(33)) {
     const Time end = now_ + duration;
     int arrived = 0;
     Time in_flight_acknowledged[2] = {now_, now_};
     while (now_ < end) {
-      // The older of two acknowledgements makes room for the next frame.
+      // The older of two acknowledgements permits the next frame.
       Time& oldest =
           *std::min_element(std::begin(in_flight_acknowledged), std::end(in_flight_acknowledged));
       now_ = std::max(now_ + frame_interval, oldest);
@@ -108,7 +108,7 @@ TEST(LinkEstimateTest, WindowsGetTheSmallestPictureThatFillsThem) {
   EXPECT_EQ(TierForWindow({1280, 1280}, 641), 0);
   EXPECT_EQ(TierForWindow({1280, 1280}, 640), 1);
   EXPECT_EQ(TierForWindow({1280, 1280}, 100), 2);
-  // Of those that move, 0.84 and 0.5 times as wide, and much smaller.
+  // The tiers of moving pictures are 0.84 and 0.5 times as wide, and much smaller.
   EXPECT_EQ(TierForWindow({1076, 1280}, 640), 1);
   EXPECT_EQ(TierForWindow({640, 1280}, 640), 1);
   EXPECT_EQ(TierForWindow({640, 1280}, 1280), 0);

@@ -1,4 +1,5 @@
-// Video and stills by the hub: who gets which form, key pictures, who misses pictures.
+// Tests of video and stills in the hub: which form each viewer receives, key pictures, and viewers
+// that miss pictures.
 #include "delivery/frame_hub.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -20,14 +21,14 @@ class VideoViewer : public Viewer {
   int wakes = 0;
 };
 
-// A hub whose video pictures are texts: "key", "base" or "droppable".
+// A fixture with a hub whose video pictures are texts: "key", "base" or "droppable".
 class VideoHubTest : public ::testing::Test {
  protected:
   std::uint64_t Join(const ViewerWants& wants) {
     return *hub_.Join(std::make_shared<VideoViewer>(), wants);
   }
 
-  // Draws, encodes as asked and publishes a frame, a thirtieth of a second after the last.
+  // Draws, encodes and publishes a frame, a thirtieth of a second after the previous one.
   std::uint64_t Publish(bool at_rest = false, bool still_follows = false) {
     now_ += milliseconds(33);
     EncodedFrame frame;
@@ -62,7 +63,7 @@ class VideoHubTest : public ::testing::Test {
     hub_.AddStill(sequence, tier, still);
   }
 
-  // The picture that the viewer takes now, in whichever encoding, or "nothing".
+  // Takes the viewer's next picture and returns its kind, in whichever encoding, or "nothing".
   std::string Take(std::uint64_t viewer) {
     const auto event = hub_.Take(viewer, now_);
     if (!event.has_value()) return "nothing";
@@ -84,7 +85,7 @@ class VideoHubTest : public ::testing::Test {
   int taken_tier_ = 0;
   std::uint64_t scene_revision_ = 1;
   bool by_reference_ = false;
-  bool resized_ = false;  // encoders make key pictures whatever is ordered
+  bool resized_ = false;  // encoders make key pictures in any case
 };
 
 TEST_F(VideoHubTest, ANewcomerGetsAKeyPictureFirst) {
@@ -168,7 +169,7 @@ TEST_F(VideoHubTest, WhoWasSentJpegForAWhileJoinsTheVideoAnewAtOnce) {
   const auto viewer = Join(kVideo);
   Publish();
   EXPECT_EQ(TakeAndAcknowledge(viewer), "key");
-  Publish();  // a base picture, which it does not take before the next
+  Publish();  // a base picture, which the viewer does not take before the next
   ViewerWants jpeg = kVideo;
   jpeg.takes_video = false;
   hub_.SetWants(viewer, jpeg);
@@ -213,7 +214,8 @@ TEST_F(VideoHubTest, ManyWhoCanAllGetVideo) {
   for (const auto viewer : viewers) EXPECT_EQ(Take(viewer), "key");
 }
 
-// The slow viewer misses pictures, but gets those that later ones depend on; the other gets all.
+// The slow viewer misses pictures, but gets those that later ones depend on. The other viewer gets
+// all.
 TEST_F(VideoHubTest, ASlowViewerMissesDroppablePicturesOnlyAndForcesNoKeys) {
   const auto fast = Join(kVideo);
   const auto slow = Join(kVideo);
@@ -225,7 +227,7 @@ TEST_F(VideoHubTest, ASlowViewerMissesDroppablePicturesOnlyAndForcesNoKeys) {
     EXPECT_NE(seen, "nothing");
     EXPECT_NE(seen, "jpeg");
     keys += seen == "key" ? 1 : 0;
-    // Two on their way are all it has room for; one of them arrives every second picture.
+    // The slow viewer may have two pictures in flight; one of them arrives every second picture.
     const std::string of_slow = Take(slow);
     EXPECT_NE(of_slow, "jpeg");
     taken_by_slow += of_slow == "nothing" ? 0 : 1;
@@ -282,12 +284,12 @@ TEST_F(VideoHubTest, AtRestTheStillReplacesVideoAndComesOnce) {
   EXPECT_EQ(TakeAndAcknowledge(video), "avif");
   EXPECT_EQ(Take(video), "nothing");
   EXPECT_EQ(Take(jpeg), "nothing");
-  // The stream goes on.
+  // The video stream continues.
   Publish();
   EXPECT_EQ(TakeAndAcknowledge(video), "base");
 }
 
-// As when traced light has become better, or the error is known.
+// A still may be replaced when the path-traced correction has improved, or when the error is known.
 TEST_F(VideoHubTest, AStillIsReplacedByNothingButTheNextOneOfItsScene) {
   const auto video = Join(kVideo);
   const auto stills = Join({.takes_stills = true});
@@ -315,7 +317,7 @@ TEST_F(VideoHubTest, AStillIsReplacedByNothingButTheNextOneOfItsScene) {
   hub_.NoStills(last);
   EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg") << "there is nothing better";
   settle();
-  // On a machine so busy that each frame supersedes the still of the one before.
+  // On a very busy machine, each frame supersedes the still of the previous frame.
   for (int i = 0; i < 5; ++i) {
     now_ += seconds(1);
     Publish(/*at_rest=*/true, /*still_follows=*/true);
@@ -335,7 +337,8 @@ TEST_F(VideoHubTest, AStillIsReplacedByNothingButTheNextOneOfItsScene) {
   EXPECT_EQ(TakeAndAcknowledge(video), "base") << "the stream goes on";
 }
 
-// Its still was made for the smaller window; the larger picture is worth more than its encoding.
+// The still was made for the smaller window. The larger picture is more valuable than the better
+// encoding.
 TEST_F(VideoHubTest, AWindowThatGrowsAtRestGetsTheLargerPicture) {
   ViewerWants wants{.window_width_px = 640, .adapts = true, .takes_stills = true};
   const auto viewer = Join(wants);

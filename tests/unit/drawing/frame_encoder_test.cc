@@ -1,4 +1,5 @@
-// The encoder and the hub together: a picture is encoded and serialized once for all who get it.
+// Tests of the encoder and the hub together: a picture is encoded and serialized once for all
+// viewers who get it.
 #include "drawing/frame_encoder.h"
 
 #include <chrono>
@@ -52,7 +53,7 @@ class FrameEncoderTest : public ::testing::Test {
     return viewers;
   }
 
-  // The frames that the viewers take now; an object that several viewers share counts once.
+  // Returns the frames that the viewers take now. An object that several viewers share counts once.
   std::set<const delivery::EncodedFrame*> TakeAll(const std::vector<std::uint64_t>& viewers) {
     std::set<const delivery::EncodedFrame*> frames;
     for (const std::uint64_t viewer : viewers) {
@@ -63,7 +64,7 @@ class FrameEncoderTest : public ::testing::Test {
       }
       const auto frame = std::get<std::shared_ptr<const delivery::EncodedFrame>>(*event);
       session_->hub().Acknowledge(viewer, frame->sequence);
-      kept_.push_back(frame);  // so that no other has its address
+      kept_.push_back(frame);  // keeps other frames from reusing its address
       frames.insert(frame.get());
     }
     return frames;
@@ -87,7 +88,7 @@ class FrameEncoderTest : public ::testing::Test {
  private:
   std::mutex mutex_;
   std::map<std::string, int> serialized_;  // how often, by form
-  int without_memory_ = 0;                 // serializations that fail
+  int without_memory_ = 0;                 // number of serializations that fail
   std::vector<std::shared_ptr<const delivery::EncodedFrame>> kept_;
   std::counting_semaphore<> encoded_{0};
 
@@ -113,7 +114,7 @@ TEST_F(FrameEncoderTest, APictureIsSerializedOnceATierWhateverTheViewers) {
   EXPECT_THAT(Serialized(),
               UnorderedElementsAre(Pair("jpeg of tier 0", 1), Pair("jpeg of tier 1", 1),
                                    Pair("jpeg of tier 2", 1)));
-  // Who comes later gets the same bytes.
+  // A viewer who joins later gets the same bytes.
   EXPECT_EQ(TakeAll(Join(4, {})).size(), 1U);
   EXPECT_EQ(Serialized().at("jpeg of tier 0"), 1);
   Encode(2);
@@ -130,7 +131,7 @@ TEST_F(FrameEncoderTest, ATierThatNobodyWantsIsNotMade) {
   EXPECT_THAT(Serialized(), UnorderedElementsAre(Pair("jpeg of tier 1", 1)));
 }
 
-// However many fail, as none of them is in flight.
+// Any number of pictures may fail, because none of them is in flight.
 TEST_F(FrameEncoderTest, APictureWithoutMemoryFailsAlone) {
   const auto viewers = Join(1, {});
   for (std::uint64_t revision = 1; revision <= delivery::FrameHub::kMaxInFlight; ++revision) {
@@ -148,8 +149,8 @@ TEST_F(FrameEncoderTest, APictureWithoutMemoryFailsAlone) {
   EXPECT_EQ(TakeAll(viewers).size(), 1U);
 }
 
-// As a call that takes under its own lock: woken meanwhile by the same thread, it would wait for
-// itself for ever.
+// A viewer that takes frames under its own lock, like a call. If the same thread woke it meanwhile,
+// it would deadlock.
 class LockingViewer : public delivery::Viewer {
  public:
   void Wake() override {

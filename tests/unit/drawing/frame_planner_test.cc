@@ -1,4 +1,4 @@
-// The frame planner with a fake clock and fake costs.
+// Tests of the frame planner with a fake clock and fake costs.
 #include "drawing/frame_planner.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ session::NewestScene At(std::uint64_t revision, const scene::Scene& scene,
   return {revision, std::make_shared<const scene::Scene>(scene), changed_at};
 }
 
-// A machine whose frames cost `fixed_ms` + `ms_per_mega_sample` x samples, exactly.
+// A machine whose frames cost exactly `fixed_ms` + `ms_per_mega_sample` x samples.
 struct Machine {
   double fixed_ms = 0.0;
   double ms_per_mega_sample = 0.0;
@@ -34,7 +34,7 @@ struct Machine {
 
 class FramePlannerTest : public ::testing::Test {
  protected:
-  // Drags: `count` scenes, each drawn as planned.
+  // Drags the camera through `count` scenes, each drawn as planned.
   void Drag(const Machine& machine, int count) {
     for (int i = 0; i < count; ++i) {
       std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += 1.0;
@@ -61,7 +61,7 @@ class FramePlannerTest : public ::testing::Test {
     return planner_.Decide(AtPlanned(), kPlannedAt + since_change, last_drawn_);
   }
 
-  // The milliseconds of the last of them.
+  // Draws all frames after a change and returns the milliseconds of the last one.
   double DrawAllAt(milliseconds since_change, const Machine& machine) {
     for (int frames = 0; frames < 10; ++frames) {
       const auto plan = Ask(since_change).plan;
@@ -83,16 +83,16 @@ class FramePlannerTest : public ::testing::Test {
 };
 
 TEST_F(FramePlannerTest, FastMachineDrawsFullQualityAtOnceAndOnce) {
-  Drag({1.0, 0.05}, 10);  // 7 ms a full frame
+  Drag({1.0, 0.05}, 10);  // 7 ms for each full frame
   EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
   const Decision decision = Ask(milliseconds(10000));
   EXPECT_FALSE(decision.plan.has_value());
   EXPECT_FALSE(decision.ask_again_at.has_value());
 }
 
-// Others wait for the lane that draws it: one scene must not stall a server.
+// Other sessions wait for the lane that draws the frame: one scene must not stall a server.
 TEST_F(FramePlannerTest, NoFrameIsDrawnSoonThatOthersWouldWaitTooLongFor) {
-  Drag({4.0, 100.0}, 20);  // 12 s a full frame
+  Drag({4.0, 100.0}, 20);  // 12 s for each full frame
   const double drawn_ms = DrawAllAt(milliseconds(1000), {4.0, 100.0});
   EXPECT_LE(drawn_ms, PlannerTargets{}.longest_ms);
   EXPECT_GT(drawn_ms, 0.3 * PlannerTargets{}.longest_ms);
@@ -119,7 +119,7 @@ TEST_F(FramePlannerTest, AFullFrameComesOnceItsSceneHasRestedForAsLongAsItTakes)
 }
 
 TEST_F(FramePlannerTest, AFrameThatOthersWouldWaitForeverForIsNotDrawn) {
-  const Machine machine{4.0, 1000.0};  // two minutes a full frame
+  const Machine machine{4.0, 1000.0};  // two minutes for each full frame
   Drag(machine, 20);
   const double drawn_ms = DrawAllAt(milliseconds(1'000'000), machine);
   EXPECT_LE(drawn_ms, PlannerTargets{}.longest_at_rest_ms);
@@ -128,8 +128,8 @@ TEST_F(FramePlannerTest, AFrameThatOthersWouldWaitForeverForIsNotDrawn) {
 }
 
 TEST_F(FramePlannerTest, AFrameThatTookTooLongByChanceIsRefinedAllTheSame) {
-  Drag({4.0, 10.0}, 20);  // 1.2 s a full frame
-  // While it compiled, or while others used the processors.
+  Drag({4.0, 10.0}, 20);  // 1.2 s for each full frame
+  // A slow frame may come from a compilation, or from other work on the processors.
   Drag({4.0, 100'000.0}, 1);
   Drag({4.0, 10.0}, 1);
   ASSERT_FALSE(last_plan_.refined);
@@ -141,24 +141,24 @@ TEST_F(FramePlannerTest, AFrameThatTookTooLongByChanceIsRefinedAllTheSame) {
 }
 
 TEST_F(FramePlannerTest, AFrameOfASecondIsDrawnWhole) {
-  Drag({4.0, 10.0}, 20);  // 1.2 s a full frame
+  Drag({4.0, 10.0}, 20);  // 1.2 s for each full frame
   EXPECT_TRUE(planner_.DrawsWhole(scene_));
 }
 
 TEST_F(FramePlannerTest, CoarseFramesComeToCostAboutTheTarget) {
-  // The first is 18 ms for the finest of coarse frames.
+  // For the first value, the finest coarse frame takes 18 ms.
   for (const double ms_per_mega_sample : {0.6, 1.0, 3.0, 10.0}) {
     Drag({4.0, ms_per_mega_sample}, 20);
     EXPECT_LE(last_ms_, 33.0) << ms_per_mega_sample;
-    // One step of quality is a factor of 2^(3/4) in samples: no coarser than one step below the
-    // target.
+    // One step of quality is a factor of 2^(3/4) in samples, so frames are at most one step below
+    // the target.
     EXPECT_GE(last_ms_, 33.0 / std::pow(2.0, 0.75) - 4.0) << ms_per_mega_sample;
     EXPECT_FALSE(last_plan_.refined);
   }
 }
 
 TEST_F(FramePlannerTest, OnlyPicturesThatCanBeSparseAre) {
-  const Machine machine{2.0, 0.15};  // 20 ms a full frame
+  const Machine machine{2.0, 0.15};  // 20 ms for each full frame
   Drag(machine, 5);
   EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{1.0, 1.0, true}, false}));
   EXPECT_EQ(*Ask(milliseconds(80)).plan, (FramePlan{FrameQuality{}, true}));
@@ -183,7 +183,7 @@ TEST_F(FramePlannerTest, SmallPicturesKeepTheirSize) {
   EXPECT_EQ(last_plan_.quality.output_scale, 1.0);
 }
 
-// Of a machine whose coarsest frame takes 100 ms, nearly all of it for each pixel of the picture.
+// The machine's coarsest frame takes 100 ms, nearly all of it per pixel of the picture.
 TEST_F(FramePlannerTest, CoarseFramesThatTakeTooLongAreSmallerAndKeepTheirSizeWithinAGesture) {
   const double samples = accuracy::MegaSamples(Hd(), {kCoarsestSparse, kCoarsestSparse, true});
   const Machine machine{2.0, 98.0 / samples};
@@ -196,7 +196,7 @@ TEST_F(FramePlannerTest, CoarseFramesThatTakeTooLongAreSmallerAndKeepTheirSizeWi
   EXPECT_EQ(scales.size(), 1U);
   EXPECT_LE(last_ms_, PlannerTargets{}.whole_size_ms);
   EXPECT_GE(last_ms_, 0.6 * PlannerTargets{}.whole_size_ms);
-  // On a machine that has become quicker the next gesture has them all again.
+  // If the machine has become faster, pictures have their full size again in the next gesture.
   const Machine quick{2.0, 10.0 / samples};
   for (int i = 0; i < 2; ++i) {
     Draw(quick, {FrameQuality{}, true});
@@ -212,7 +212,7 @@ TEST_F(FramePlannerTest, LargePicturesAreSmallerWhileTheyMove) {
     scene_.rendering.technique = technique;
     scene_.output.width_px = 3200;
     scene_.output.height_px = 1800;
-    Drag({4.0, 0.1}, 5);  // some 74 ms a full frame
+    Drag({4.0, 0.1}, 5);  // some 74 ms for each full frame
     EXPECT_EQ(last_plan_.quality.output_scale, 0.5);
     EXPECT_FALSE(last_plan_.refined);
     const auto rested = Ask(milliseconds(80)).plan;
@@ -221,16 +221,16 @@ TEST_F(FramePlannerTest, LargePicturesAreSmallerWhileTheyMove) {
   }
 }
 
-// A picture with rays where it needs them takes the processors time for each of its pixels.
+// A sparse picture costs the processors time for each of its pixels.
 TEST_F(FramePlannerTest, LargePicturesAreWholeWhereThatIsQuick) {
   scene_.output.width_px = 3200;
   scene_.output.height_px = 1800;
-  Drag({4.0, 0.03}, 5);  // 25 ms a full frame
+  Drag({4.0, 0.03}, 5);  // 25 ms for each full frame
   EXPECT_EQ(last_plan_, (FramePlan{FrameQuality{}, true}));
 }
 
 TEST_F(FramePlannerTest, RefinesAfterTheDelayAtFullQualityWhenThatIsQuick) {
-  Drag({2.0, 1.0}, 10);  // 120 ms a full frame
+  Drag({2.0, 1.0}, 10);  // 120 ms for each full frame
   EXPECT_FALSE(last_plan_.refined);
   const Decision early = Ask(milliseconds(79));
   EXPECT_FALSE(early.plan.has_value());
@@ -243,7 +243,7 @@ TEST_F(FramePlannerTest, RefinesAfterTheDelayAtFullQualityWhenThatIsQuick) {
 }
 
 TEST_F(FramePlannerTest, SlowMachineRefinesInTwoSteps) {
-  const Machine machine{5.0, 10.0};  // 1185 ms a full frame
+  const Machine machine{5.0, 10.0};  // 1185 ms for each full frame
   Drag(machine, 10);
   const Decision first = Ask(milliseconds(100));
   ASSERT_TRUE(first.plan.has_value());
@@ -274,7 +274,7 @@ TEST_F(FramePlannerTest, AChangeOfToneKeepsTheQualityThatIsThere) {
   EXPECT_EQ(*decision.plan, (FramePlan{FrameQuality{}, true}));
 }
 
-// Its rays are drawn again.
+// The rays of the picture are drawn again.
 TEST_F(FramePlannerTest, AChangeOfToneAfterTheFirstFrameAtRestIsAsQuickAsAnyOther) {
   const Machine machine{5.0, 10.0};
   Drag(machine, 10);
@@ -299,9 +299,9 @@ TEST_F(FramePlannerTest, TheFirstFrameAtRestOfALargePictureHasNoFewerRays) {
   EXPECT_FALSE(last_plan_.refined && last_plan_.quality.sparse);
 }
 
-// Whoever watches knows by its scale whether a finer one follows.
+// The frame's scale tells viewers whether a finer frame follows.
 TEST_F(FramePlannerTest, AFirstFrameAtRestWithFewerRaysIsNeverOfTheFullScale) {
-  const Machine machine{5.0, 3.0};  // 355 ms a full frame, a sparse one less than 180
+  const Machine machine{5.0, 3.0};  // 355 ms for each full frame; a sparse one takes less than 180
   Drag(machine, 10);
   const auto plan = Ask(milliseconds(100)).plan;
   ASSERT_TRUE(plan.has_value());

@@ -1,5 +1,5 @@
-// The render loop with its reader and encoder, without gRPC, so that ThreadSanitizer sees every
-// lock.
+// Tests of the render loop with its reader and encoder, without gRPC, so that ThreadSanitizer sees
+// every lock.
 #include "drawing/render_loop.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ scene::Scene Small(double sun_azimuth_deg) {
   return scene;
 }
 
-// Takes and acknowledges every event at once.
+// A viewer that takes and acknowledges every event at once.
 class EagerViewer : public delivery::Viewer, public std::enable_shared_from_this<EagerViewer> {
  public:
   explicit EagerViewer(std::shared_ptr<session::Session> session) : session_(std::move(session)) {}
@@ -48,7 +48,7 @@ class EagerViewer : public delivery::Viewer, public std::enable_shared_from_this
     Wake();
   }
   void Leave() { session_->hub().Leave(id_); }
-  // Lets go of the frames.
+  // Releases the frames.
   void Forget() {
     const std::lock_guard lock(mutex_);
     events_.clear();
@@ -67,7 +67,7 @@ class EagerViewer : public delivery::Viewer, public std::enable_shared_from_this
       }
     }
     changed_.notify_all();
-    // Acknowledging wakes again.
+    // Acknowledging wakes the viewer again.
     session_->hub().Acknowledge(id_, sequence);
   }
 
@@ -82,7 +82,7 @@ class EagerViewer : public delivery::Viewer, public std::enable_shared_from_this
     });
   }
 
-  // True if there was a frame of that revision or a later one that is so.
+  // Returns true if there was a frame of at least that revision for which `is` returns true.
   template <typename Is>
   bool Has(std::uint64_t revision, const Is& is) {
     const std::lock_guard lock(mutex_);
@@ -102,7 +102,7 @@ class EagerViewer : public delivery::Viewer, public std::enable_shared_from_this
     });
   }
 
-  // The newest frame that says that it leaves out traced light.
+  // Waits for the newest frame that reports the path-traced correction as not shown.
   std::shared_ptr<const delivery::EncodedFrame> AwaitUntraced() {
     std::unique_lock lock(mutex_);
     std::shared_ptr<const delivery::EncodedFrame> untraced;
@@ -138,7 +138,7 @@ class EagerViewer : public delivery::Viewer, public std::enable_shared_from_this
   std::vector<delivery::FrameEvent> events_;
 };
 
-// Time moves as the machine draws, and where a test moves it.
+// A fixture whose time advances as the machine draws, and where a test advances it.
 class RenderLoopTest : public ::testing::Test {
  protected:
   RenderLoopTest() { machine_->time = &time_; }
@@ -150,7 +150,7 @@ class RenderLoopTest : public ::testing::Test {
     machine_->tracing.Open();
     store_.reading.Open();
     loop_.reset();
-    // A session keeps its viewers, and these keep it.
+    // A session keeps its viewers and they keep the session, so they must leave.
     for (const auto& viewer : viewers_) viewer->Leave();
   }
 
@@ -183,26 +183,26 @@ class RenderLoopTest : public ::testing::Test {
     return revision;
   }
 
-  // The frame at rest of a scene that was shown.
+  // Waits for the frame at rest of a scene that was shown.
   bool AwaitAtRest(EagerViewer& viewer, std::uint64_t revision) {
     if (!viewer.Await(revision, false)) return false;
     time_.Advance(seconds(1));
     return viewer.Await(revision, true);
   }
 
-  // Returns when the loop has looked at everything twice. Draws two pictures.
+  // Draws two pictures, and returns when the loop has checked everything twice.
   void GoAround() {
     for (int i = 0; i < 2; ++i) EXPECT_TRUE(Picture(0.0).get().ok());
   }
 
-  // The number of pictures drawn that show the sun from there.
+  // Returns the number of pictures drawn with the sun at that azimuth.
   std::ptrdiff_t DrawnFrom(double sun_azimuth_deg) const {
     return std::ranges::count_if(machine_->Log(), [&](const FakeMachine::Drawn& drawn) {
       return drawn.scene.sun.azimuth_deg == sun_azimuth_deg;
     });
   }
 
-  // The first frame of a setting, which counts for nothing, and a few more.
+  // Draws the first frame of a setting, which does not count, and a few more.
   void LearnCosts(session::Session& session, EagerViewer& viewer) const {
     const double ms_per_mega_sample = machine_->ms_per_mega_sample;
     machine_->ms_per_mega_sample = 0.0;
@@ -245,7 +245,7 @@ class RenderLoopTest : public ::testing::Test {
   const std::shared_ptr<FakeMachine> machine_ = std::make_shared<FakeMachine>();
   session::Sessions sessions_{session::SessionsOptions{.time = &time_},
                               {[this] { wake_.Notify(); }, [] {}}};
-  std::mutex viewers_mutex_;  // tests with threads watch from all of them
+  std::mutex viewers_mutex_;  // tests with several threads add viewers
   std::vector<std::shared_ptr<EagerViewer>> viewers_;
   std::unique_ptr<RenderLoop> loop_;
 };
@@ -269,7 +269,7 @@ TEST_F(RenderLoopTest, NewestSceneIsTheLastShown) {
 }
 
 TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
-  machine_->ms_per_mega_sample = 1000.0;  // 37 ms a picture
+  machine_->ms_per_mega_sample = 1000.0;  // 37 ms for each picture
   Start();
   const auto session = *sessions_.Create();
   const auto viewer = Watch(session);
@@ -283,13 +283,14 @@ TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
   while (drawn < 10) {
     ASSERT_TRUE(machine_->drawing.AwaitWaiting(1));
     const bool is_picture = machine_->Log().back().scene.display.exposure_ev == 1.0;
-    // Whatever is drawn now, the session has a newer scene by then.
+    // Whatever is drawn now, the session then has a newer scene.
     const std::uint64_t before =
         std::exchange(shown, Show(*session, Small(static_cast<double>(shown % 300))));
     machine_->drawing.LetOnePass();
     if (is_picture) {
       ++drawn;
-      // One, unless the session's last frame is still being encoded.
+      // One picture is drawn between two frames, unless the session's last frame is still being
+      // encoded.
       EXPECT_LE(++in_a_row, 3);
     } else {
       in_a_row = 0;
@@ -300,9 +301,9 @@ TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
   for (auto& picture : pictures) EXPECT_TRUE(picture.get().ok());
 }
 
-// A session's full frame of a second beside another whose camera moves.
+// One session's full frame takes a second while another session's camera moves.
 TEST_F(RenderLoopTest, AFrameAtRestHoldsUpNoMovingOne) {
-  machine_->ms_per_mega_sample = 27000.0;  // a second a full frame, 16 ms a coarse one
+  machine_->ms_per_mega_sample = 27000.0;  // a second for each full frame, 16 ms for a coarse one
   Start();
   const auto resting = *sessions_.Create();
   const auto moving = *sessions_.Create();
@@ -320,7 +321,7 @@ TEST_F(RenderLoopTest, AFrameAtRestHoldsUpNoMovingOne) {
     ASSERT_LT(i, 10'000) << "the frame at rest ends, too";
     const double azimuth_deg = 100.0 + 0.01 * i;
     const std::uint64_t shown = Show(*moving, Small(azimuth_deg));
-    // Whole, the frame at rest would hold up one of them by a second.
+    // Drawn whole, the frame at rest would delay one of the moving frames by a second.
     const int pieces = machine_->PiecesUntil([&](const FakeMachine::Drawn& drawn) {
       return drawn.scene.sun.azimuth_deg == azimuth_deg;
     });
@@ -332,7 +333,7 @@ TEST_F(RenderLoopTest, AFrameAtRestHoldsUpNoMovingOne) {
 }
 
 TEST_F(RenderLoopTest, AFrameAtRestEndsWhenItsSceneChanges) {
-  machine_->ms_per_mega_sample = 27000.0 * 4;  // four seconds a full frame
+  machine_->ms_per_mega_sample = 27000.0 * 4;  // four seconds for each full frame
   Start();
   const auto session = *sessions_.Create();
   const auto viewer = Watch(session);
@@ -355,7 +356,7 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   const auto other = *sessions_.Create();
   const auto fitting_viewer = Watch(fitting);
   const auto other_viewer = Watch(other);
-  // Its fields are available: only the fit is missing.
+  // The scene's fields are available; only the fit is missing.
   Show(*fitting, Small(0.0));
   ASSERT_TRUE(fitting_viewer->Await(1, true));
   machine_->preparing.Close();
@@ -363,7 +364,8 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
   Show(*other, Small(5.0));
   ASSERT_TRUE(other_viewer->Await(1, true));
-  // Another number during the first fit: the first may be shown, the last must be.
+  // The scene changes to another number during the first fit. The first may be shown, and the last
+  // must be shown.
   const std::uint64_t last = Show(*fitting, OfMetaballs(200));
   machine_->preparing.Open();
   ASSERT_TRUE(fitting_viewer->Await(last, true));
@@ -379,7 +381,7 @@ TEST_F(RenderLoopTest, ASeriesThatGoesOnIsPreparedAheadOfItsPictures) {
   EXPECT_FALSE(machine_->IsPrepared(OfMetaballs(100, 1))) << "nothing plays yet";
   ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100, 1)), true));
   ASSERT_TRUE(machine_->AwaitPrepared(OfMetaballs(100, 2)));
-  // The next picture waits for nothing, though the one after it is not ready.
+  // The next picture does not wait, although the one after it is not ready.
   machine_->preparing.Close();
   ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100, 2)), true));
   ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
@@ -425,7 +427,7 @@ TEST_F(RenderLoopTest, LightThatCannotBeTracedIsSaidByThePictureItself) {
   EXPECT_EQ(viewer->ProblemCount(), 0U);
 }
 
-// Whatever the scene asks for, the table has metaballs alone.
+// The table has only metaballs, so they are used whatever the scene requests.
 TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
   RenderLoopOptions options;
   options.offer_tables = [] {
@@ -464,7 +466,7 @@ TEST_F(RenderLoopTest, PicturesYieldToSessionsButNotToOtherProgramsWhereThereAre
   }
 }
 
-// One that waits for light that it may not have traced yet lets the next go on.
+// A picture that waits for light that it may not trace yet lets the next one proceed.
 TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
   Start();
   const auto lit_from = [&](double azimuth_deg) {
@@ -521,9 +523,9 @@ TEST_F(RenderLoopTest, APictureDoesNotAwaitItsLightForEver) {
   EXPECT_EQ(future.get().message(), "too long");
 }
 
-// Forty of one, then two of another, who does not wait for all of them.
+// There are forty pictures of one caller, then two of another, who does not wait for all forty.
 TEST_F(RenderLoopTest, PicturesTakeTurnsByWhoAskedForThem) {
-  machine_->ms_per_mega_sample = 1000.0;  // 37 ms a picture
+  machine_->ms_per_mega_sample = 1000.0;  // 37 ms for each picture
   Start();
   const auto ask = [&](const std::string& owner, double exposure_ev) {
     scene::Scene scene = Small(0.0);
@@ -639,7 +641,7 @@ TEST_F(RenderLoopTest, TheFrameOfASessionThatNobodyWatchesMakesRoomForAPicture) 
   ASSERT_TRUE(viewer->Await(revision, true));
   viewer->Leave();
   viewer->Forget();
-  // The still maker has it a moment longer.
+  // The encoder of resting frames keeps the picture a moment longer.
   absl::Status drawn = absl::UnknownError("not asked for");
   EXPECT_TRUE(WaitFor([&] {
     time_.Advance(milliseconds(100));
@@ -737,7 +739,7 @@ TEST(SessionTest, OlderRevisionNeverReplacesANewer) {
   EXPECT_EQ(session.Newest()->scene->time_index, 2);
 }
 
-// A device that is lost: everything that was drawn with it is made again.
+// A fixture for a lost device: everything that was drawn with it is made again.
 class DeviceLossTest : public RenderLoopTest {
  protected:
   static RenderLoopOptions WithLosses(int max_losses) {
@@ -788,7 +790,8 @@ TEST_F(DeviceLossTest, ADeviceThatCannotBeOpenedIsTriedAgain) {
   EXPECT_EQ(machine_->cannot_open, 0);
 }
 
-// The server asks for a restart when a turn takes too long, so a driver that hangs there must show.
+// The server requests a restart when a turn takes too long, so a driver that hangs while opening
+// must count as a turn.
 TEST_F(DeviceLossTest, OpeningTheDeviceAgainCountsAsATurn) {
   Start(WithLosses(6));
   const auto session = *sessions_.Create();

@@ -1,4 +1,4 @@
-// The state machine of a session, with a fake clock and no GL.
+// Tests of the state machine of a session, with a fake clock and no GL.
 #include "drawing/session_view.h"
 
 #include <chrono>
@@ -17,7 +17,7 @@ using State = SessionView::State;
 constexpr session::Clock::time_point kStart{};
 constexpr const char* kView = "view";
 
-// Settings of 64 and 128 slices for every kind of camera.
+// Returns settings of 64 and 128 slices for every kind of camera.
 accuracy::OfferTables Tables() {
   accuracy::PricedSettings table;
   table.size_px = {64, 36};
@@ -36,13 +36,13 @@ class SessionViewTest : public ::testing::Test {
  protected:
   SessionViewTest() { scene_.output = {64, 36, 88}; }
 
-  // A change of the scene: the camera turns, if it can.
+  // Changes the scene: the camera turns, if it can.
   void Change() {
     if (auto* orbit = std::get_if<scene::OrbitCamera>(&scene_.camera)) orbit->azimuth_deg += 1.0;
     newest_ = {++revision_, std::make_shared<const scene::Scene>(scene_), kStart};
   }
 
-  // No error can be measured; that is known after the first step.
+  // Ends measuring: no error can be measured, which is known after the first step.
   void EndMeasuring(milliseconds since_change) {
     const SessionWork work = Next(since_change);
     const auto* trace = std::get_if<TraceLight>(&work);
@@ -51,13 +51,13 @@ class SessionViewTest : public ::testing::Test {
     EXPECT_FALSE(view_.ErrorMeasured({.ended = true}, kStart + since_change));
   }
 
-  // The next work at that time after the change, with the scene's fields available.
+  // Returns the next work at that time after the change, with the scene's fields available.
   SessionWork Next(milliseconds since_change) {
     decided_ = **view_.Decide(newest_);
     return view_.Next(newest_, decided_, kStart + since_change, last_drawn_);
   }
 
-  // Draws a frame if that is the next work; false otherwise.
+  // Draws a frame if that is the next work; returns false otherwise.
   bool DrawNext(milliseconds since_change) {
     const SessionWork work = Next(since_change);
     const auto* draw = std::get_if<DrawFrame>(&work);
@@ -75,7 +75,7 @@ class SessionViewTest : public ::testing::Test {
     last_drawn_ = LastDrawn{scene, quality};
   }
 
-  // Moves until frames are known to be so slow that they are coarse.
+  // Changes the scene until frames are known to be so slow that they are coarse.
   void Drag() {
     for (int i = 0; i < 3; ++i) {
       Change();
@@ -139,7 +139,7 @@ TEST_F(SessionViewTest, FromMovingToRefiningToSettled) {
 
 TEST_F(SessionViewTest, AFrameThatTakesLongComesOnceItsSceneHasRestedForAsLong) {
   scene_.output = {1280, 720, 88};
-  ms_per_mega_sample_ = 100.0;  // 12 s a full frame
+  ms_per_mega_sample_ = 100.0;  // 12 s for each full frame
   Drag();
   while (DrawNext(milliseconds(600))) {
   }
@@ -251,7 +251,7 @@ TEST_F(YieldingViewTest, TracingGivesWayForAWhileAndComesBack) {
   EXPECT_FALSE(view_.StaysYielded(revision_, After(milliseconds(700)))) << "nothing was asked for";
   EXPECT_FALSE(Resting(milliseconds(30'600)).has_value());
   EXPECT_EQ(view_.state(), State::kWaitingForFields);
-  // Its fields are refused once more, and then come.
+  // The scene's fields are refused once more, and then arrive.
   ASSERT_TRUE(view_.StaysYielded(revision_, After(milliseconds(30'700))));
   EXPECT_EQ(Resting(milliseconds(30'800))->time, After(milliseconds(60'700)));
   EXPECT_FALSE(Resting(milliseconds(60'700)).has_value());
@@ -379,7 +379,7 @@ TEST_F(SessionViewTest, TheErrorIsMeasuredAtRestAndToldAsItGetsClearer) {
   EXPECT_FALSE(view_.evidence().measured.has_value()) << "of another picture";
 }
 
-// 64 slices are in a table with 0.3, 128 with 0.2.
+// The table has 64 slices with an error of 0.3, and 128 with 0.2.
 class RefutedSettingTest : public SessionViewTest {
  protected:
   void Ask(double max_error) {

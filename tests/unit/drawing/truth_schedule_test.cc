@@ -1,4 +1,4 @@
-// The sizes at which a truth is refined and when it is shown, on plain values.
+// Tests of the sizes at which a reference is refined and of when it is shown, on plain values.
 #include "drawing/truth_schedule.h"
 
 #include <cmath>
@@ -33,7 +33,7 @@ TEST(TruthScheduleTest, BeginsSmallAndDoublesUpToTheFullSize) {
 TEST(TruthScheduleTest, SmallPicturesAreFullAtOnce) {
   EXPECT_TRUE(TruthSchedule({64, 36}).IsFull());
   EXPECT_EQ(TruthSchedule({1, 1}).SizePx(), glm::ivec2(1, 1));
-  // So narrow that halving would leave no pixels.
+  // The picture is so narrow that halving would leave no pixels.
   const TruthSchedule line({8192, 1});
   EXPECT_EQ(line.SizePx(), glm::ivec2(4096, 1));
 }
@@ -86,7 +86,8 @@ TEST(TruthScheduleTest, EndsWhenNobodyCouldSeeADifference) {
   delivery::Refinement exact = After(1000);
   exact.relative_error = 0.0005;
   EXPECT_TRUE(schedule.Finished(exact));
-  // An empty sky has an error of 0 after two samples, but they may have missed a cloud's edge.
+  // An empty sky has an error of 0 after two samples, but the samples may have missed a cloud's
+  // edge.
   exact.samples_per_pixel = 2;
   EXPECT_FALSE(schedule.Finished(exact));
   EXPECT_TRUE(schedule.Finished(After(1 << 16)));

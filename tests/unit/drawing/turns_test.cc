@@ -1,4 +1,4 @@
-// Who draws next, on plain values.
+// Tests of whose turn is next, on plain values.
 #include "drawing/turns.h"
 
 #include <map>
@@ -17,12 +17,13 @@ using ::testing::ElementsAre;
 
 class TurnsTest : public ::testing::Test {
  protected:
-  // Somebody whose turns take so long; one who looks around if the name has a slash.
+  // Adds a contender whose turns take `piece_ms`. A slash in the name marks the own view of one
+  // person.
   void Busy(const std::string& id, TurnClass turn_class, double piece_ms = 10.0) {
     busy_[id] = {turn_class, piece_ms};
   }
 
-  // Who uses the next turn; the empty string if nobody does.
+  // Returns the contender that uses the next turn; empty if there is none.
   std::string Serve() {
     std::vector<Contender> contenders;
     for (const std::string& id : ids_) {
@@ -43,7 +44,7 @@ class TurnsTest : public ::testing::Test {
     return served;
   }
 
-  // Of all time, that one of them used until `until_ms` were used in all.
+  // Returns the share of the time that one contender used, until `until_ms` were used in all.
   double ShareOf(const std::string& id, double until_ms) {
     used_ms_.clear();
     double all_ms = 0.0;
@@ -104,7 +105,7 @@ TEST_F(TurnsTest, ComingAndLeavingOverAndOverGainsNothing) {
   double passing_ms = 0.0;
   double staying_ms = 0.0;
   for (int i = 0; i < 1000; ++i) {
-    // Somebody new whenever the one before has had a turn.
+    // A new contender appears whenever the previous one has had a turn.
     ids_[1] = "b" + std::to_string(i);
     busy_.clear();
     Busy("a", TurnClass::kInteractive, 10.0);

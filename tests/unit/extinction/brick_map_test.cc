@@ -12,7 +12,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// A volume of `cells` with extinction only in the cells listed.
+// Returns a volume of `cells` with extinction only in the cells listed.
 struct Filled {
   glm::ivec3 cell;
   float extinction_per_m;
@@ -43,7 +43,7 @@ TEST(BrickMap, BricksAreAboutCubes) {
   const ExtinctionVolume volume = VolumeWith({10, 12, 9}, {});
   const BrickMap map = BrickMapOf(volume);
   EXPECT_EQ(map.cells_per_brick, glm::ivec3(1, 1, 2));
-  // One before the first cell's centre and one behind the last one's.
+  // The grid has one brick before the first cell's centre and one behind the last one's.
   EXPECT_EQ(map.bricks, glm::ivec3(11, 13, 5));
   EXPECT_TRUE(OccupiedCubesOf(map, 8).occupied.empty());
   const CellBlocks blocks = CellBlocksOf(map, volume.grid);
@@ -52,8 +52,8 @@ TEST(BrickMap, BricksAreAboutCubes) {
 }
 
 TEST(BrickMap, ACellFillsEveryBrickThatInterpolationReaches) {
-  // Cell (4, 5, 2): bricks 4 and 5 of x meet it, 5 and 6 of y; in z brick 1 alone, from the centre
-  // of cell 1 to that of cell 3.
+  // Cell (4, 5, 2) meets bricks 4 and 5 in x, and 5 and 6 in y. In z it meets only brick 1, which
+  // reaches from the centre of cell 1 to that of cell 3.
   const BrickMap map = BrickMapOf(VolumeWith({20, 20, 20}, {{{4, 5, 2}, 0.1F}}));
   constexpr std::uint32_t kLayer = 1024 * 1024;
   EXPECT_THAT(OccupiedCubesOf(map, 8).occupied,
@@ -65,7 +65,7 @@ TEST(BrickMap, ACellFillsEveryBrickThatInterpolationReaches) {
 }
 
 TEST(BrickMap, BricksAreFilledWhereInterpolationIsNotZeroAndNowhereElse) {
-  // A cell inside, one in a corner, and one in the last of an even number.
+  // One cell is inside, one in a corner, and one is the last of an even number.
   const ExtinctionVolume volume =
       VolumeWith({9, 8, 12}, {{{4, 5, 6}, 0.1F}, {{0, 0, 0}, 0.1F}, {{8, 7, 11}, 0.1F}});
   const BrickMap map = BrickMapOf(volume);
@@ -126,12 +126,13 @@ TEST(BrickMap, ThinAndNegligibleCells) {
 TEST(BrickMap, ThickStaysThickBesideThin) {
   const BrickMap map =
       BrickMapOf(VolumeWith({40, 40, 40}, {{{5, 5, 5}, 0.01F}, {{4, 5, 5}, 1e-6F}}));
-  EXPECT_EQ(ContentAt(map, 5, 5, 3), BrickMap::kThick);  // meets both
-  EXPECT_EQ(ContentAt(map, 4, 5, 3), BrickMap::kThin);   // ends with the centre of the thin one
+  EXPECT_EQ(ContentAt(map, 5, 5, 3), BrickMap::kThick);  // the brick meets both cells
+  EXPECT_EQ(ContentAt(map, 4, 5, 3),
+            BrickMap::kThin);  // ends at the thin cell's centre
 }
 
 TEST(BrickMap, TakesTheMostOfAllChannelsOfAllPlanes) {
-  // Five channels: one plane of four and one of one.
+  // Five channels are in one plane of four and one of one.
   ExtinctionVolume volume = VolumeWith({8, 8, 8}, {});
   volume.planes.clear();
   for (const int channels : {4, 1}) {
@@ -163,12 +164,12 @@ TEST(BrickMap, AtMost1024AlongAnAxis) {
 }
 
 TEST(BrickCubes, GrowUntilThereAreFewEnough) {
-  // Three cells fill 4 bricks each, at both ends of x and one at the end of y too.
+  // Three cells fill 4 bricks each, at both ends of x, and one of them at the end of y too.
   const BrickMap map = BrickMapOf(
       VolumeWith({20, 20, 20}, {{{2, 2, 2}, 0.1F}, {{17, 2, 2}, 1e-6F}, {{17, 17, 2}, 0.1F}}));
   EXPECT_EQ(OccupiedCubesOf(map, 12).bricks_across, 1);
   EXPECT_EQ(OccupiedCubesOf(map, 12).occupied.size(), 12U);
-  // Bricks 2 and 3, 17 and 18 along x.
+  // Along x these are bricks 2 and 3, 17 and 18.
   const BrickCubes cubes = OccupiedCubesOf(map, 11);
   EXPECT_EQ(cubes.bricks_across, 2);
   EXPECT_THAT(cubes.occupied,
@@ -184,7 +185,7 @@ TEST(CellBlocks, HoldEveryCellThatIsMetInAnOccupiedBrick) {
       {{{5, 6, 7}, 0.1F}, {{6, 6, 7}, 1e-6F}, {{20, 0, 21}, 1e-6F}, {{13, 13, 4}, 0.1F}});
   const BrickMap map = BrickMapOf(volume);
   const CellBlocks blocks = CellBlocksOf(map, volume.grid);
-  std::map<std::uint32_t, bool> expected;  // thick
+  std::map<std::uint32_t, bool> expected;  // whether it is thick
   for (int z = 0; z < map.bricks.z; ++z) {
     for (int y = 0; y < map.bricks.y; ++y) {
       for (int x = 0; x < map.bricks.x; ++x) {

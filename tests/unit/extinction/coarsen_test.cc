@@ -1,4 +1,4 @@
-// Storms on fewer cells.
+// Tests of storms on fewer cells.
 #include "volume/coarsen.h"
 
 #include <numeric>
@@ -34,7 +34,7 @@ TEST(Coarsened, KeepsMassAndPlace) {
   EXPECT_EQ(coarse.grid.low_corner_m, fine.grid.low_corner_m);
   EXPECT_EQ(coarse.condensate, (CellBox{glm::ivec3(0), glm::ivec3(3, 2, 5)}));
   EXPECT_NEAR(Mass_kg(coarse) / Mass_kg(fine), 1.0, 1e-6);
-  // The cells with x 0 to 2 and y 0 to 1: values 1, 2, 3 and 8, 9, 10.
+  // The coarse cell covers the cells with x 0 to 2 and y 0 to 1, with values 1, 2, 3 and 8, 9, 10.
   EXPECT_NEAR(coarse.fields[0].concentration_kg_per_m3[0], 5.5F, 1e-5F);
   EXPECT_TRUE(coarse.fields[1].concentration_kg_per_m3.empty());
 }
@@ -51,11 +51,11 @@ TEST(Coarsened, KeepsTheExtinctionOfCellsOfDifferentSizes) {
   const HydrometeorFields coarse = Coarsened(fine, {4, 2, 1});
   const auto mean = [](const HydrometeorFields& fields) {
     float sum = 0.0F;
-    // All cells into one sum.
+    // Adds all cells into one sum.
     AddExtinction(fields.fields[0], {150.0F, true}, 0, fields.grid.CellCount(), &sum, 0);
     return sum / static_cast<float>(fields.grid.CellCount());
   };
-  // Half floats in both: 2^-12 each.
+  // Both use half floats, with an error of 2^-12 each.
   EXPECT_NEAR(mean(coarse) / mean(fine), 1.0F, 6e-4F);
   EXPECT_EQ(coarse.fields[0].sizes.origin, SizeOrigin::kEffectiveRadius);
   EXPECT_EQ(coarse.fields[0].sizes.name, "RE_CLOUD");
@@ -66,7 +66,7 @@ TEST(Coarsened, OnlyAsMuchAsIsNeeded) {
   EXPECT_EQ(CoarseningFor(fields, 40), glm::ivec3(1));
   EXPECT_EQ(CoarseningFor(fields, 39), glm::ivec3(2, 1, 1));
   EXPECT_EQ(CoarseningFor(fields, 14), glm::ivec3(4, 1, 1));
-  // Only where there is condensate do cells have to be held.
+  // Only cells with condensate have to be stored.
   fields.condensate = {glm::ivec3(5, 0, 0), glm::ivec3(15, 10, 3)};
   EXPECT_EQ(CoarseningFor(fields, 14), glm::ivec3(1));
   fields.condensate = {};

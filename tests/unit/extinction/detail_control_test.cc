@@ -10,7 +10,8 @@ namespace {
 
 using physics::Hydrometeor;
 
-// A block of one hydrometeor, thick enough to be opaque, in the middle of 16 x 16 x 16 cells.
+// Returns a block of one hydrometeor, thick enough to be opaque, in the middle of 16 x 16 x 16
+// cells.
 HydrometeorFields BlockOf(Hydrometeor hydrometeor) {
   HydrometeorFields fields;
   fields.grid.cells = glm::ivec3(16);
@@ -61,7 +62,7 @@ TEST(DetailControl, ProfileRisesFromEmptyCellsInwards) {
   EXPECT_EQ(control.At(1, 5, 5).occupied, 255);
   EXPECT_GT(control.Profile(0, 5, 5), 0);
   EXPECT_LT(control.Profile(0, 5, 5), 127);
-  // The surface is nearly the face between the two.
+  // The surface is nearly at the face between the two cells.
   EXPECT_NEAR(control.Profile(0, 5, 5) + control.Profile(1, 5, 5), 255, 20);
   EXPECT_LT(control.Profile(0, 1, 1), control.Profile(0, 5, 5));
   EXPECT_GT(control.Profile(1, 5, 5), 100);
@@ -114,7 +115,7 @@ TEST(DetailControl, AmplitudeFollowsTurbulence) {
 TEST(DetailControl, WithoutTurbulenceAmplitudeFollowsContrast) {
   const Control control(BlockOf(Hydrometeor::kCloud));
   EXPECT_GT(control.Amplitude(1, 5, 5), 50);
-  EXPECT_GT(control.Amplitude(0, 5, 5), 50);  // detail is drawn between it and the cell beside
+  EXPECT_GT(control.Amplitude(0, 5, 5), 50);  // detail is drawn between this cell and its neighbour
   EXPECT_EQ(control.Amplitude(5, 5, 5), 0);
 }
 

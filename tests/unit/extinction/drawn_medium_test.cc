@@ -8,7 +8,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// A place has the noise that was upwind of it.
+// A place has the noise that was upwind of it before.
 TEST(DrawnMedium, DetailMovesWithTheWind) {
   HydrometeorFields fields;
   fields.grid.cells = glm::ivec3(24, 24, 8);
@@ -17,7 +17,7 @@ TEST(DrawnMedium, DetailMovesWithTheWind) {
   fields.fields.resize(1);
   fields.fields[0].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-3F);
   const ExtinctionVolume volume = ComputeExtinction(fields, {{0, 100.0F, 0, false}}, 1);
-  // At the surface of billows, everywhere.
+  // Every cell is at the surface of billows.
   const DetailControl control(volume.grid.CellCount(),
                               {.profile = 128, .amplitude = 255, .occupied = 255});
   const physics::DetailTile tile = physics::MakeDetailTile(4, 1);
@@ -40,7 +40,7 @@ TEST(DrawnMedium, DetailMovesWithTheWind) {
   EXPECT_GT(differ, 20);
 }
 
-// Whatever instructions the processor has for it.
+// The result must not depend on the processor's instructions.
 TEST(DrawnMedium, EightPlacesHaveWhatEachHas) {
   for (const int channels : {1, 2, 3, 5}) {
     HydrometeorFields fields;
@@ -75,7 +75,7 @@ TEST(DrawnMedium, EightPlacesHaveWhatEachHas) {
       DrawnMedium::Places places;
       for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
         const auto k = static_cast<float>(batch * 8 + static_cast<int>(lane));
-        // Some beyond the grid.
+        // Some places are beyond the grid.
         places.x[lane] = std::fmod(0.755F * k, 10.0F) - 0.5F;
         places.y[lane] = std::fmod(0.57F * k, 8.0F) - 0.5F;
         places.z[lane] = std::fmod(0.31F * k, 6.0F) - 0.5F;

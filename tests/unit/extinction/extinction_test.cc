@@ -36,7 +36,7 @@ TEST(Extinction, AddsFieldsIntoTheirChannels) {
   fields.fields[1].concentration_kg_per_m3[fields.grid.Offset(3, 2, 1)] = 4e-3F;
   fields.fields[1].concentration_kg_per_m3[fields.grid.Offset(4, 2, 1)] = 1e-3F;
   const ExtinctionVolume apart = ComputeExtinction(fields, {{0, 150.0F, 0}, {1, 7.5F, 1}}, 2);
-  // Occupied cells x 3..4, y 2, z 1 with one empty cell around.
+  // The occupied cells are x 3..4, y 2, z 1, with one empty cell around them.
   EXPECT_EQ(apart.grid.cells, glm::ivec3(4, 3, 3));
   EXPECT_EQ(apart.grid.low_corner_m, glm::dvec3(-200.0, -200.0, 0.0));
   EXPECT_NEAR(TexelPerM(apart, 1, 1, 1, 0), 0.15F, 1e-4F);
@@ -66,8 +66,8 @@ TEST(Extinction, LeavesOutWhatAddsUpToNothing) {
 }
 
 TEST(Extinction, AThinMediumIsHeldInProportionToItsThickestCell) {
-  // The domain's diagonal is 1020 m. All of this is thinner than what is left out of a thick
-  // medium.
+  // The domain's diagonal is 1020 m. All of this is thinner than the part that is left out of a
+  // thick medium.
   for (const float thickest : {1e-9F, 1e-11F}) {
     HydrometeorFields fields = TwoFields();
     std::vector<float>& concentration = fields.fields[0].concentration_kg_per_m3;
@@ -87,7 +87,8 @@ TEST(Extinction, TheBoxEndsWhereLinearFilteringDoes) {
   HydrometeorFields fields = TwoFields();
   fields.fields[0].concentration_kg_per_m3[fields.grid.Offset(3, 2, 0)] = 1e-3F;
   const ExtinctionVolume volume = ComputeExtinction(fields, {{0, 150.0F, 0}}, 1);
-  // Inside the domain at the border cell's middle, at the ground at the domain's face.
+  // The box ends inside the domain at the middle of the border cell, and at the ground at the
+  // domain's face.
   EXPECT_EQ(volume.low_m, glm::dvec3(-150.0, -150.0, 0.0));
   EXPECT_EQ(volume.high_m, glm::dvec3(50.0, 50.0, 75.0));
 }

@@ -9,7 +9,7 @@ namespace {
 constexpr float kCloud_kg_per_m3 = 1e-3F;
 constexpr float kRain_kg_per_m3 = 5e-3F;
 
-// 60 x 60 x 16 km, empty; fields are cloud and rain.
+// Returns an empty storm of 60 x 60 x 16 km with the fields cloud and rain.
 HydrometeorFields Storm() {
   HydrometeorFields fields;
   fields.grid = {{60, 60, 32}, {1000.0, 1000.0, 500.0}, {-30e3, -30e3, 0.0}};
@@ -40,7 +40,7 @@ TEST(StrongestCore, OfAnEmptyStormIsNothing) {
 
 TEST(StrongestCore, IsTheTowerAndNotALoneColumn) {
   HydrometeorFields fields = Storm();
-  // From 1 to 12 km, around (5, 5) km.
+  // The updraught reaches from 1 to 12 km, around (5, 5) km.
   Fill(fields, 0, {33, 33, 2}, {38, 38, 24}, kCloud_kg_per_m3);
   Fill(fields, 0, {10, 10, 2}, {11, 11, 24}, 3 * kCloud_kg_per_m3);
   const auto core = StrongestCore(fields);
@@ -79,7 +79,7 @@ TEST(StrongestCore, StandsOnTheTerrain) {
   EXPECT_EQ(core->Height_m(), 10.5e3);
 }
 
-// The core of a tower at the domain's middle, from 1 to 12 km.
+// Returns the core of a tower at the domain's middle, from 1 to 12 km.
 StormCore Tower(HydrometeorFields& fields) {
   Fill(fields, 0, {28, 28, 2}, {32, 32, 24}, kCloud_kg_per_m3);
   return {{0.0, 0.0}, 0.0, 12e3};

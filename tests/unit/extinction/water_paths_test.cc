@@ -28,7 +28,7 @@ double FloatOf(std::uint16_t half) {
   return exponent == 0 ? std::ldexp(half, -24) : std::ldexp(1024 + (half & 1023), exponent - 25);
 }
 
-// Water paths, by channel, with detail and without: sums over blocks of columns.
+// Water paths by channel, with and without detail, as sums over blocks of columns.
 struct Paths {
   glm::ivec2 count{0};
   std::vector<Values> with;
@@ -49,13 +49,13 @@ struct Paths {
     return blocks;
   }
 
-  // Of all, by channel.
+  // Returns the ratio of all columns, by channel.
   Values Ratio() const {
     return std::accumulate(with.begin(), with.end(), Values(0.0)) /
            std::accumulate(without.begin(), without.end(), Values(0.0));
   }
 
-  // Of all channels together, as the first.
+  // Returns the sum of all channels, as the first channel.
   Paths Together() const {
     Paths together{count, {}, {}};
     for (const Values& path : with) together.with.emplace_back(path.x + path.y + path.z, 0, 0);
@@ -64,7 +64,8 @@ struct Paths {
     return together;
   }
 
-  // The share of those with an optical depth above 1 that differ by less than `most`.
+  // Returns the share of paths that differ by less than `most`, among those with an optical depth
+  // above 1.
   double ShareWithin(double most) const {
     int within = 0;
     int thick = 0;
@@ -76,7 +77,7 @@ struct Paths {
     return double(within) / thick;
   }
 
-  // Root of the mean square by which those with an optical depth above 1 differ.
+  // Returns the root mean square of the differences of paths with an optical depth above 1.
   double Deviation(int channel) const {
     double squares = 0.0;
     int thick = 0;
@@ -93,7 +94,7 @@ struct Paths {
 // A volume's texels in floating point, interpolated as textures are.
 class Texels {
  public:
-  // `components` in each of the grid's cells.
+  // Stores `values` for each of the grid's cells.
   Texels(const RegularGrid& grid, std::vector<Values> values)
       : grid_(grid), values_(std::move(values)) {}
 
@@ -135,7 +136,7 @@ struct Drawing {
   DetailControl control_;
   DetailControl kept_control_;
   physics::DetailTile tile_;
-  PlacedDetail detail_;  // by tile_
+  PlacedDetail detail_;  // its tile is tile_
 };
 
 class WaterPathsTest : public testing::Test, protected Drawing {
@@ -163,8 +164,9 @@ class WaterPathsTest : public testing::Test, protected Drawing {
     KeepWaterPaths(detail_, &kept_control_, &kept_);
   }
 
-  // Of `volume`'s columns, every `stride`th along each axis, by shaders/common/medium.glsl, at
-  // other points than KeepWaterPaths has: `along` each side of a cell.
+  // Returns the paths of every `stride`th column of `volume` along each axis, by
+  // shaders/common/medium.glsl. It uses other points than KeepWaterPaths, `along` on each side of a
+  // cell.
   Paths PathsOf(const ExtinctionVolume& volume, const DetailControl& with_control, int along = 3,
                 int stride = 1) const {
     const RegularGrid& grid = plain_.grid;
@@ -258,14 +260,14 @@ TEST_P(WaterPathsOfStorm, AreThoseWithoutDetail) {
   const Paths all = kept.Together();
   EXPECT_LT(all.InBlocks(4).Deviation(0), 0.02);
   EXPECT_LT(all.InBlocks(8).Deviation(0), 0.01);
-  // By fewer points single columns seem to differ by up to some percent.
+  // With fewer points single columns seem to differ by up to some percent.
   const Paths single = PathsOf(kept_, kept_control_, 8, 4).Together();
   EXPECT_GT(single.ShareWithin(0.01), 0.98);
   EXPECT_GT(single.ShareWithin(0.03), 0.995);
   EXPECT_LT(single.Deviation(0), 0.02);
-  // By channels alone.
+  // Compares with columns kept by channel only.
   EXPECT_GT(PathsOf(kept_, control_).Together().Deviation(0), 0.09);
-  // Detail takes much more than that.
+  // Without that, detail takes away much more.
   const Paths lost = PathsLost();
   EXPECT_LT(lost.Ratio()[0], 0.97);
   EXPECT_GT(lost.InBlocks(8).Deviation(0), 0.1);
@@ -285,7 +287,7 @@ TEST_P(WaterPathsOfStorm, FactorsAreBounded) {
   for (std::size_t i = 0; i < plain_.planes[0].texels.size(); ++i) {
     const double before = FloatOf(plain_.planes[0].texels[i]);
     const double after = FloatOf(kept_.planes[0].texels[i]);
-    // A half float has 11 bits.
+    // A half float has 11 significant bits.
     ASSERT_LE(after, before * double{kMaxColumnFactor} * 1.001 + 1e-7);
     ASSERT_GE(after, before / double{kMaxColumnFactor} * 0.999 - 1e-7);
   }
@@ -300,16 +302,16 @@ TEST_F(WaterPathsTest, AreKeptInFibres) {
   fields.motion.source = TurbulenceSource::kEnergy;
   fields.motion.turbulence.assign(fields.grid.CellCount(), 100);
   fields.motion.shear_m_per_s = {20.0, 20.0};
-  fields.fields.resize(3);  // the third is of a channel with detail
+  fields.fields.resize(3);  // the third belongs to a channel with detail
   fields.fields[2].hydrometeor = physics::Hydrometeor::kIce;
   fields.fields[2].concentration_kg_per_m3.assign(fields.grid.CellCount(), 1e-2F);
   Draw(fields);
   EXPECT_GT(PathsLost().Deviation(2), 0.03);
-  // Between the points that are evaluated noise differs.
+  // Noise differs between the points that are evaluated.
   EXPECT_LT(PathsKept().Deviation(2), 0.02);
 }
 
-// Turbulent ice, in which detail has billows.
+// Returns turbulent ice, in which detail has billows.
 HydrometeorFields TurbulentIce(const glm::ivec3& cells) {
   HydrometeorFields fields;
   fields.grid.cells = cells;
@@ -323,7 +325,7 @@ HydrometeorFields TurbulentIce(const glm::ivec3& cells) {
   return fields;
 }
 
-// A single column, and a single cell.
+// Tests a single column and a single cell.
 TEST_F(WaterPathsTest, AreKeptInTheSmallestGrids) {
   for (const int levels : {1, 8}) {
     Draw(TurbulentIce({1, 1, levels}));
@@ -335,7 +337,8 @@ class WaterPathMemoTest : public WaterPathsTest {
  protected:
   void SetUp() override { Draw(TurbulentIce({6, 6, 4})); }
 
-  // The effort that `memo` keeps the water paths of the volume with, which are to be as without it.
+  // Keeps the water paths of the volume with `memo`, and returns the effort. The result must be the
+  // same as without it.
   WaterPathEffort KeptBy(WaterPathMemo* memo, WaterPathEffort effort) {
     DetailControl control = control_;
     ExtinctionVolume volume = plain_;
@@ -381,7 +384,7 @@ TEST_F(WaterPathMemoTest, OtherContentsAreOthers) {
 }
 
 TEST_F(WaterPathMemoTest, ForgetsWhatWasNotAskedForLongest) {
-  WaterPathMemo memo(4096);  // those of 36 columns have some 800 bytes
+  WaterPathMemo memo(4096);  // 36 columns have some 800 bytes
   const double tile_m = detail_.layers[0].tile_m;
   KeptBy(&memo, WaterPathEffort::kFull);
   detail_.layers[0].tile_m = 1.5 * tile_m;

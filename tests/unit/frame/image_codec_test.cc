@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Smooth ramps: red along x, green along y, blue along both.
+// Returns smooth ramps: red along x, green along y, blue along both.
 std::vector<std::uint8_t> Ramps(int width_px, int height_px) {
   std::vector<std::uint8_t> rgb;
   for (int y = 0; y < height_px; ++y) {
@@ -50,8 +50,8 @@ TEST(ImageCodecTest, JpegGivesBackSmoothPicturesClosely) {
   ASSERT_TRUE(image.ok()) << image.status();
   ASSERT_EQ(image->width_px, 160);
   ASSERT_EQ(image->height_px, 90);
-  // Quality 95 quantises by one to a few levels, and 4:2:0 halves the resolution of colour on
-  // smooth ramps.
+  // Quality 95 quantises by one to a few levels, and 4:2:0 halves the colour resolution of smooth
+  // ramps.
   EXPECT_LT(MeanError(image->rgb, rgb), 3.0);
 }
 

@@ -17,7 +17,7 @@ constexpr int kUnits = 3;
 constexpr int kRows_px = 16;
 constexpr int kQuality = 90;
 
-// Colours that differ everywhere, so that a strip in a wrong place shows.
+// Returns colours that differ everywhere, so that a strip in a wrong place is noticed.
 std::vector<std::uint8_t> Waves(int width_px, int height_px) {
   std::vector<std::uint8_t> rgb;
   for (int y = 0; y < height_px; ++y) {
@@ -47,7 +47,7 @@ std::vector<std::string> StripsOf(int height_px, const std::vector<std::uint8_t>
   return strips;
 }
 
-// More strips than there are restart markers, and a last one that is lower.
+// There are more strips than restart markers, and the last strip is lower.
 TEST(JpegStrips, DecodeAsThePictureEncodedWhole) {
   constexpr int kHeight_px = 11 * kRows_px + 5;
   const std::vector<std::uint8_t> rgb = Waves(kWidth_px, kHeight_px);
@@ -67,14 +67,14 @@ TEST(JpegStrips, AStripThatIsNoJpegIsNamed) {
   EXPECT_THAT(std::string(joined.status().message()), HasSubstr("strip 1"));
 }
 
-// Encoded by several threads where there are several processors.
+// Several threads encode the picture if there are several processors.
 TEST(JpegStrips, ALargePictureIsTheSameAsItsParts) {
   constexpr int kSide_px = 1100;
   const std::vector<std::uint8_t> rgb = Waves(kSide_px, kSide_px);
   const auto image = DecodeJpeg(Encoded(kSide_px, kSide_px, rgb));
   ASSERT_TRUE(image.ok()) << image.status();
-  // Parts that no thread shares: 160 rows from a row of units on. The rows beside a cut are
-  // smoothed with their neighbours.
+  // Compares parts that no two threads share, each 160 rows from the beginning of a row of units.
+  // The rows next to a cut are smoothed with their neighbours.
   for (const int first : {0, 320, 640}) {
     constexpr int kPart_px = 160;
     constexpr std::size_t kRow = std::size_t{kSide_px} * 3;

@@ -1,4 +1,4 @@
-// Pictures completed from coarse ones, with places that a function colours.
+// Tests of pictures completed from coarse ones, with places that a function colours.
 #include "frame/sparse_picture.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kContrast = 12;
 
-// A grey picture of the whole, by places as frame::DrawPlaces has them.
+// A grey picture that can be evaluated at any place, as frame::DrawPlaces requires.
 struct Canvas {
   std::function<double(glm::vec2)> grey;  // 0 to 1
   glm::ivec2 size_px;
@@ -50,8 +50,8 @@ struct Canvas {
     return Dithered(*whole);
   }
 
-  // The largest deviation of the picture from the canvas in steps of 255, at least `margin_px` from
-  // its edges.
+  // Returns the largest deviation of the picture from the canvas in steps of 255, at least
+  // `margin_px` from its edges.
   double WorstOf(const std::vector<std::uint8_t>& rgb, int margin_px) const {
     const std::vector<std::uint16_t> exact = At(PixelsOf(size_px));
     double worst = 0.0;
@@ -71,12 +71,12 @@ TEST(SparsePicture, FollowsASlopeWithoutAnyRays) {
     const auto rgb = canvas.Complete(1000);
     EXPECT_EQ(canvas.drawn, 0U);
     EXPECT_EQ(rgb.size(), static_cast<std::size_t>(3 * size_px.x * size_px.y));
-    // The noise is up to half a step, and so is rounding with it.
+    // The noise is up to half a step, and so is the rounding after it.
     EXPECT_LE(canvas.WorstOf(rgb, 4), 1.05) << size_px.x;
   }
 }
 
-// Lines between pixels would be off by 3.5 steps.
+// Linear interpolation between pixels would be off by 3.5 steps.
 TEST(SparsePicture, FollowsACurveByItsNeighbours) {
   Canvas canvas{[](glm::vec2 place) { return 0.5 + 0.4 * std::tanh(10.0 * place.x); }, {128, 96}};
   const auto rgb = canvas.Complete(1000);
@@ -84,15 +84,15 @@ TEST(SparsePicture, FollowsACurveByItsNeighbours) {
   EXPECT_LE(canvas.WorstOf(rgb, 0), 2.0);
 }
 
-// A step that is worth rays in the place of a pixel of the quarter is not worth any in that of one
-// of the half picture.
+// A contrast that requires rays in pixels of the quarter picture requires none in pixels of the
+// half picture.
 TEST(SparsePicture, TheLastPicturesPixelsMayDifferByMore) {
   const auto drawn_of = [](double height) {
     Canvas canvas{[=](glm::vec2 place) { return place.x > 0.0F ? 0.3 + height : 0.3; }, {128, 96}};
     canvas.Complete(kContrast);
     return canvas.drawn;
   };
-  // A step of one and a half of the contrast is drawn in the half picture alone, 4 columns of 48.
+  // A step of one and a half times the contrast is drawn only in the half picture, 4 columns of 48.
   EXPECT_EQ(drawn_of(1.5 * kContrast / 255.0), 4U * 48U);
   EXPECT_GT(drawn_of(1.5 * kLastContrast * kContrast / 255.0), 4U * 48U);
 }

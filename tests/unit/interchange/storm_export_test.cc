@@ -1,4 +1,4 @@
-// Exported storms, read back by OpenVDB itself.
+// Tests of exported storms, read back by OpenVDB itself.
 #include "interchange/storm_export.h"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ using volume::HydrometeorField;
 using volume::HydrometeorFields;
 
 constexpr double kHalfPrecision = 1.0 / 2048.0;          // relative, half the spacing of numbers
-constexpr double kSmallestHalf = 1.0 / (1 << 24) / 2.0;  // absolute, of the smallest
+constexpr double kSmallestHalf = 1.0 / (1 << 24) / 2.0;  // absolute, for the smallest numbers
 
 HydrometeorField Field(Hydrometeor hydrometeor, const volume::RegularGrid& grid, float peak) {
   HydrometeorField field;
@@ -44,7 +44,7 @@ HydrometeorField Field(Hydrometeor hydrometeor, const volume::RegularGrid& grid,
   return field;
 }
 
-// No edge is a multiple of a block's.
+// Returns a storm no edge of which is a multiple of a block's edge.
 std::shared_ptr<HydrometeorFields> SmallStorm() {
   auto fields = std::make_shared<HydrometeorFields>();
   fields->grid = {{11, 9, 18}, {500.0, 400.0, 300.0}, {-2750.0, -1800.0, 120.0}};
@@ -113,7 +113,7 @@ class StormExportTest : public ::testing::Test {
   const std::string path_ = folder_.File("storm.vdb");
 };
 
-// The value that the file should hold, from the optics of the paper's eq. 4 alone.
+// Returns the value that the file should hold, from the optics of the paper's eq. 4 alone.
 double ExtinctionOf(const HydrometeorField& field, std::size_t cell) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
   return 1.5 /
@@ -210,7 +210,7 @@ TEST_F(StormExportTest, FieldsAreThoseOfTheScene) {
   const ReadBack read = Export(scene, fields);
   ASSERT_EQ(read.grids.size(), 1U);
   const openvdb::FloatGrid& grid = *read.grids.at("rain");
-  // Extinction is inverse to the radius.
+  // Extinction is inversely proportional to the radius.
   const double default_m = static_cast<double>(physics::DefaultOptics(Hydrometeor::kRain).radius_m);
   const double expected = 3.0 * ExtinctionOf(fields->fields[1], 50) * default_m / 5e-4;
   EXPECT_NEAR(grid.getConstAccessor().getValue(openvdb::Coord(6, 4, 0)), expected,
@@ -288,9 +288,8 @@ TEST_F(StormExportTest, DetailIsThatOfTheDrawnMedium) {
   EXPECT_GT(changed, 500);
 }
 
-// Sums over the storm, of fields that are drawn as one group together: they share the factors of
-// their columns, so that graupel alone has 4 % more. Of columns, volume/water_paths.h keeps what it
-// can.
+// Sums the storm over fields that are drawn as one group. They share the factors of their columns,
+// so graupel alone has 4 % more. Single columns are kept as far as volume/water_paths.h can.
 TEST_F(StormExportTest, DetailKeepsTheWaterOfTheSample) {
   const auto store =
       *storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});
@@ -326,7 +325,7 @@ TEST_F(StormExportTest, FinerVoxelsAreLinearBetweenCellsAndKeepTheTotal) {
   const ReadBack read = Export(scene, fields, {.detail = true});
   const double peak = ExtinctionOf(fields->fields[0], fields->grid.Offset(5, 4, 7));
   const auto accessor = read.grids.at("cloud")->getConstAccessor();
-  // Three eighths of a cell from the centre along x, one eighth along y and z.
+  // The place is three eighths of a cell from the centre along x, and one eighth along y and z.
   const double expected = peak * (5.0 / 8.0) * (7.0 / 8.0) * (7.0 / 8.0);
   EXPECT_NEAR(accessor.getValue(openvdb::Coord(23, 17, 30)), expected, kHalfPrecision * expected);
   double sum = 0.0;
@@ -368,7 +367,7 @@ TEST_F(StormExportTest, StoppedWhileWritingLeavesTheFormerFile) {
       *file, path_,
       [&](double share) {
         shares.push_back(share);
-        // The last report before writing.
+        // This is the last report before writing.
         if (shares.size() == 7) stop.request_stop();
       },
       stop.get_token());

@@ -1,4 +1,5 @@
-// Which picture is next, what makes room for what, and what becomes of those that fail.
+// Tests of which picture is next, of which results are dropped for others, and of what happens to
+// pictures that fail.
 #include "jobs/job_board.h"
 
 #include <chrono>
@@ -29,7 +30,7 @@ void Add(JobBoard& board, const std::string& id, const std::string& owner, std::
   board.SetSaved(id);
 }
 
-// Begins and draws the next; returns its job.
+// Begins and draws the next picture; returns the id of its job.
 std::string DrawNext(JobBoard& board, double draw_ms, Time now = kNow, std::uint64_t bytes = 10) {
   const auto picture = board.Begin(now);
   if (!picture.has_value()) return "";
@@ -155,7 +156,7 @@ TEST(JobBoard, OnlyResultsThatWereFetchedMakeRoomTheOldestFirst) {
   JobBoard board(limits);
   Add(board, "a", "anna", 6);
   for (int i = 0; i < 2; ++i) DrawNext(board, 1.0, kNow + seconds(i));
-  // Three are in hand at a time.
+  // Three pictures are in progress at a time.
   const auto third = *board.Begin(kNow);
   const auto fourth = *board.Begin(kNow);
   board.Drawn(third, {third, "png", "", 10}, 1.0, 1.0, kNow + seconds(2));
@@ -193,11 +194,11 @@ TEST(JobBoard, WhoFetchesNothingPausesAndTakesNothingFromOthers) {
   Add(board, "c", "carl", 1);
   EXPECT_EQ(DrawNext(board, 1.0), "");
   EXPECT_THAT(board.All()[2].paused->message, HasSubstr("--jobs-quota)"));
-  // What is fetched makes room for everybody.
+  // Fetching a result frees space for all jobs.
   board.Fetched({"b", 0}, kNow);
   EXPECT_NE(DrawNext(board, 1.0), "");
   EXPECT_EQ(board.MakeRoom().size(), 1U);
-  // So does a job that is forgotten.
+  // Forgetting a job frees space too.
   board.Forget("a");
   EXPECT_NE(DrawNext(board, 1.0), "");
 }
@@ -216,7 +217,7 @@ TEST(JobBoard, WhetherAJobIsPausedIsNews) {
   EXPECT_THAT(board.TakePauses(), ElementsAre("b"));
   EXPECT_GT(board.NewsOf("b", 0)->version, version);
   EXPECT_THAT(board.TakePauses(), IsEmpty());
-  // Hers goes on; his is paused as before.
+  // Her job continues; his is paused as before.
   const std::uint64_t before = board.NewsOf("a", 0)->version;
   board.Fetched({"a", 0}, kNow);
   EXPECT_THAT(board.TakePauses(), ElementsAre("a"));
@@ -225,7 +226,7 @@ TEST(JobBoard, WhetherAJobIsPausedIsNews) {
   EXPECT_THAT(board.NewsOf("a", before)->pictures, IsEmpty());
 }
 
-// Two owners who fetch nothing would else stop everybody for ever.
+// Otherwise two owners who fetch nothing would block all others forever.
 TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
   JobLimits limits;
   limits.max_result_bytes = 40;
@@ -239,7 +240,7 @@ TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
   EXPECT_EQ(DrawNext(before, 1.0), "");
   JobBoard board(limits);
   for (const char* id : {"a", "b", "c"}) board.Restore(before.Record(id), kNow);
-  // He does fetch, if slowly.
+  // He does fetch his results, although slowly.
   board.Fetched({"b", 0}, kNow + hours(1));
   EXPECT_EQ(DrawNext(board, 1.0, kNow + hours(1), 30), "b");
   const Time ends = kNow + seconds(2) + hours(2);
@@ -254,7 +255,7 @@ TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
   EXPECT_EQ(ended.job.result_bytes, 0U);
   EXPECT_EQ(ended.pictures[0].problem.reason, "RESULTS_NOT_FETCHED");
   EXPECT_EQ(ended.pictures[2].state, PictureState::kFailed);
-  // Carl's has nothing to fetch.
+  // Carl's job has nothing to fetch.
   EXPECT_TRUE(board.Expire(ends + seconds(1)).dropped.empty());
   board.Fetched({"b", 1}, ends);
   EXPECT_EQ(DrawNext(board, 1.0, ends), "c");
@@ -274,7 +275,8 @@ TEST(JobBoard, ARestoredBoardKnowsWhatWasFetched) {
   EXPECT_TRUE(after.NewsOf("a", 0)->job.ended_at.has_value());
 }
 
-// The records of jobs that cost nothing, as they were cancelled at once, are not kept without end.
+// Jobs that were cancelled at once cost nothing, but their records must not accumulate without
+// limit.
 TEST(JobBoard, RecordsOfCancelledJobsAreBounded) {
   JobLimits limits;
   limits.max_kept_pictures = 50;
@@ -296,7 +298,7 @@ TEST(JobBoard, RecordsOfCancelledJobsAreBounded) {
   EXPECT_TRUE(board.NewsOf("a19", 0).has_value());
   EXPECT_FALSE(board.NewsOf("a0", 0).has_value());
   Add(board, "b", "bert", 29);
-  // What waits to be drawn does not make room.
+  // Pictures that wait to be drawn are not dropped for others.
   const absl::Status full =
       board.Add("b2", "key", {"bert", "", std::vector<PictureOrder>(2)}, kNow);
   EXPECT_EQ(base::DetailsOf(full).reason, "TOO_MANY_JOB_PICTURES");

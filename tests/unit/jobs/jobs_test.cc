@@ -31,7 +31,8 @@ namespace {
 using testing::ManualTime;
 using testing::WaitFor;
 
-// A picture that has no memory so many times: to be begun, then to be taken.
+// A picture that fails so many times for lack of memory, first when it begins and then when it is
+// taken.
 class Picture final : public PictureInHand {
  public:
   explicit Picture(
@@ -80,7 +81,7 @@ TEST(JobsTest, APictureWithoutMemoryIsTriedAgainAndTakesNothingWithIt) {
   std::promise<absl::StatusOr<JobView>> created;
   (*jobs)->Create(job, [&](absl::StatusOr<JobView> view) { created.set_value(std::move(view)); });
   ASSERT_TRUE(created.get_future().get().ok());
-  // One is drawn; the other two are tried again after a pause, which does not pass.
+  // One picture is drawn. The other two are tried again after a pause, which does not pass here.
   ASSERT_TRUE(WaitFor([&] { return (*jobs)->Load().result_bytes > 0; }));
   EXPECT_EQ((*jobs)->Load().result_bytes, 5U);
   EXPECT_EQ((*jobs)->Load().waiting, 2U);
@@ -139,8 +140,8 @@ class FullStore final : public JobStore {
   }
 
   std::atomic<bool> full{false};
-  std::atomic<bool> blocked{false};  // saving takes until it is false
-  std::atomic<int> saves{0};         // begun
+  std::atomic<bool> blocked{false};  // saving waits while it is true
+  std::atomic<int> saves{0};         // saves that have begun
 
  private:
   absl::Status Outcome() const {
@@ -198,7 +199,7 @@ TEST(JobsTest, WhatIsFetchedWhileAnotherFetchIsSavedLetsDrawingGoOn) {
   (*jobs)->Create({"night", "", std::vector<PictureOrder>(4)},
                   [&](const absl::StatusOr<JobView>& view) { created.set_value(view); });
   const std::string id = created.get_future().get()->id;
-  // The second was in hand when the first was kept.
+  // The second picture was in progress when the first was stored.
   ASSERT_TRUE(WaitFor([&] {
     const JobsLoad load = (*jobs)->Load();
     return load.result_bytes == 10 && load.stalled_s == 0.0;
@@ -233,7 +234,8 @@ class UnwrittenPictures : public ::testing::Test {
     });
   }
 
-  // Files have no room, as on a full disk: `refused_` counts what the kernel refuses to write.
+  // Makes writing files fail, as on a full disk. `refused_` counts the writes that the kernel
+  // refuses.
   static void Block() {
     refused_ = 0;
     std::signal(SIGXFSZ, [](int) { ++refused_; });
@@ -257,26 +259,26 @@ class UnwrittenPictures : public ::testing::Test {
     return created.get_future().get();
   }
 
-  // The first result of a job hangs as it is written. Gives the job's id, and the pipe whose reader
-  // lets it go on.
+  // Makes the first result of a job hang while it is written. Sets the job's id, and the pipe whose
+  // reader releases the write.
   void HangFirstResult(std::string& id, std::string& pipe) {
     patience_ = std::chrono::seconds(10);
     Open();
     may_take_ = false;
     id = Create(1);
     ASSERT_TRUE(WaitFor([this] { return begun_ > 0; }));
-    // A pipe that nobody reads hangs as it is opened, once.
+    // Opening a pipe that has no reader hangs, once.
     pipe = results_ + "/" + id + "/000000.about.partial";
     std::filesystem::create_directory(results_ + "/" + id);
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     may_take_ = true;
     may_take_.notify_all();
-    // It is let go when writing it has been given up.
+    // The picture is released when writing it has been given up.
     ASSERT_TRUE(Await([this] { return ended_ > 0; }));
     EXPECT_GE(jobs_->Load().stalled_s, 10.0);
   }
 
-  // Waits while time passes.
+  // Waits for the condition while time passes.
   template <typename Condition>
   static bool Await(const Condition& condition) {
     return WaitFor([&] {
@@ -286,7 +288,7 @@ class UnwrittenPictures : public ::testing::Test {
     });
   }
 
-  // A thread that is left behind outlives the test.
+  // The time of all tests, because an abandoned thread outlives its test.
   static ManualTime& Time() {
     static ManualTime time;
     return time;
@@ -309,7 +311,7 @@ TEST_F(UnwrittenPictures, AreKeptUntilTheyCanBeWrittenAndNotDrawnAgain) {
   const std::string id = Create(10);
   ASSERT_FALSE(id.empty());
   ASSERT_TRUE(WaitFor([] { return refused_ > 0; }));
-  // Several attempts to write up to four pictures.
+  // There are several attempts to write up to four pictures.
   for (int i = 0; i < 12; ++i) {
     const int refused = refused_;
     ASSERT_TRUE(Await([&] { return refused_ > refused; }));
@@ -359,7 +361,7 @@ TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
                 [&](const absl::StatusOr<JobView>& view) { forgotten.set_value(view.ok()); });
   EXPECT_TRUE(forgotten.get_future().get());
   EXPECT_TRUE(std::filesystem::exists(results_ + "/" + id));
-  // The folder answers again, and what could not be removed is removed with the next.
+  // The folder answers again, and files that could not be removed are removed with the next.
   const base::FileDescriptor reader(open(pipe.c_str(), O_RDWR | O_NONBLOCK));
   EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 5; }));
   const std::string last = Create(1);
@@ -371,8 +373,9 @@ TEST_F(UnwrittenPictures, OfAFolderThatHangsAreLeftBehindAtTheEnd) {
   std::string id;
   std::string pipe;
   ASSERT_NO_FATAL_FAILURE(HangFirstResult(id, pipe));
-  jobs_.reset();  // while time stands still
-  // The thread that was left behind writes and closes the pipe, or it would write to no reader.
+  jobs_.reset();  // time stands still meanwhile
+  // The abandoned thread writes to the pipe and closes it. Without this reader its write would
+  // fail.
   const base::FileDescriptor reader(open(pipe.c_str(), O_RDONLY | O_NONBLOCK));
   pollfd written = {.fd = reader.Get(), .events = 0, .revents = 0};
   constexpr std::chrono::milliseconds kLimit = testing::kHangLimit;

@@ -1,4 +1,4 @@
-// A night's job waits for what passes, and gives up what does not.
+// Tests that a job retries after temporary errors, and gives up after permanent ones.
 #include "jobs/next_try.h"
 
 #include "base/error_details.h"
@@ -59,7 +59,7 @@ TEST(NextTry, WhatAnotherTryDoesNotHelpEndsThePicture) {
   EXPECT_FALSE(NextTryAfter(absl::InvalidArgumentError("a bad scene"), 1, false).has_value());
   EXPECT_FALSE(NextTryAfter(absl::DataLossError("a damaged file"), 1, false).has_value());
   EXPECT_FALSE(NextTryAfter(absl::DeadlineExceededError("too long"), 1, false).has_value());
-  // Though clients are told to try again in an hour.
+  // The job gives up even though clients are told to try again in an hour.
   for (const char* reason : {"PICTURE_TOO_LARGE", "TOO_MANY_SAMPLES"}) {
     const absl::Status large = With(absl::StatusCode::kResourceExhausted, reason, minutes(60));
     EXPECT_FALSE(NextTryAfter(large, 1, false).has_value()) << reason;

@@ -28,8 +28,8 @@ ViewerRecord Record(ViewerKind kind, int frames, double late_s) {
   return record;
 }
 
-// Ten seconds with an update a second, seen by two viewers after 100 and 200 ms, by a throttled one
-// after 500.
+// A fixture of ten seconds with an update per second. Two viewers see it after 100 and 200 ms, a
+// throttled one after 500.
 class ReportTest : public ::testing::Test {
  protected:
   ReportTest() {
@@ -161,16 +161,17 @@ TEST_F(ReportTest, WritesNullWhereThereIsNoFigure) {
 }
 
 TEST(Pace, DelaysEachMessageByItsTimeOnTheWire) {
-  Pace pace(1000.0);  // 125 bytes a millisecond
+  Pace pace(1000.0);  // 125 bytes per millisecond
   const Pace::Clock::time_point now{std::chrono::hours(1)};
   EXPECT_EQ(pace.DelayOf(1250, now), milliseconds(10));
-  // The next waits for the first, and one after a pause does not.
+  // The next message waits for the first, but a message after a pause does not wait.
   EXPECT_EQ(pace.DelayOf(1250, now + milliseconds(4)), milliseconds(16));
   EXPECT_EQ(pace.DelayOf(125, now + milliseconds(100)), milliseconds(1));
   EXPECT_FALSE(Pace(0.0).IsLimited());
 }
 
-// Two healthy viewers of 4 and 2 frames/s, seen after 100 and 200 ms; the server grows by 10 MB.
+// Two healthy viewers get 4 and 2 frames/s and see updates after 100 and 200 ms. The server grows
+// by 10 MB.
 TEST_F(ReportTest, BoundsAreKeptOrSaidNotToBe) {
   const Report report = ReportOf(recording_);
   EXPECT_THAT(NotKept({}, report), testing::IsEmpty());

@@ -34,7 +34,7 @@ TEST(Percentile, IsTheLeastValueThatTheShareDoesNotExceed) {
 
 TEST(Latencies, AreCountedToTheFirstFrameOfTheRevisionOrANewerOne) {
   const std::vector<Update> updates = {{11.0, 2}, {11.1, 3}, {11.2, 4}};
-  // A frame before the update, one of its revision, and one that skips a revision.
+  // The arrivals are a frame before the update, one of its revision, and one that skips a revision.
   const std::vector<Arrival> arrivals = {{10.9, 1}, {11.03, 2}, {11.05, 2}, {11.3, 4}};
   EXPECT_THAT(Ms(LatenciesOf(updates, arrivals, kPeriod)),
               ElementsAre(Near(30), Near(200), Near(100)));
@@ -50,13 +50,13 @@ TEST(Latencies, CountAnUnseenUpdateByItsAgeIfThatIsWorse) {
   const std::vector<Update> updates = {{11.0, 2}, {15.0, 3}, {19.95, 4}};
   const std::vector<Arrival> arrivals = {{11.1, 2}};
   EXPECT_THAT(Ms(LatenciesOf(updates, arrivals, kPeriod)), ElementsAre(Near(100), Near(5000)));
-  // A frame after the end was not there at the end.
+  // A frame that arrived after the end of the period does not count.
   EXPECT_THAT(Ms(LatenciesOf({{15.0, 3}}, {{20.5, 3}}, kPeriod)), ElementsAre(Near(5000)));
 }
 
 TEST(Spreads, AreFromTheFirstViewerWhoShowsAnUpdateToTheLast) {
   const std::vector<Update> updates = {{9.0, 1}, {11.0, 2}, {12.0, 3}, {13.0, 4}, {19.0, 5}};
-  // The second viewer skips revision 3, the third gets nothing after revision 2.
+  // The second viewer skips revision 3, and the third receives nothing after revision 2.
   const std::vector<Arrival> first = {{9.1, 1}, {11.1, 2}, {12.1, 3}, {13.1, 4}};
   const std::vector<Arrival> second = {{9.5, 1}, {11.2, 2}, {13.4, 4}};
   const std::vector<Arrival> third = {{9.9, 1}, {11.15, 2}};

@@ -1,4 +1,4 @@
-// A load's reading of the server's messages, on messages as the server writes them.
+// Tests that the load generator parses the server's messages, as the server writes them.
 #include <string>
 
 #include "gmock/gmock.h"
@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// In blocks of 16 bytes, as gRPC's slices may cut a message anywhere.
+// Reads in blocks of 16 bytes, because gRPC's slices may divide a message anywhere.
 std::optional<Response> Read(const std::string& bytes) {
   google::protobuf::io::ArrayInputStream stream(bytes.data(), static_cast<int>(bytes.size()), 16);
   return ReadResponse(stream);
@@ -31,7 +31,7 @@ v1::InteractResponse FrameResponse() {
   return response;
 }
 
-// A response with that serialized frame.
+// Reads a response with that serialized frame.
 std::optional<Response> ReadFrame(const std::string& frame) {
   EXPECT_LT(frame.size(), 1U << 14);
   std::string bytes = "\x12";

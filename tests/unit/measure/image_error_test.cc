@@ -27,7 +27,7 @@ TEST(ImageError, RelativeRmseAndBias) {
   const picture::LinearPicture truth = Linear({1.0F, 3.0F});
   EXPECT_EQ(RelativeRmse(truth, truth), 0.0);
   EXPECT_EQ(RelativeBias(truth, truth), 0.0);
-  // Differences 1 and -1 of a mean of 2.
+  // The differences are 1 and -1, with a mean of 2.
   EXPECT_DOUBLE_EQ(RelativeRmse(Linear({2.0F, 2.0F}), truth), 0.5);
   EXPECT_DOUBLE_EQ(RelativeBias(Linear({2.0F, 2.0F}), truth), 0.0);
   EXPECT_DOUBLE_EQ(RelativeBias(Linear({1.5F, 3.5F}), truth), 0.25);
@@ -50,9 +50,10 @@ TEST(Flip, OfAPictureWithItselfIsZero) {
 }
 
 TEST(Flip, OfEvenGraysFollowsTheColourFormula) {
-  // Without edges or points the value is that of the colour pipeline. Black against white: HyAB
-  // distance 100. Green against blue, which bounds the scale: L* 87.73 and 32.30, a*, b* times L* /
-  // 100: (-75.6, 73.0) and (25.6, -34.8), so 55.4 + 148.0 = 203.5.
+  // Without edges or points the value is that of the colour pipeline. Black against white has a
+  // HyAB distance of 100. Green against blue bounds the scale. Their L* is 87.73 and 32.30. Their
+  // a*, b* times L* / 100 are (-75.6, 73.0) and (25.6, -34.8). The distance is therefore 55.4 +
+  // 148.0 = 203.5.
   const double most = std::pow(203.5, 0.7);
   const double distance = std::pow(100.0, 0.7);
   const double expected = 0.95 + (distance - 0.4 * most) / (0.6 * most) * 0.05;
@@ -73,7 +74,7 @@ TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
 
 TEST(Flip, FineNoiseIsForgivenAndANewEdgeIsNot) {
   const frame::RgbImage truth = Drawn([](int, int) { return 128; });
-  // Both change every pixel by 10 levels.
+  // Both pictures change every pixel by 10 levels.
   const frame::RgbImage chequered =
       Drawn([](int x, int y) { return (x + y) % 2 == 0 ? 118 : 138; });
   const frame::RgbImage stepped = Drawn([](int x, int) { return x < 24 ? 118 : 138; });

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSide_px = 48;
 
-// A tower 10 km high and 5 km wide, seen from the south.
+// A fixture with a tower 10 km high and 5 km wide, seen from the south.
 class LookRegionsTest : public testing::Test {
  protected:
   int Count(double sun_azimuth_deg, Region region) {
@@ -32,13 +32,13 @@ TEST_F(LookRegionsTest, TheTowerIsWhereTheSunShinesOnIt) {
   const int facing = Count(180.0, Region::kTower);
   EXPECT_GT(facing, 300);
   EXPECT_EQ(Count(180.0, Region::kBase), 0);
-  // A strip as wide as a billow.
+  // The tower's lit region is a strip as wide as a billow.
   EXPECT_GT(Count(90.0, Region::kTower), 0);
   EXPECT_LT(Count(90.0, Region::kTower), facing / 2);
 }
 
 TEST_F(LookRegionsTest, TheBaseIsInShadow) {
-  // But for the top, behind which the sun's rays pass less than a billow.
+  // The top is an exception, because the sun's rays pass less than a billow behind it.
   EXPECT_LT(Count(0.0, Region::kTower), Count(180.0, Region::kTower) / 2);
   EXPECT_GT(Count(0.0, Region::kBase), 50);
 }
@@ -55,7 +55,7 @@ TEST(LookFigures, CountStops) {
   for (int i = 0; i < 300; ++i) {
     const bool tower = i < 100;
     const bool base = i >= 200;
-    // The tower from 1 to 4 in equal steps of its logarithm.
+    // The tower's radiance rises from 1 to 4 in equal steps of its logarithm.
     picture.radiance.emplace_back(tower  ? std::exp2(2.0F * static_cast<float>(i) / 99.0F)
                                   : base ? 0.25F
                                          : 0.125F);

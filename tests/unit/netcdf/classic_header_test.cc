@@ -1,4 +1,4 @@
-// Headers that netCDF-C would copy past the end of a buffer.
+// Tests of headers that netCDF-C would copy past the end of a buffer.
 #include "netcdf/classic_header.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,8 @@ struct Lengths {
   int rank = 1;
 };
 
-// A dimension, an attribute of the file and a variable with another, in the layout of that version.
+// Returns a header with a dimension, an attribute of the file, and a variable with another
+// attribute, in the layout of that version.
 std::string HeaderOf(int version, const Lengths& lengths) {
   const int width = version == 5 ? 8 : 4;
   const auto count = [width](std::uint64_t number) { return BigEndian(number, width); };

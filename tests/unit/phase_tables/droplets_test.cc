@@ -16,9 +16,11 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kGreenColor = 1;
 
 TEST(RefractiveIndex, WaterIsAsPublished) {
-  // Tilton and Taylor 1938, sodium light, water at 10 degrees against air: 1.33369.
+  // The value is from Tilton and Taylor 1938, for sodium light and water at 10 degrees in air:
+  // 1.33369.
   EXPECT_NEAR(WaterRefractiveIndex(0.5893), 1.33369, 1e-4);
-  // Hale and Querry 1973 at 25 degrees, where it is lower by 0.0012: three decimals.
+  // The values are from Hale and Querry 1973 at 25 degrees, where the index is lower by 0.0012,
+  // with three decimals.
   EXPECT_NEAR(WaterRefractiveIndex(0.65) - 0.0012, 1.331, 1e-3);
   EXPECT_NEAR(WaterRefractiveIndex(0.55) - 0.0012, 1.333, 1e-3);
   EXPECT_NEAR(WaterRefractiveIndex(0.45) - 0.0012, 1.337, 2e-3);
@@ -37,8 +39,9 @@ TEST(DropletSizes, QuadratureHasTheMomentsOfTheDistribution) {
   EXPECT_NEAR(square / (mean * mean) - 1.0, 0.1, 1e-4);
 }
 
-// Asymmetry of cloud at 0.55 um by effective radius, and mass extinction of ecRad's tables. Theirs
-// is another index of water (by up to 0.002) and a slightly different distribution: 0.003, and 1 %.
+// Compares the asymmetry of cloud at 0.55 um by effective radius, and the mass extinction, with
+// ecRad's tables. Their refractive index of water differs (by up to 0.002), and so does their
+// distribution slightly: 0.003, and 1 %.
 TEST(Droplets, CloudIsAsPublished) {
   const struct {
     double radius_um, asymmetry;
@@ -56,14 +59,14 @@ TEST(Droplets, CloudIsAsPublished) {
   EXPECT_NEAR(mass_extinction(20.0) / 77.3, 1.0, 0.01);
 }
 
-// Extinction tends to twice the geometric cross section, from above as x^(-2/3): van de Hulst 1957,
-// section 17.26, Q = 2 + 1.992 x^(-2/3) for the edge term.
+// Extinction tends to twice the geometric cross section, from above as x^(-2/3). The edge term is
+// that of van de Hulst 1957, section 17.26: Q = 2 + 1.992 x^(-2/3).
 TEST(Droplets, LargeDropsApproachGeometricOptics) {
   const DropletSizes sizes{100.0, 0.1};
   const double x = 2.0 * std::numbers::pi * 100.0 / kWavelengthsUm[kGreenColor];
   const double extinction = OpticsOf(sizes, 100).extinction[kGreenColor];
   EXPECT_GT(extinction, 2.0);
-  // The mean of x^(-2/3) over the sizes is within a tenth of its value at the effective one.
+  // The mean of x^(-2/3) over the sizes is within a tenth of its value at the effective size.
   EXPECT_NEAR(extinction, 2.0 + 1.992 * std::pow(x, -2.0 / 3.0),
               0.1 * 1.992 * std::pow(x, -2.0 / 3.0));
 }
@@ -77,8 +80,8 @@ TEST(Droplets, TableHoldsAllThatIsScattered) {
   ASSERT_TRUE(table.ok()) << table.status();
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
     EXPECT_NEAR(2.0 * light.energy()[c], optics.extinction[c] * optics.albedo[c], 1e-6);
-    // The grid's steps, up to h = 0.5 degrees, widen angles by h^2 / 6 in the mean: below 1e-4 of
-    // g.
+    // The grid's steps, up to h = 0.5 degrees, widen angles by h^2 / 6 on average, which is below
+    // 1e-4 of g.
     EXPECT_NEAR(table->Asymmetry(c), optics.asymmetry[c], 1e-4);
   }
 }
@@ -102,7 +105,7 @@ TEST(Droplets, SmallRunAgreesWithTheFile) {
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
     EXPECT_NEAR(small.Asymmetry(c), file->Asymmetry(c), 1e-3);
     for (double angle_deg = 0.0; angle_deg <= 180.0; angle_deg += 1.5) {
-      // A quarter of the sizes leaves the resonances of single drops less well averaged.
+      // With a quarter of the sizes, the resonances of single drops are averaged less well.
       EXPECT_NEAR(small.Value(angle_deg * kRadiansPerDegree, c) /
                       file->Value(angle_deg * kRadiansPerDegree, c),
                   1.0, 0.1)
@@ -111,7 +114,7 @@ TEST(Droplets, SmallRunAgreesWithTheFile) {
   }
 }
 
-// A few large drops about the primary rainbow, computed directly.
+// The primary rainbow of a few large drops is computed directly.
 TEST(Droplets, RainbowOfAFewDropsAgreesWithTheFile) {
   const auto file = EmbeddedPhaseTable("rain");
   ASSERT_TRUE(file.ok()) << file.status();
@@ -132,7 +135,7 @@ TEST(Droplets, RainbowOfAFewDropsAgreesWithTheFile) {
     few += 4.0 * sums[static_cast<std::size_t>(i)] / scattering;
     table += file->Value((136.0 + 0.02 * i) * kRadiansPerDegree, kGreenColor);
   }
-  // The mean over five degrees; what remains are the ripples of 40 sizes.
+  // Compares means over five degrees. The remaining differences are ripples from only 40 sizes.
   EXPECT_NEAR(few / table, 1.0, 0.05);
 }
 

@@ -20,13 +20,13 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
 constexpr std::size_t kGreen = 1;
 
-// The angle by which a prism of ice with that angle between two faces bends light at least.
+// Returns the least deviation of light by a prism of ice with that angle between two faces.
 double LeastDeviationDeg(double prism_angle_deg, double index) {
   return 2.0 * std::asin(index * std::sin(0.5 * prism_angle_deg * kDegree)) / kDegree -
          prism_angle_deg;
 }
 
-// Mean over directions of a function of the direction.
+// Returns the mean of a function of the direction, over all directions.
 template <typename Function>
 double MeanOverSphere(const Function& function) {
   constexpr int kSteps = 400;
@@ -80,7 +80,7 @@ TEST(Fresnel, KeepsEnergyAndFollowsSnell) {
       EXPECT_EQ(rays.total_reflection, sine * ratio >= 1.0);
       if (rays.total_reflection) continue;
       EXPECT_NEAR(rays.refracted.direction.x, ratio * sine, 1e-12);
-      // Fields stay at right angles to the rays.
+      // Fields stay perpendicular to the rays.
       EXPECT_NEAR(glm::dot(rays.refracted.fields[0].re, rays.refracted.direction), 0.0, 1e-12);
       EXPECT_NEAR(glm::dot(rays.reflected.fields[1].re, rays.reflected.direction), 0.0, 1e-12);
     }
@@ -89,7 +89,7 @@ TEST(Fresnel, KeepsEnergyAndFollowsSnell) {
 
 TEST(Fresnel, KnownReflectances) {
   EXPECT_NEAR(Reflectance(1.0, 1.0 / 1.5), 0.04, 1e-12);
-  // At Brewster's angle only light across the plane of incidence is reflected: half of
+  // At Brewster's angle only light polarised across the plane of incidence is reflected: half of
   // ((n^2 - 1) / (n^2 + 1))^2.
   const double n = 1.5;
   EXPECT_NEAR(Reflectance(1.0 / std::sqrt(1.0 + n * n), 1.0 / n),
@@ -97,8 +97,8 @@ TEST(Fresnel, KnownReflectances) {
   EXPECT_NEAR(Reflectance(0.0, 1.0 / n), 1.0, 1e-12);
 }
 
-// Light reflected at Brewster's angle is polarised: a second reflection at the same angle in a
-// plane at right angles to the first extinguishes it.
+// Light reflected at Brewster's angle is polarised. A second reflection at the same angle, in a
+// plane perpendicular to the first, extinguishes it.
 TEST(Fresnel, CrossedBrewsterReflectionsExtinguish) {
   const double n = 1.5;
   const double tilt = std::atan(n);
@@ -135,8 +135,8 @@ TEST(HexagonalPrism, PointsLieOnTheirFaces) {
   }
 }
 
-// A convex body in random orientations shows its faces at all angles alike: it reflects as a sphere
-// does, the integral of 2 mu R(mu).
+// A convex body in random orientations shows its faces at all angles equally. It therefore reflects
+// like a sphere, the integral of 2 mu R(mu).
 TEST(IceRays, OutsideReflectsLikeASphere) {
   const RayScattering rays = TraceRays({50, 80}, AngleGrid({{180, 1}}), 50'000, 7, {.threads = 2});
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
@@ -159,7 +159,8 @@ TEST(IceRays, AllEnergyIsAccountedFor) {
     EXPECT_NEAR(budget.reflected[kGreen] + budget.straight[kGreen] + budget.scattered[kGreen] +
                     budget.left[kGreen],
                 1.0, 1e-12);
-    // Every crystal's shadow is a ray's weight: their mean is Cauchy's quarter of the surface.
+    // The weight of a ray is its crystal's shadow. By Cauchy's theorem the mean of the shadows is a
+    // quarter of the surface.
     const double surface = 6.0 * 25.0 * 80.0 + 2.0 * 1.5 * std::numbers::sqrt3 * 25.0 * 25.0;
     const double traced = rays.light.energy()[kGreen] /
                           (budget.reflected[kGreen] + budget.scattered[kGreen]) / 20'000;
@@ -186,15 +187,16 @@ TEST(IceDiffraction, CarriesTheShadowsEnergyAndItsSquareForward) {
   const double square =
       MeanOverSphere([&](const dvec3& d) { return std::pow(prism.ProjectedArea(d), 2); });
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
-    // A per cent is lost beyond 90 degrees and by the obliquity factor, another is noise.
+    // One per cent is lost beyond 90 degrees and by the obliquity factor, and another is noise.
     EXPECT_NEAR(light.energy()[c] / (kOrientations * area), 1.0, 0.02);
-    // Straight on all of the shadow is in phase: k^2 / (4 pi^2) A^2, times 4 pi over the mean A.
+    // In the forward direction all of the shadow is in phase: k^2 / (4 pi^2) A^2, times 4 pi over
+    // the mean A.
     const double k = 2.0 * kPi / kWavelengthsUm[c];
     EXPECT_NEAR(light.Values().front()[c] / (k * k / kPi * square / area), 1.0, 0.05);
   }
 }
 
-// The halos' sharp inner edges; a few rays leave too much noise to place their peaks.
+// Few rays show the sharp inner edges of the halos, but leave too much noise to locate their peaks.
 TEST(IceRays, FewRaysHaveHalosFromLeastDeviation) {
   const std::vector<double> angles = AngleGrid({{20, 1}, {50, 0.5}, {180, 2}});
   for (const char* name : {"ice_columns", "ice_plates"}) {
@@ -245,7 +247,7 @@ TEST(IceTables, PristineCrystalsHaveHalosWithRedInside) {
             << name;
         EXPECT_GT(peak_deg, previous_deg) << name;
         previous_deg = peak_deg;
-        // A ring: the peak is far above the dark inside it.
+        // In a ring the peak is far brighter than the dark region inside it.
         const double inside = table->Value((peak_deg - 1.5) * kDegree, c);
         EXPECT_GT(table->Value(peak_deg * kDegree, c), 1.8 * inside) << name;
       }
@@ -262,7 +264,7 @@ TEST(IceTables, RoughCrystalsHaveNone) {
     EXPECT_GT(table->Asymmetry(c), 0.76);
     EXPECT_LT(table->Asymmetry(c), 0.81);
     for (double angle_deg = 10.0; angle_deg < 60.0; angle_deg += 0.5) {
-      // Falls smoothly: no value stands above the mean of its neighbours 1.5 degrees off.
+      // The curve falls smoothly: no value is above the mean of its neighbours at 1.5 degrees.
       const double around = 0.5 * (table->Value((angle_deg - 1.5) * kDegree, c) +
                                    table->Value((angle_deg + 1.5) * kDegree, c));
       EXPECT_NEAR(table->Value(angle_deg * kDegree, c) / around, 1.0, 0.05) << angle_deg;

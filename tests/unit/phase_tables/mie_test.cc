@@ -11,7 +11,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Wiscombe 1979 (NCAR/TN-140+STR), test cases of MIEV0.
+// The values are from Wiscombe 1979 (NCAR/TN-140+STR), test cases of MIEV0.
 TEST(Mie, PublishedEfficiencies) {
   const struct {
     Complex m;
@@ -26,7 +26,7 @@ TEST(Mie, PublishedEfficiencies) {
   };
   for (const auto& expected : cases) {
     const MieEfficiencies q = MieSeries(expected.x, expected.m).Efficiencies();
-    // As many digits as are printed.
+    // The tolerances match the number of printed digits.
     EXPECT_NEAR(q.scattering, expected.scattering, 1e-6) << expected.m << " " << expected.x;
     EXPECT_NEAR(q.asymmetry, expected.asymmetry, 1e-6) << expected.m << " " << expected.x;
   }
@@ -40,7 +40,8 @@ TEST(Mie, PublishedExtinctionWithoutAbsorption) {
   EXPECT_NEAR(MieSeries(1.0, {1.5, 1.0}).Efficiencies().extinction, 2.336321, 1e-6);
 }
 
-// Bohren and Huffman 1983, appendix A: a sphere of radius 0.525 um, m = 1.55, at 0.6328 um.
+// The example is from Bohren and Huffman 1983, appendix A: a sphere of radius 0.525 um, m = 1.55,
+// at 0.6328 um.
 TEST(Mie, BohrenAndHuffmansSample) {
   const double x = 2.0 * std::numbers::pi * 0.525 / 0.6328;
   const MieEfficiencies q = MieSeries(x, 1.55).Efficiencies();
@@ -49,7 +50,8 @@ TEST(Mie, BohrenAndHuffmansSample) {
   EXPECT_NEAR(q.back, 2.92534, 5e-6);
 }
 
-// Wiscombe's amplitudes for m = 1.5 + i, x = 1; the sign of his imaginary parts is the other one.
+// The amplitudes are Wiscombe's for m = 1.5 + i, x = 1. The imaginary parts there have the opposite
+// sign.
 TEST(Mie, PublishedAmplitudes) {
   const struct {
     double angle_deg;
@@ -94,7 +96,7 @@ TEST(Mie, OpticalTheoremAndBackScatter) {
   }
 }
 
-// The intensity integrated over all angles is the scattering efficiency, its first moment g.
+// The intensity integrated over all angles is the scattering efficiency, and its first moment is g.
 TEST(Mie, IntensityIntegratesToTheSeries) {
   const double x = 60.0;
   const MieSeries series(x, 1.333);
@@ -114,7 +116,7 @@ TEST(Mie, IntensityIntegratesToTheSeries) {
   const MieEfficiencies q = series.Efficiencies();
   EXPECT_NEAR(2.0 / (x * x) * sum, q.scattering, 1e-9);
   EXPECT_NEAR(moment / sum, q.asymmetry, 1e-9);
-  // The blocks of angles agree with the plain sum at every one of them.
+  // The blocks of angles must agree with the plain sum at every angle.
   for (std::size_t i = 0; i < cosines.size(); i += 97) {
     const MieAmplitudes s = series.Amplitudes(cosines[i]);
     const double plain = 0.5 * (std::norm(s.s1) + std::norm(s.s2));

@@ -51,12 +51,12 @@ TEST(PhaseTable, IsotropicClosedForms) {
   EXPECT_EQ(table->ValueAtCosine(1.5, 0), table->Value(0.0, 0));
 }
 
-// The table differs from the formula by its linear pieces: 1e-5 at these steps.
+// The table differs from the formula because it is piecewise linear: 1e-5 at these steps.
 TEST(PhaseTable, HenyeyGreensteinFigures) {
   const double g = 0.85;
   const PhaseTable table = HenyeyGreensteinTable(g);
   EXPECT_NEAR(table.Asymmetry(2), g, 2e-5);
-  // The integral of Henyey-Greenstein in closed form.
+  // The lambda evaluates the integral of Henyey-Greenstein in closed form.
   const auto share = [g](double mu) {
     return 1.0 - (1 - g * g) / (2 * g) * (1 / std::sqrt(1 + g * g - 2 * g * mu) - 1 / (1 + g));
   };
@@ -156,7 +156,7 @@ TEST(EmbeddedTables, SamplingInvertsTheCumulativeShare) {
         cosine += std::cos(angle) / kSamples;
         previous = angle;
       }
-      // The midpoint rule over the shares.
+      // The sum is the midpoint rule over the shares.
       EXPECT_NEAR(cosine, table->Asymmetry(c), 1e-5) << name;
       EXPECT_NEAR(table->SampleAngle(0.0, c), 0.0, 1e-6) << name;
       EXPECT_NEAR(table->SampleAngle(1.0, c), kHalfTurn_rad, 1e-6) << name;
@@ -173,14 +173,14 @@ TEST(EmbeddedTables, CloudsHaveThePublishedAsymmetry) {
     const auto table = EmbeddedPhaseTable(expected.name);
     ASSERT_TRUE(table.ok()) << table.status();
     EXPECT_NEAR(table->Asymmetry(1), expected.asymmetry, 0.003) << expected.name;
-    // The cloudbow, and a glory: a ring or spot about straight back, brighter than what is around
-    // it.
+    // The cloudbow and a glory must be there. A glory is a ring or spot about the backward
+    // direction that is brighter than its surroundings.
     EXPECT_GT(table->Value(142.0 * kDegree_rad, 1), 2.0 * table->Value(130.0 * kDegree_rad, 1));
     EXPECT_GT(table->Value(180.0 * kDegree_rad, 1), 2.0 * table->Value(172.0 * kDegree_rad, 1));
   }
 }
 
-// The angle of the rainbow after a number of inner reflections, by Descartes' ray.
+// Returns the angle of the rainbow after a number of inner reflections, from Descartes' ray.
 double RainbowDeg(int reflections, double index) {
   const double k = reflections + 1.0;
   const double cosine = std::sqrt((index * index - 1.0) / (k * k - 1.0));
@@ -205,7 +205,7 @@ TEST(EmbeddedTables, RainHasBothRainbows) {
   };
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
     const double index = WaterRefractiveIndex(kWavelengthsUm[c]);
-    // Airy's theory: the bow of a finite drop stands on the bright side of Descartes' ray, by 0.3
+    // By Airy's theory the bow of a finite drop lies on the bright side of Descartes' ray, by 0.3
     // and 0.6 degrees for drops of this size.
     const double primary = peak_deg(c, 134, 145);
     EXPECT_GT(primary, RainbowDeg(1, index)) << c;

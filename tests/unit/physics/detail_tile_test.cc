@@ -26,7 +26,7 @@ TEST(DetailTile, AllBillowsAreEquallyFrequent) {
   std::array<std::size_t, 256> counts{};
   for (std::size_t i = 0; i < tile.texels.size(); i += 4) ++counts[tile.texels[i]];
   const double even = static_cast<double>(tile.texels.size()) / 4.0 / 256.0;
-  // Ranks are found in 65536 bins.
+  // Ranks are computed in 65536 bins.
   for (const std::size_t count : counts) {
     EXPECT_NEAR(static_cast<double>(count) / even, 1.0, 0.1);
   }
@@ -90,7 +90,7 @@ TEST(DetailFactor, BillowsAreEmptyOutsideAndUnchangedInside) {
     EXPECT_EQ(glsl::detail_factor({1.0F, 1.0F}, noise, 0.0F), 1.0F) << noise;
     EXPECT_EQ(glsl::detail_factor({0.0F, 1.0F}, noise, 0.0F), 0.0F) << noise;
   }
-  // The surface lies farther out where noise is high.
+  // The surface lies farther out where the noise is high.
   EXPECT_EQ(glsl::detail_factor({0.5F, 1.0F}, 1.0F, 0.0F), 1.0F);
   EXPECT_EQ(glsl::detail_factor({0.5F, 1.0F}, 0.0F, 0.0F), 0.0F);
 }
@@ -106,7 +106,8 @@ TEST(DetailFactor, FibresKeepTheirMean) {
 }
 
 TEST(DetailFactor, WhatIsFadedHasTheMeanOfWhatIsNot) {
-  // A noise that is averaged has the value 1/2 everywhere; its surface is as wide as it moved.
+  // An averaged noise has the value 1/2 everywhere. Its surface is as wide as the distance it
+  // moved.
   for (const float profile : {0.1F, 0.3F, 0.5F, 0.6F, 0.9F}) {
     double mean = 0.0;
     for (int i = 0; i < 256; ++i) {
@@ -132,7 +133,7 @@ TEST(DetailDrift, GoesWithTheWindAndNeverJumps) {
   for (double time_s = -20000.0; time_s < 40000.0; time_s += 60.0) {
     const glm::dvec2 here = DetailDrift_m(wind, time_s, kTile_m);
     const glm::dvec2 moved = DetailDrift_m(wind, time_s + 60.0, kTile_m) - here;
-    // Whole tiles are no motion.
+    // Movement by whole tiles is invisible.
     const glm::dvec2 seen = moved - kTile_m * glm::round(moved / kTile_m);
     EXPECT_NEAR(seen.x, 60.0 * wind.x, 60.0 * rounded_by) << time_s;
     EXPECT_NEAR(seen.y, 60.0 * wind.y, 60.0 * rounded_by) << time_s;
@@ -144,7 +145,7 @@ TEST(Fibres, LieAlongTheShear) {
   const glm::dmat3 fibres = FibresAlong({6.0, 8.0});
   const double along = glm::length(fibres * glm::dvec3(0.6, 0.8, 0.0));
   const double across = glm::length(fibres * glm::dvec3(-0.8, 0.6, 0.0));
-  EXPECT_NEAR(along, 1.0 / 6.0, 1e-12);  // places change slowly: they are long
+  EXPECT_NEAR(along, 1.0 / 6.0, 1e-12);  // places change slowly, because they are long
   EXPECT_NEAR(across, 1.0 / 0.7, 1e-12);
   EXPECT_EQ(FibresAlong({0.0, 0.0}), FibresAlong({5.0, 0.0}));
 }

@@ -21,7 +21,7 @@ glm::vec2 Between(CounterRandom& random, const glm::vec2& low_m, const glm::vec2
   return low_m + glm::vec2(x, static_cast<float>(random.Next())) * size_m;
 }
 
-// Seen in points all over the map.
+// Evaluates the pattern at points all over the map.
 TEST(FieldPattern, MeanLuminanceIsThatOfPlainGround) {
   CounterRandom random(1, 2);
   double sum = 0.0;
@@ -37,7 +37,7 @@ TEST(FieldPattern, MeanLuminanceIsThatOfPlainGround) {
   const double mean = sum / kPoints;
   const double deviation = std::sqrt(squares / kPoints - mean * mean);
   EXPECT_GT(deviation, 0.15);  // there is a pattern
-  // Three standard errors and the mean's own of 0.002 by the hue's rounding to three digits.
+  // The tolerance is three standard errors, plus 0.002 for the hue's rounding to three digits.
   EXPECT_NEAR(mean, 1.0, 3.0 * deviation / std::sqrt(kPoints) + 0.002);
 }
 
@@ -50,8 +50,8 @@ TEST(FieldPattern, FadesToItsMeanFarAway) {
   }
 }
 
-// Root mean square of the difference between one filtered value and the mean of many points of the
-// same footprint.
+// Returns the root mean square of the difference between one filtered value and the mean of many
+// points of the same footprint.
 double FilterError(const glm::vec2& footprint_m, bool filtered) {
   CounterRandom random(5, 6);
   double squares = 0.0;
@@ -72,9 +72,9 @@ double FilterError(const glm::vec2& footprint_m, bool filtered) {
   return std::sqrt(squares / kPlaces);
 }
 
-// The sampled mean has a standard error of up to 0.015. A footprint of more than a cell of 402 m is
-// blurred by the mip chain's linear filter besides: up to twice as wide, and in both directions
-// alike, so that a narrow one loses contrast.
+// The sampled mean has a standard error of up to 0.015. The mip chain's linear filter also blurs a
+// footprint of more than a cell of 402 m. It widens the footprint up to twice, equally in both
+// directions, so a narrow footprint loses contrast.
 TEST(FieldPattern, OneFilteredValueIsNearTheMeanOfManyPoints) {
   for (const glm::vec2 footprint_m :
        {glm::vec2(2.0F, 40.0F), glm::vec2(20.0F, 300.0F), glm::vec2(100.0F, 100.0F),
@@ -88,7 +88,7 @@ TEST(FieldPattern, OneFilteredValueIsNearTheMeanOfManyPoints) {
   }
 }
 
-// Nothing jumps where a view moves on by a small share of a pixel.
+// Nothing jumps when a view moves by a small fraction of a pixel.
 TEST(FieldPattern, MovesSmoothlyUnderAFootprint) {
   const glm::vec2 footprint_m(60.0F, 500.0F);
   glm::vec3 last = FieldPattern::Plains().Reflectance(glm::vec2(0.0F), footprint_m, 1.0F);
@@ -124,7 +124,7 @@ TEST(FieldPattern, RoadsRunAlongSectionLines) {
   EXPECT_NEAR(glsl::roads({-5.0F, 400.0F}, small).x, 1.0F, 1e-3F);
   EXPECT_FLOAT_EQ(glsl::roads({7.0F, 400.0F}, small).x, 0.0F);
   EXPECT_FLOAT_EQ(glsl::roads({804.0F, 804.0F}, small).x, 0.0F);
-  // A footprint of a whole section has its share, wherever it is.
+  // A footprint of a whole section contains the road's share, wherever it is.
   const float share = 12.0F / 1609.344F;
   for (const float x_m : {0.0F, 300.0F, 800.0F, 1500.0F}) {
     EXPECT_NEAR(glsl::roads({x_m, 0.4F * x_m}, glm::vec2(1609.344F)).x,

@@ -23,8 +23,8 @@ TEST(Hydrometeors, OneGramOfCloudWaterPerKilogram) {
 }
 
 TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
-  // ecRad's tables at 0.55 um in m2/kg. Geometric optics leaves out the edge terms, which grow as
-  // particles shrink: 5 % covers droplets of 10 um.
+  // The values are those of ecRad's tables at 0.55 um in m2/kg. Geometric optics neglects the edge
+  // terms, which grow as particles shrink: 5 % covers droplets of 10 um.
   struct Row {
     float density_kg_per_m3, radius_m, published_m2_per_kg;
   };
@@ -37,9 +37,9 @@ TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
 }
 
 TEST(Hydrometeors, EffectiveRadiusFromTheMassOfAMeanParticle) {
-  // 1e-11 kg of water is a sphere of 13.365 um; a kilogram of air with 1 g in 1e8 droplets.
+  // 1e-11 kg of water is a sphere of 13.365 um: a kilogram of air with 1 g in 1e8 droplets.
   EXPECT_NEAR(EffectiveRadius_m(Hydrometeor::kCloud, 1e-11F), 1.1157 * 13.365e-6, 1e-9);
-  // A drop of 1 mm; the effective radius of an exponential distribution is 3/2 of its mean
+  // The drop measures 1 mm. The effective radius of an exponential distribution is 3/2 of its mean
   // diameter.
   const double mass_kg = 4.18879e-6;
   EXPECT_NEAR(EffectiveRadius_m(Hydrometeor::kRain, static_cast<float>(mass_kg)), 1.651e-3, 1e-6);
@@ -87,7 +87,8 @@ TEST(Hydrometeors, FalseColoursAreOkabeAndItos) {
   }
 }
 
-// Exponential distributions as observed, at 1 g/m3: 3/2 over the fourth root of pi rho N0 / 1e-3.
+// Compares with observed exponential distributions at 1 g/m3: 3/2 over the fourth root of pi rho N0
+// / 1e-3.
 TEST(Hydrometeors, DefaultRadiiAreObserved) {
   struct Row {
     Hydrometeor hydrometeor;
@@ -119,7 +120,7 @@ TEST(Hydrometeors, EachHasItsOwnName) {
 }
 
 TEST(Air, DensityOfDryAndMoistAir) {
-  // 1e5 / (287 * 300) = 1.16144 kg/m3; 10 g/kg of vapour divides it by 1.01608.
+  // 1e5 / (287 * 300) = 1.16144 kg/m3. 10 g/kg of vapour divides it by 1.01608.
   EXPECT_NEAR(DryAirDensity_kg_per_m3(1e5, 300.0, 0.0), 1.16144, 1e-5);
   EXPECT_NEAR(DryAirDensity_kg_per_m3(1e5, 300.0, 0.01), 1.14306, 1e-5);
 }

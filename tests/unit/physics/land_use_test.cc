@@ -47,7 +47,7 @@ TEST(LandReflectance, HasTheAlbedoAsItsLuminance) {
   }
 }
 
-// Idealised runs and night hours of some schemes have an albedo of 0.
+// In idealised runs, and at night in some schemes, the model's albedo is 0.
 TEST(LandReflectance, TakesTheClassesAlbedoForNone) {
   const LandUse crops = LandUseOf(LandUseScheme::kUsgs, 2);
   EXPECT_NEAR(LandLuminance(LandReflectance(crops, {0.0F, kUnknown, kUnknown})), 0.17F, 1e-4F);
@@ -59,7 +59,7 @@ TEST(LandReflectance, SnowWhitensAndBrightens) {
   const glm::vec3 snow = LandReflectance(crops, {kUnknown, 50.0F, 1.0F});
   EXPECT_GT(LandLuminance(snow), 3.0F * LandLuminance(bare));
   EXPECT_NEAR(snow.x, snow.z, 0.05F);
-  // Where the model has an albedo, snow is in it already.
+  // If the model has an albedo, it already includes the snow.
   EXPECT_NEAR(LandLuminance(LandReflectance(crops, {0.6F, 50.0F, 1.0F})), 0.6F, 1e-4F);
 }
 

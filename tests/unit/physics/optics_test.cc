@@ -62,7 +62,8 @@ TEST(PhaseFunctions, DropletsTakeTheTableOfTheNearestRadius) {
     optics.radius_m = radius_m;
     EXPECT_EQ(PhaseOf(optics).droplet_radius_m, table_m) << radius_m;
   }
-  // Published asymmetries at 0.55 um; the luminance is mostly green's.
+  // The expected values are published asymmetries at 0.55 um. The luminance is mostly that of
+  // green.
   EXPECT_NEAR(MeanCosine({PhaseKind::kWaterDroplets, 0.0F, 5e-6F}), 0.846, 0.003);
   EXPECT_NEAR(MeanCosine({PhaseKind::kWaterDroplets, 0.0F, 1e-5F}), 0.862, 0.003);
   EXPECT_NEAR(MeanCosine({PhaseKind::kWaterDroplets, 0.0F, 2e-5F}), 0.872, 0.003);
@@ -93,12 +94,13 @@ TEST(PhaseFunctions, PlaceInACurveGoesEvenlyFromStraightOnToStraightBack) {
   EXPECT_EQ(glsl::phase_curve_place(1.0F), 1.0F);
   EXPECT_EQ(glsl::phase_curve_place(1.0000001F), 1.0F);
   EXPECT_NEAR(glsl::phase_curve_place(haversine(90.0)), std::sqrt(0.5), 1e-6);
-  // Angles so small that their cosine is 1 in single precision.
+  // These angles are so small that their cosine is 1 in single precision.
   EXPECT_NEAR(glsl::phase_curve_place(haversine(1e-3)), std::sqrt(glm::radians(1e-3) / 2.0), 1e-6);
   double before = 0.0;
   for (double angle_deg = 0.1; angle_deg <= 180.0; angle_deg += 0.1) {
     const double place = glsl::phase_curve_place(haversine(angle_deg));
-    // A tenth of a degree is at least one of 4096 texels, and 120 next to straight on.
+    // A tenth of a degree is at least one of 4096 texels, and 120 texels near the forward
+    // direction.
     EXPECT_GT(place - before, 1.1 / 4096.0) << angle_deg;
     EXPECT_LT(place - before, 0.03) << angle_deg;
     before = place;
@@ -106,24 +108,26 @@ TEST(PhaseFunctions, PlaceInACurveGoesEvenlyFromStraightOnToStraightBack) {
 }
 
 TEST(PhaseFunctions, HandComputedValues) {
-  // HG, g = 0.5: straight on 0.75 / 0.125 = 6; backward 0.75 / 3.375 = 2/9.
+  // For HG with g = 0.5, the forward value is 0.75 / 0.125 = 6, and the backward value 0.75 / 3.375
+  // = 2/9.
   EXPECT_NEAR(PhaseValue({kHg, 0.5F}, 1.0), 6.0, 1e-6);
   EXPECT_NEAR(PhaseValue({kHg, 0.5F}, -1.0), 2.0 / 9.0, 1e-6);
-  // Cornette-Shanks, g = 0.5, sideways: 1.5 * 0.75 / 2.25 / 1.25^1.5 = 0.357771.
+  // For Cornette-Shanks with g = 0.5, the value at 90 degrees is 1.5 * 0.75 / 2.25 / 1.25^1.5 =
+  // 0.357771.
   EXPECT_NEAR(PhaseValue({kCs, 0.5F}, 0.0), 0.357771, 1e-5);
   EXPECT_NEAR(PhaseValue({PhaseKind::kRayleigh, 0.0F}, 1.0), 1.5, 1e-6);
 }
 
 TEST(PhaseFunctions, MeanCosines) {
   EXPECT_NEAR(MeanCosine({kHg, 0.85F}), 0.85, 1e-5);
-  // Cornette and Shanks 1992, eq. 9: g 3 (4 + g^2) / (5 (2 + g^2)).
+  // The formula is Cornette and Shanks 1992, eq. 9: g 3 (4 + g^2) / (5 (2 + g^2)).
   const double g = 0.85;
   EXPECT_NEAR(MeanCosine({kCs, 0.85F}), g * 3 * (4 + g * g) / (5 * (2 + g * g)), 1e-5);
 }
 
 TEST(PhaseFunctions, ShareScatteredWithinTenDegrees) {
-  // Cornette-Shanks puts 90 % there at g = 0.979, as the paper says of clouds, but 38 % at g =
-  // 0.85.
+  // Cornette-Shanks scatters 90 % within ten degrees at g = 0.979, as the paper says of clouds, but
+  // only 38 % at g = 0.85.
   EXPECT_NEAR(CumulativePhase({kCs, 0.979F}, glm::radians(10.0)), 0.90, 0.005);
   EXPECT_NEAR(CumulativePhase({kCs, 0.85F}, glm::radians(10.0)), 0.38, 0.005);
 }
@@ -137,7 +141,7 @@ TEST(DeltaScaling, WhatIsCutAndWhatIsLeftAddUp) {
       const double mu = -1.0 + 2.0 * (i + 0.5) / kSteps;
       left += PhaseValue(phase, std::fmin(mu, cut.cut_cosine)) / kSteps;
     }
-    // The midpoint rule is off by as much at the halos' edges.
+    // The midpoint rule has this error at the halos' edges.
     EXPECT_NEAR(left + cut.forward_share, 1.0, 1e-4) << static_cast<int>(phase.kind);
     EXPECT_GE(cut.forward_share, 0.0);
   }
@@ -148,7 +152,7 @@ TEST(DeltaScaling, WhatIsCutAndWhatIsLeftAddUp) {
 TEST(LightTransport, MeanTransmittanceHoldsFromTinyToHuge) {
   for (double x = 1e-8; x < 1e9; x *= 3.7) {
     const double exact = -std::expm1(-x) / x;
-    // Single precision in and out: a few parts in 1e-6.
+    // Input and output are in single precision, which leaves a few parts in 1e-6.
     EXPECT_NEAR(glsl::mean_transmittance(static_cast<float>(x)) / exact, 1.0, 5e-6) << x;
   }
   EXPECT_FLOAT_EQ(glsl::mean_transmittance(0.0F), 1.0F);
@@ -177,9 +181,9 @@ TEST(LightTransport, MeanSeenPlaceGoesFromTheMiddleToTheFace) {
 }
 
 TEST(LightTransport, DiffuseLightKeepsItsEnergy) {
-  // Eddington: net diffuse flux is -(4 pi / 3) dJ/dtau downwards, half fluxes pi J -+ (2 pi / 3)
-  // dJ/dtau. What is reflected, transmitted diffusely and transmitted directly must be all that
-  // came in.
+  // By Eddington's approximation the net diffuse flux is -(4 pi / 3) dJ/dtau downwards, and the
+  // half fluxes are pi J -+ (2 pi / 3) dJ/dtau. The light reflected, transmitted diffusely and
+  // transmitted directly must add up to the incoming light.
   for (const double total : {0.01, 0.5, 2.0, 20.0}) {
     const auto intensity = [&](double tau) {
       return static_cast<double>(

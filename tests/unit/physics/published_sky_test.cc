@@ -1,7 +1,7 @@
-// The clear sky against skies that others have published: luminance over the sky as the CIE's
-// standard has it, the zenith as Preetham's formulas have it, and light on level ground from noon
-// to nautical twilight as the almanacs' formula has it. None of them is our model; docs/accuracy
-// says where the differences come from.
+// Tests of the clear sky against published skies. They compare luminance over the sky with the
+// CIE's standard, and the zenith with Preetham's formulas. Light on level ground, from noon to
+// nautical twilight, is compared with the almanacs' formula. None of these is our model;
+// docs/accuracy explains the differences.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,12 +14,12 @@
 namespace thunderhead::physics {
 namespace {
 
-// Illuminance of sunlight above the atmosphere: Darula, Kittler and Gueymard 2005.
+// The illuminance of sunlight above the atmosphere, from Darula, Kittler and Gueymard 2005.
 constexpr double kSun_lx = 133'334.0;
 
 double Radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-// Of channels in units of the sun's. The channels are read as those of sRGB.
+// Returns the luminance of channels in units of the sun's channels, which are interpreted as sRGB.
 double SkyLuminance(const glm::vec3& color) {
   return 0.2126 * static_cast<double>(color.r) + 0.7152 * static_cast<double>(color.g) +
          0.0722 * static_cast<double>(color.b);
@@ -36,8 +36,8 @@ ClearSky SkyWith(float turbidity, double sun_elevation_deg) {
   return ClearSky(Atmosphere(turbidity, 0.2F), TowardsSky(sun_elevation_deg, 0.0), {});
 }
 
-// CIE S 011 (ISO 15469:2004), type 12, the standard clear sky of low turbidity: luminance over the
-// zenith's, by angles from zenith and sun.
+// Returns the luminance over the zenith's for CIE S 011 (ISO 15469:2004), type 12, the standard
+// clear sky of low turbidity. The arguments are angles from zenith and sun.
 double CieClearSky(double from_zenith, double from_sun, double sun_from_zenith) {
   const auto gradation = [](double angle) { return 1.0 - std::exp(-0.32 / std::cos(angle)); };
   const auto indicatrix = [](double angle) {
@@ -48,8 +48,8 @@ double CieClearSky(double from_zenith, double from_sun, double sun_from_zenith) 
          (indicatrix(sun_from_zenith) * gradation(0.0));
 }
 
-// Root mean square of the logarithm of our luminance over the standard's, over the sky down to 10
-// degrees and more than 20 degrees from the sun.
+// Returns the root mean square of the logarithm of our luminance over the standard's. It covers the
+// sky down to 10 degrees and more than 20 degrees from the sun.
 double DistanceToCie(float turbidity, double sun_elevation_deg) {
   const ClearSky sky = SkyWith(turbidity, sun_elevation_deg);
   const glm::vec3 sun = TowardsSky(sun_elevation_deg, 0.0);
@@ -76,16 +76,16 @@ double DistanceToCie(float turbidity, double sun_elevation_deg) {
 
 TEST(PublishedSky, LuminanceOverTheSkyIsTheCiesClearSkys) {
   for (const double elevation_deg : {60.0, 40.0, 25.0, 10.0}) {
-    // 0.17, 0.12, 0.06, 0.06 and 0.11, 0.08, 0.05, 0.10. The CIE's indicatrix is one for all
-    // wavelengths and all clear skies; ours is that of air and haze.
+    // The results are 0.17, 0.12, 0.06, 0.06 and 0.11, 0.08, 0.05, 0.10. The CIE has one indicatrix
+    // for all wavelengths and all clear skies; ours is that of air and haze.
     EXPECT_LT(DistanceToCie(2.5F, elevation_deg), 0.2) << elevation_deg;
     EXPECT_LT(DistanceToCie(3.0F, elevation_deg), 0.13) << elevation_deg;
   }
 }
 
-// Light on level ground, by sun and sky: Seidelmann 1992, Explanatory Supplement to the
-// Astronomical Almanac, after Janiczek and DeYoung 1987; a cubic in the sun's elevation for each
-// range of it.
+// Returns the light of sun and sky on level ground: Seidelmann 1992, Explanatory Supplement to the
+// Astronomical Almanac, after Janiczek and DeYoung 1987. It is a cubic in the sun's elevation for
+// each range of it.
 double AlmanacIlluminance_lx(double elevation_deg) {
   struct Range {
     double from_deg;
@@ -116,30 +116,31 @@ TEST(PublishedSky, LightOnTheGroundIsTheAlmanacs) {
   for (const double elevation_deg : {80.0, 60.0, 40.0, 20.0, 10.0, 5.0, 2.0, 0.0}) {
     const double ratio = Illuminance_lx(SkyWith(3.0F, elevation_deg), elevation_deg) /
                          AlmanacIlluminance_lx(elevation_deg);
-    EXPECT_GT(ratio, 0.9) << elevation_deg;  // 0.96 to 1.19
+    EXPECT_GT(ratio, 0.9) << elevation_deg;  // results: 0.96 to 1.19
     EXPECT_LT(ratio, 1.25) << elevation_deg;
   }
 }
 
 TEST(PublishedSky, TwilightFadesAsTheAlmanacSays) {
-  // By a factor of 100 000 from sunset to the end of nautical twilight. The light of many
-  // scatterings is taken as isotropic and from air that is everywhere as bright as at the point,
-  // which is far from true where the Earth's shadow is near.
+  // The light falls by a factor of 100 000 from sunset to the end of nautical twilight. The model
+  // treats multiply scattered light as isotropic, and its air as equally bright everywhere. Near
+  // the Earth's shadow that is far from reality.
   for (const double elevation_deg : {-1.0, -2.0, -3.0, -4.0, -5.0, -6.0, -8.0, -10.0, -12.0}) {
     const double ratio = Illuminance_lx(SkyWith(2.5F, elevation_deg), elevation_deg) /
                          AlmanacIlluminance_lx(elevation_deg);
-    EXPECT_GT(ratio, 0.7) << elevation_deg;  // 0.77 to 1.81
+    EXPECT_GT(ratio, 0.7) << elevation_deg;  // results: 0.77 to 1.81
     EXPECT_LT(ratio, 2.0) << elevation_deg;
   }
 }
 
 struct Zenith {
   double luminance_kcd_per_m2;
-  double x;  // of its chromaticity
+  double x;  // x of the chromaticity
   double y;
 };
 
-// Preetham, Shirley and Smits 1999, A practical analytic model for daylight, appendix A.2.
+// Returns the zenith by Preetham, Shirley and Smits 1999, A practical analytic model for daylight,
+// appendix A.2.
 Zenith PreethamZenith(double turbidity, double sun_from_zenith) {
   const double t = turbidity;
   const double a = sun_from_zenith;
@@ -156,7 +157,8 @@ Zenith PreethamZenith(double turbidity, double sun_from_zenith) {
               cubic(0.15346, -0.26756, 0.06670, 0.26688)};
 }
 
-// Channels in units of the sun's, read as those of sRGB; the sun as a black body of 5778 K.
+// Returns our zenith. Channels are in units of the sun's and interpreted as sRGB; the sun is a
+// black body of 5778 K.
 Zenith OurZenith(float turbidity, double sun_elevation_deg) {
   const glm::dvec3 radiance(SkyWith(turbidity, sun_elevation_deg).At({0.0F, 0.0F, 1.0F}).radiance);
   constexpr double kSunX = 0.3263;
@@ -177,10 +179,10 @@ TEST(PublishedSky, TheZenithIsDarkerAndLessBlueThanPreethams) {
     const Zenith ours = OurZenith(2.5F, elevation_deg);
     const Zenith theirs = PreethamZenith(2.5, Radians(90.0 - elevation_deg));
     const double ratio = ours.luminance_kcd_per_m2 / theirs.luminance_kcd_per_m2;
-    EXPECT_GT(ratio, 0.5) << elevation_deg;  // 0.75, 0.59, 0.54
+    EXPECT_GT(ratio, 0.5) << elevation_deg;  // results: 0.75, 0.59, 0.54
     EXPECT_LT(ratio, 0.8) << elevation_deg;
-    // 0.027 to 0.038 towards white: three channels have no wavelengths below blue's, by which the
-    // zenith is bluest.
+    // Our values are 0.027 to 0.038 closer to white. Three channels have no wavelengths below
+    // blue's, which would make the zenith bluest.
     EXPECT_NEAR(ours.x, theirs.x, 0.04) << elevation_deg;
     EXPECT_NEAR(ours.y, theirs.y, 0.04) << elevation_deg;
     EXPECT_LT(ours.x, 0.29) << elevation_deg;

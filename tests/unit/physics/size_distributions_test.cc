@@ -1,4 +1,4 @@
-// Effective radii by schemes' size distributions, against values worked out by hand.
+// Tests of effective radii from schemes' size distributions, against values computed by hand.
 #include "physics/size_distributions.h"
 
 #include <gtest/gtest.h>
@@ -64,10 +64,10 @@ TEST(SizeDistributions, OfWsm6HaveItsLimits) {
            Row{Microphysics::kWsm6WithHail, Hydrometeor::kGraupel, 1e-12F, 260.0F, 7.5e-5 * 1.4},
            Row{Microphysics::kWsm6, Hydrometeor::kIce, 1e-8F, 220.0F, 10e-6},
            Row{Microphysics::kWsm6, Hydrometeor::kIce, 1e-2F, 220.0F, 125e-6},
-           // 1000 and 1e6 crystals per m3 bound what lies between: C = 4e-7 and 7.3e-3.
+           // The number is bounded by 1000 and 1e6 crystals per m3, at C = 4e-7 and 7.3e-3.
            Row{Microphysics::kWsm6, Hydrometeor::kIce, 4e-7F, 220.0F, 2.9095e-5},
            Row{Microphysics::kWsm6, Hydrometeor::kIce, 7.3e-3F, 220.0F, 1.24296e-4},
-           // Intercepts of 2e6 above freezing and of 1e11 from 90 degrees of frost on.
+           // The intercept is 2e6 above freezing, and 1e11 from 90 degrees of frost on.
            Row{Microphysics::kWsm6, Hydrometeor::kSnow, 1e-3F, 273.16F, 1.68479e-3},
            Row{Microphysics::kWsm6, Hydrometeor::kSnow, 1e-3F, 300.0F, 1.68479e-3},
            Row{Microphysics::kWsm6, Hydrometeor::kSnow, 1e-3F, 150.0F, 1.12669e-4},
@@ -82,19 +82,19 @@ TEST(SizeDistributions, OfThompson) {
            Row{Microphysics::kThompson, Hydrometeor::kCloud, 1e-3F, 280.0F, 1.43441e-5},
            Row{Microphysics::kThompson, Hydrometeor::kCloud, 1e-4F, 280.0F, 6.6580e-6},
            Row{Microphysics::kThompson, Hydrometeor::kCloud, 1e-9F, 280.0F, 2.51e-6},
-           // Intercept 10^(3 + 2/7 (log10 C + 8)) = 26,827 and 51,795; slope 428.49 and 284.04;
-           // 1.5 / slope of 400 kg/m3, as of 500.
+           // The intercept is 10^(3 + 2/7 (log10 C + 8)) = 26,827 and 51,795, and the slope 428.49
+           // and 284.04. The radius is 1.5 / slope for 400 kg/m3, as for 500.
            Row{Microphysics::kThompson, Hydrometeor::kGraupel, 1e-3F, 260.0F, 2.80050e-3},
            Row{Microphysics::kThompson, Hydrometeor::kGraupel, 1e-2F, 260.0F, 4.22481e-3},
-           // Never finer than a median volume diameter of 50 um.
+           // The distribution is never finer than a median volume diameter of 50 um.
            Row{Microphysics::kThompson, Hydrometeor::kGraupel, 1e-15F, 260.0F, 1.63399e-5},
        }) {
     ExpectRadius(row);
   }
 }
 
-// The extinction by mass is that of the scheme's own particles, whatever density is drawn: for an
-// exponential distribution twice the area, pi N0 / slope^3, over the content.
+// The extinction per mass must be that of the scheme's own particles, whatever density is drawn.
+// For an exponential distribution it is twice the area, pi N0 / slope^3, over the content.
 TEST(SizeDistributions, KeepTheExtinctionOfParticlesOfAnotherDensity) {
   const float radius_m =
       DistributionRadius_m(Microphysics::kThompson, Hydrometeor::kGraupel, 1e-3F, 260.0F);

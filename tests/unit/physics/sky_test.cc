@@ -1,5 +1,5 @@
-// The clear sky against conservation of energy, plane-parallel limits and observations; the air
-// between eye and storm against its integral.
+// Tests of the clear sky against conservation of energy, plane-parallel limits and observations,
+// and of the air between eye and storm against its integral.
 #include "physics/sky.h"
 
 #include <algorithm>
@@ -28,8 +28,8 @@ TEST(ClearSky, SunlightAndSkylightShareWhatCameIn) {
       const glm::vec3 direct = sine * sky.SunTransmittance();
       for (int channel = 0; channel < 3; ++channel) {
         EXPECT_GT(sky.Light().irradiance[channel], 0.0F);
-        // A low sun lights the air of a round Earth from the side as well: the irradiance on level
-        // ground is no bound for it.
+        // A low sun also lights the air of a round Earth from the side, so the irradiance on level
+        // ground does not bound it.
         if (elevation_deg >= 20.0F) {
           EXPECT_LE(direct[channel] + sky.Light().irradiance[channel], sine) << elevation_deg;
         }
@@ -61,9 +61,9 @@ TEST(ClearSky, TurnsWithTheSun) {
 }
 
 TEST(ClearSky, AirAloneScattersHalfOfWhatItTakesDown) {
-  // Without haze, half of the light that thin air scatters comes down: Rayleigh's phase function is
-  // the same forwards and backwards. Of the light scattered up, a second scattering sends half down
-  // again, so skylight is a little more than half of the direct beam's loss; ozone absorbs 2 %.
+  // Without haze, half of the light that thin air scatters comes down, because Rayleigh's phase
+  // function is symmetric. A second scattering sends half of the upward light down again. Skylight
+  // is therefore a little more than half of the direct beam's loss; ozone absorbs 2 %.
   const Atmosphere atmosphere(1.0F, 0.0F);
   for (const float elevation_deg : {40.0F, 60.0F, 90.0F}) {
     const ClearSky sky(atmosphere, TowardsSun(elevation_deg), {.eye_m = 0.0F});
@@ -78,8 +78,8 @@ TEST(ClearSky, AirAloneScattersHalfOfWhatItTakesDown) {
 }
 
 TEST(ClearSky, DirectSunlightIsThatOfThePlaneParallelAir) {
-  // Bouguer's law with the air mass of Kasten and Young 1989: 1.994 at 30 degrees, 5.60 at 10. Haze
-  // lies lower than air, ozone higher: within 3 % of the depth.
+  // Expects Bouguer's law with the air mass of Kasten and Young 1989: 1.994 at 30 degrees, 5.60 at
+  // 10. Haze lies lower than air and ozone higher, so the tolerance is 3 % of the depth.
   const Atmosphere atmosphere(2.0F, 0.2F);
   const glm::vec3 ozone(0.020F, 0.027F, 0.0014F);
   const glm::vec3 depth = glsl::air_optical_depth() + glsl::haze_optical_depth(2.0F) + ozone;
@@ -92,7 +92,8 @@ TEST(ClearSky, DirectSunlightIsThatOfThePlaneParallelAir) {
           << elevation_deg << ' ' << channel;
     }
   }
-  // For air alone and the sun 0.34 degrees up, 33.2 air masses; ours is isothermal.
+  // For air alone and the sun 0.34 degrees up there are 33.2 air masses; our atmosphere is
+  // isothermal.
   const Atmosphere clean(1.0F, 0.2F);
   const float at_horizon = -std::log(clean.SunTransmittance({0.0F, 0.006F}).b);
   EXPECT_NEAR(at_horizon / glsl::air_optical_depth().b, 33.2, 2.5);
@@ -116,8 +117,8 @@ TEST(ClearSky, DarkensThroughTwilightToBlack) {
       EXPECT_EQ(sky.Light().irradiance, glm::vec3(0.0F));
     }
   }
-  // Sunset leaves the ground some hundredths of a noon sky's light, the end of civil twilight (-6
-  // degrees) some thousandths: 400 and 3 lux against 12 000.
+  // At sunset the ground gets some hundredths of a noon sky's light, and at the end of civil
+  // twilight (-6 degrees) some thousandths: 400 and 3 lux against 12 000.
   const float noon = ClearSky(atmosphere, TowardsSun(60.0F), {.eye_m = 0.0F}).Light().irradiance.g;
   EXPECT_NEAR(
       std::log10(ClearSky(atmosphere, TowardsSun(0.0F), {.eye_m = 0.0F}).Light().irradiance.g /
@@ -146,12 +147,13 @@ glm::vec3 Towards(float azimuth_deg, float elevation_deg) {
           std::sin(elevation)};
 }
 
-// Goes along a line through the sky in steps so short that what is seen of it changes evenly: by no
-// more than 1.5 times what the step before or the one after changes, and a half of a percent. Steep
-// is no seam: from high up the red of twilight rises by 5 % in a hundredth of a degree.
+// Searches for seams along a line through the sky, in steps so short that the radiance changes
+// evenly. A change may be at most 1.5 times that of the previous or next step, plus half a percent.
+// A steep change is not a seam: seen from high up, the red of twilight rises by 5 % in a hundredth
+// of a degree.
 class SeamFinder {
  public:
-  // The largest change beyond that, as a share of the radiance.
+  // Returns the largest change beyond that, as a share of the radiance.
   float Worst() const { return worst_; }
 
   void Add(const glm::vec3& radiance) {
@@ -171,7 +173,7 @@ class SeamFinder {
     }
   }
 
-  // Starts anew, as the next samples lie beyond an edge.
+  // Starts again, because the next samples lie beyond an edge.
   void Lift() { count_ = 0; }
 
  private:
@@ -188,8 +190,8 @@ void ExpectNoSeamUpwards(const ClearSky& sky, float azimuth_deg, float lowest_de
   const int steps = static_cast<int>((90.0F - lowest_deg) / kSeamStep_deg);
   for (int i = 0; i < steps; ++i) {
     const float elevation_deg = lowest_deg + static_cast<float>(i) * kSeamStep_deg;
-    // At the horizon there is an edge: below it the ground ends the air. Beside it the table's root
-    // rises without bounds.
+    // The horizon is an edge, because the ground ends the air below it. Next to it the slope of the
+    // table's root is unbounded.
     if (std::abs(elevation_deg - horizon_deg) < 0.03F) {
       finder.Lift();
       continue;
@@ -212,7 +214,7 @@ TEST(ClearSky, HasNoSeams) {
   const Atmosphere atmosphere(1.5F, 0.2F);
   for (const float eye_m : {0.0F, 300.0F, 3000.0F, 15000.0F}) {
     const float horizon_deg = glm::degrees(std::asin(HorizonSine(eye_m)));
-    // From the ground there is no air below the horizon.
+    // An eye on the ground has no air below the horizon.
     const float lowest_deg = eye_m == 0.0F ? 0.05F : -89.9F;
     for (const float sun_deg : {-8.0F, 0.0F, 5.0F, 30.0F, 90.0F}) {
       SCOPED_TRACE(testing::Message() << "from " << eye_m << " m, sun at " << sun_deg);
@@ -227,7 +229,7 @@ TEST(ClearSky, HasNoSeams) {
   }
 }
 
-// The table against the integral along rays between its nodes.
+// Compares the table with the integral along rays between its nodes.
 TEST(ClearSky, TableHoldsTheIntegral) {
   const Atmosphere atmosphere(1.5F, 0.2F);
   for (const float sun_deg : {-8.0F, 0.0F, 5.0F, 30.0F, 90.0F}) {
@@ -251,8 +253,8 @@ TEST(ClearSky, TableHoldsTheIntegral) {
               std::max(worst_air_mass, std::abs(seen.air_mass.x / line.air_mass.x - 1.0F));
         }
       }
-      // Linear between nodes in a light that is nearly exponential in elevation; most so in
-      // twilight, and there in red.
+      // The table is linear between nodes, while the light is nearly exponential in elevation. The
+      // error is largest in twilight, and there in red.
       const glm::vec3 most = sun_deg < 0.0F ? glm::vec3(0.11F, 0.10F, 0.10F) : glm::vec3(0.04F);
       EXPECT_LT(worst.r, most.r) << sun_deg << ' ' << height_m;
       EXPECT_LT(worst.g, most.g) << sun_deg << ' ' << height_m;
@@ -284,11 +286,12 @@ TEST(Air, DepthIsTheIntegralOfItsDensity) {
         glsl::AirPath{9000.0F, -0.1F, 0.0F, 8e4F}, glsl::AirPath{500.0F, 1.0F, curvature, 5e4F},
         glsl::AirPath{1e5F, -1.0F, curvature, 1e5F}, glsl::AirPath{300.0F, 1e-6F, curvature, 3e5F},
         glsl::AirPath{100.0F, 0.02F, curvature, 300.0F}, glsl::AirPath{2.0F, 0.0F, curvature, 5e5F},
-        // From high up to the ground, past it, and down to the lowest place and up again.
+        // The paths lead from high up to the ground, past it, and down to the lowest point and up
+        // again.
         glsl::AirPath{7000.0F, -0.05F, curvature, 1.6e5F},
         glsl::AirPath{7000.0F, -0.035F, curvature, 5e5F},
         glsl::AirPath{2000.0F, -0.01F, curvature, 3e5F},
-        // From space, where no haze is left, to the lowest place and beyond.
+        // This path leads from space, where there is no haze, to the lowest point and beyond.
         glsl::AirPath{2e5F, -0.222F, curvature, 2.2e6F}}) {
     double sums_m[2] = {0.0, 0.0};
     constexpr int kSteps = 200000;
@@ -335,7 +338,7 @@ TEST(Air, FarAwayEverythingIsTheSky) {
     EXPECT_NEAR(seen(1.0F, 0.0F, 0.1F)[channel], cloud[channel], 1e-6);
     EXPECT_NEAR(seen(1.0F, 5e5F, 0.0F)[channel], sky[channel], 0.01);
     EXPECT_NEAR(seen(0.25F, 5e5F, 0.0F)[channel], 0.25 * sky[channel], 0.01);
-    // In between, the farther, the closer to the sky's radiance.
+    // In between, the radiance approaches the sky's with distance.
     EXPECT_LT(seen(1.0F, 5e4F, 0.1F)[channel], cloud[channel]);
     EXPECT_GT(seen(1.0F, 5e4F, 0.1F)[channel], seen(1.0F, 1e5F, 0.1F)[channel]);
     EXPECT_EQ(seen(0.0F, 5e4F, 0.1F)[channel], 0.0F);

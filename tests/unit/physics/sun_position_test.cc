@@ -11,7 +11,8 @@ namespace {
 constexpr double kHour_s = 3600.0;
 constexpr double kDay_s = 86400.0;
 
-// Seconds since 1970 of a Gregorian date (days from the civil calendar by counting leap years).
+// Returns the seconds since 1970 of a Gregorian date. It computes days from the civil calendar by
+// counting leap years.
 double Unix_s(int year, int month, int day, double hours) {
   const int shifted = year - (month <= 2 ? 1 : 0);
   const int since_march = (month + 9) % 12;
@@ -25,10 +26,10 @@ double Unix_s(int year, int month, int day, double hours) {
 double Declination_deg(double unix_s) { return SunPositionAt(unix_s, 90.0, 0.0).elevation_deg; }
 
 TEST(SunPosition, PublishedAlmanacPlaces) {
-  // Meeus, example 25.a: 1992 October 13, 0 h.
+  // The example is Meeus, 25.a: 1992 October 13, 0 h.
   EXPECT_NEAR(Declination_deg(Unix_s(1992, 10, 13, 0.0)), -7.785, 0.01);
-  // The worked example of NREL's Solar Position Algorithm (Reda and Andreas 2004, table A5.1), its
-  // elevation before refraction; the parallax of 0.002 degrees is not ours.
+  // This is the worked example of NREL's Solar Position Algorithm (Reda and Andreas 2004, table
+  // A5.1), with its elevation before refraction. The parallax of 0.002 degrees is not in our model.
   const SunPosition golden =
       SunPositionAt(Unix_s(2003, 10, 17, 19.0 + 30.5 / 60.0), 39.742476, -105.1786);
   EXPECT_NEAR(golden.azimuth_deg, 194.34024, 0.01);
@@ -36,8 +37,8 @@ TEST(SunPosition, PublishedAlmanacPlaces) {
 }
 
 TEST(SunPosition, EquinoxesAndSolstices) {
-  // To the minute: USNO, Earth's Seasons. The declination at the equinox changes 0.016 degrees an
-  // hour.
+  // The times are accurate to the minute: USNO, Earth's Seasons. The declination at the equinox
+  // changes by 0.016 degrees an hour.
   EXPECT_NEAR(Declination_deg(Unix_s(2013, 3, 20, 11.0 + 2.0 / 60.0)), 0.0, 0.01);
   EXPECT_NEAR(Declination_deg(Unix_s(2013, 9, 22, 20.0 + 44.0 / 60.0)), 0.0, 0.01);
   EXPECT_NEAR(Declination_deg(Unix_s(2013, 6, 21, 5.0 + 4.0 / 60.0)), 23.437, 0.01);
@@ -69,8 +70,8 @@ TEST(SunPosition, RisesInTheEastAndSetsInTheWest) {
   const double equinox = Unix_s(2013, 3, 20, 0.0);
   EXPECT_NEAR(SunPositionAt(equinox + 6 * kHour_s, 0.0, 0.0).azimuth_deg, 90.0, 1.0);
   EXPECT_NEAR(SunPositionAt(equinox + 18 * kHour_s, 0.0, 0.0).azimuth_deg, 270.0, 1.0);
-  // 90 degrees west it is 6 hours earlier by the sun; the sun itself has moved on a quarter of a
-  // day, less than 0.15 degrees against the equator.
+  // 90 degrees west, solar time is 6 hours earlier. The sun itself has moved for a quarter of a
+  // day, by less than 0.15 degrees relative to the equator.
   const SunPosition here = SunPositionAt(equinox + 15 * kHour_s, 35.0, 0.0);
   const SunPosition west = SunPositionAt(equinox + 21 * kHour_s, 35.0, -90.0);
   EXPECT_NEAR(here.elevation_deg, west.elevation_deg, 0.15);

@@ -1,4 +1,4 @@
-// The properties of turbulence tiles that multiplying a field by one relies on.
+// Tests of the properties of turbulence tiles that multiplying a field by them relies on.
 #include "physics/turbulence.h"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// By Gauss's rule with two points an axis between neighbouring texels: exact, as the noise is
-// quadratic there along each axis.
+// Returns the mean by Gauss's rule with two points per axis between neighbouring texels. It is
+// exact, because the noise there is quadratic along each axis.
 double MeanOf(const TurbulenceTile& tile) {
   const double gauss = 0.5 / std::sqrt(3.0);
   double sum = 0.0;
@@ -23,7 +23,7 @@ double MeanOf(const TurbulenceTile& tile) {
   return sum / (8.0 * static_cast<double>(tile.texels.size()));
 }
 
-// FNV-1a, 64 bits.
+// Returns the FNV-1a hash with 64 bits.
 std::uint64_t HashOf(const TurbulenceTile& tile) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   for (const std::uint8_t texel : tile.texels) hash = (hash ^ texel) * 0x100000001b3U;
@@ -33,7 +33,7 @@ std::uint64_t HashOf(const TurbulenceTile& tile) {
 class Turbulence : public testing::TestWithParam<int> {};
 
 TEST_P(Turbulence, KeepsTheMean) {
-  // A float holds the scale to 6e-8.
+  // A float stores the scale to 6e-8.
   EXPECT_NEAR(MeanOf(MakeTurbulence(GetParam(), 1)), 1.0, 2e-7);
 }
 
@@ -47,8 +47,8 @@ TEST_P(Turbulence, LeavesAThirdClear) {
 TEST_P(Turbulence, RepeatsWithoutASeam) {
   const TurbulenceTile tile = MakeTurbulence(GetParam(), 7);
   const auto side = static_cast<std::size_t>(tile.side);
-  // The step across the seam is like the steps inside: their mean squares agree within what 64^2
-  // samples of them can tell, a few percent.
+  // The steps across the seam are like the steps inside. Their mean squares agree within the
+  // accuracy of 64^2 samples, a few percent.
   double across = 0.0;
   double inside = 0.0;
   for (std::size_t row = 0; row < side * side; ++row) {
@@ -62,7 +62,8 @@ TEST_P(Turbulence, RepeatsWithoutASeam) {
 INSTANTIATE_TEST_SUITE_P(Octaves, Turbulence, testing::Range(1, kMaxTurbulenceOctaves + 1));
 
 TEST(Turbulence, IsTheSameOnEveryMachine) {
-  // From the first run; integers throughout, so any difference is an error.
+  // The hashes are from the first run. All arithmetic is in integers, so any difference is an
+  // error.
   EXPECT_EQ(HashOf(MakeTurbulence(3, 1)), 71110320420497725U);
   EXPECT_EQ(HashOf(MakeTurbulence(4, 12345)), 16746745217059003725U);
 }
@@ -71,7 +72,8 @@ TEST(Turbulence, SeedsGiveOtherTiles) {
   EXPECT_NE(MakeTurbulence(2, 1).texels, MakeTurbulence(2, 2).texels);
 }
 
-// Mean square difference over a sixteenth of the first wavelength, as a share of the variance.
+// Returns the mean square difference over a sixteenth of the first wavelength, as a share of the
+// variance.
 double RoughnessOf(const TurbulenceTile& tile) {
   const double step = 1.0 / (16 * TurbulenceTile::kWaves);
   double difference = 0.0;

@@ -19,7 +19,7 @@ vec3 TowardsFrom(double elevation_deg, double azimuth_deg = 0.0) {
           std::sin(elevation)};
 }
 
-// Schlick's form is off by up to 0.021, at cosines about 0.1 (where a facet reflects half).
+// Schlick's form is off by up to 0.021, at cosines near 0.1 (where a facet reflects half).
 TEST(Water, FacetsReflectByFresnel) {
   for (int i = 0; i <= 20; ++i) {
     const double cosine = 0.05 * i;
@@ -30,7 +30,7 @@ TEST(Water, FacetsReflectByFresnel) {
   EXPECT_NEAR(glsl::facet_reflectance(1.0F), 0.02F, 1e-6F);
 }
 
-// The mean over facets that an eye sees, from sampled slopes.
+// Returns the mean reflectance over facets that an eye sees, from sampled slopes.
 double SampledReflectance(const vec3& towards_eye) {
   CounterRandom random(1, 9);
   double reflected = 0.0;
@@ -49,7 +49,7 @@ double SampledReflectance(const vec3& towards_eye) {
   return reflected / seen;
 }
 
-// Bruneton's fit; from low elevations it leaves out that facets hide each other.
+// Compares with Bruneton's fit, which neglects at low elevations that facets hide each other.
 TEST(Water, MeanReflectanceIsThatOfItsFacets) {
   for (const double elevation_deg : {5.0, 10.0, 20.0, 40.0, 90.0}) {
     const vec3 towards_eye = TowardsFrom(elevation_deg);
@@ -69,7 +69,8 @@ TEST(Water, GlintIsBrightestNearTheMirroredSun) {
   EXPECT_TRUE(std::isfinite(glsl::glint(TowardsFrom(0.01), TowardsFrom(0.01, 180.0))));
 }
 
-// Over all directions it is the reflectance of water for the sun's irradiance on level ground.
+// Over all directions the glint is the reflectance of water for the sun's irradiance on level
+// ground.
 TEST(Water, GlintHoldsTheSunlightThatFacetsReflect) {
   for (const double elevation_deg : {30.0, 45.0, 80.0}) {
     const vec3 sun = TowardsFrom(elevation_deg, 180.0);
@@ -84,7 +85,8 @@ TEST(Water, GlintHoldsTheSunlightThatFacetsReflect) {
       }
     }
     const double received = sun.z;
-    // Facets that hide each other lose what they would reflect twice: a seventh at 20 degrees.
+    // Facets that hide each other lose the light that they would reflect twice: a seventh at 20
+    // degrees.
     EXPECT_NEAR(flux / received, SampledReflectance(sun), 0.1 * SampledReflectance(sun))
         << elevation_deg;
   }

@@ -44,7 +44,7 @@ class ManifestTest : public ::testing::Test {
 };
 
 TEST(Sha256Test, IsThatOfTheStandard) {
-  // FIPS 180-2, appendix B.1.
+  // The example is from FIPS 180-2, appendix B.1.
   EXPECT_EQ(Sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(Sha256OfFile("/no/such/file").status().code(), absl::StatusCode::kUnavailable);
 }
@@ -68,7 +68,7 @@ TEST_F(ManifestTest, AMeasuredErrorHasItsInterval) {
   const std::string line = ToLine(entry);
   EXPECT_EQ(FromLine(line)->error_low, 0.15);
   EXPECT_EQ(FromLine(line)->error_high, 0.25);
-  // As earlier versions wrote it.
+  // Earlier versions wrote the line in this form.
   const std::string interval = R"("error_low":0.15,"error_high":0.25,)";
   std::string earlier = line;
   ASSERT_NE(earlier.find(interval), std::string::npos) << line;
@@ -84,7 +84,7 @@ TEST_F(ManifestTest, EntriesOutliveTheProcessAndTheLastOfAProductCounts) {
     ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("1")).ok());
     ASSERT_TRUE(manifest.Record(folder_.File("sub/b.png"), Entry("2")).ok());
     ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("3")).ok());
-    // Still the only one after the file was replaced.
+    // This process still owns the manifest after its file was replaced.
     EXPECT_EQ(Manifest::Open(path_, {}).status().code(), absl::StatusCode::kUnavailable);
     ASSERT_TRUE(manifest.Record(folder_.File("c.png"), Entry("4")).ok());
   }
@@ -130,11 +130,11 @@ TEST_F(ManifestTest, ProductsOfOtherShardsCount) {
     EXPECT_EQ(manifest.Find(folder_.File("a.png"))->sha256, "1");
     EXPECT_EQ(manifest.Find(folder_.File("b.png"))->sha256, "3");
   }
-  // A product has one line in the folder, the one that is true.
+  // A product keeps one line in the folder, the valid one.
   EXPECT_THAT(*base::ReadWholeFile(other), Not(HasSubstr("b.png")));
   EXPECT_THAT(*base::ReadWholeFile(other), HasSubstr("a.png"));
   EXPECT_THAT(Text(), HasSubstr("b.png"));
-  // One that a process keeps stays as it is.
+  // A manifest that another process has open stays unchanged.
   const auto kept = *Manifest::Open(other, {});
   auto manifest = *Manifest::Open(path_, {.count = {other}, .take_over = {}});
   ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("4")).ok());
@@ -166,7 +166,7 @@ TEST_F(ManifestTest, ManifestsOfSharesThatHaveEndedAreTakenOver) {
     ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("1")).ok());
     ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("2")).ok());
   }
-  // A share that was killed while it wrote a line.
+  // A share was killed while it wrote a line.
   std::ofstream(ended, std::ios::app) << ToLine(Entry("9")).substr(0, 30);
   auto other = *Manifest::Open(running, {});
   ASSERT_TRUE(other.Record(folder_.File("c.png"), Entry("3")).ok());
@@ -179,7 +179,7 @@ TEST_F(ManifestTest, ManifestsOfSharesThatHaveEndedAreTakenOver) {
   }
   const std::string text = Text();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
-  // As after a kill before they were deleted: nothing is there twice.
+  // A kill before the files were deleted leaves such a file. No entry may be there twice.
   std::ofstream(ended) << text;
   const auto again = *Manifest::Open(path_, {.count = {}, .take_over = {ended}});
   EXPECT_EQ(Text(), text);

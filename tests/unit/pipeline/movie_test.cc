@@ -43,7 +43,7 @@ std::string TextOf(const AVFormatContext& format, const char* name) {
   return entry == nullptr ? "" : entry->value;
 }
 
-// As any player would read it.
+// Decodes the file like any player.
 Decoded Decode(const std::string& path) {
   Decoded decoded;
   AVFormatContext* format = nullptr;
@@ -92,7 +92,7 @@ TEST_P(MovieKind, PlayersSeeEveryPictureInOrder) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.File("movie") + GetParam();
   const std::vector<int> values = {0, 128, 255};
-  // As long as a run of many days, whose times are all in it.
+  // The description is as long as that of a run of many days, which contains all times.
   const std::string description =
       absl::StrCat(R"({"valid": [")", std::string(20'000, '0'), R"("]})");
   const absl::Status status =
@@ -104,7 +104,7 @@ TEST_P(MovieKind, PlayersSeeEveryPictureInOrder) {
   ASSERT_TRUE(status.ok()) << status;
   const Decoded movie = Decode(path);
   ASSERT_EQ(movie.brightness.size(), 4U);
-  // Black is 16 and white 235 in video; compression may miss by a few.
+  // In video, black is 16 and white 235; compression may be off by a few levels.
   EXPECT_NEAR(movie.brightness[0], 16, 3);
   EXPECT_NEAR(movie.brightness[1], 126, 3);
   EXPECT_NEAR(movie.brightness[2], 126, 3);
@@ -134,7 +134,7 @@ TEST(Movie, WhatFailsLeavesNothing) {
       WriteMovie(folder.File("no/movie.webm"), {1}, 8, {},
                  [](std::size_t) { return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9)); });
   EXPECT_EQ(nowhere.code(), absl::StatusCode::kFailedPrecondition) << nowhere;
-  // A full device fails at once or when the end is written; that passes.
+  // Writing to a full device fails at once or at the end. The error is temporary.
   ASSERT_EQ(symlink("/dev/full", base::PartialPath(folder.File("full.webm")).c_str()), 0);
   const absl::Status full = WriteMovie(folder.File("full.webm"), {1}, 8, {}, [](std::size_t) {
     return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9));
@@ -143,7 +143,7 @@ TEST(Movie, WhatFailsLeavesNothing) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.Path()));
 }
 
-// The names of an MP4 file's outermost boxes, in order (ISO 14496-12).
+// Returns the names of an MP4 file's outermost boxes, in order (ISO 14496-12).
 std::vector<std::string> BoxesOf(const std::string& file) {
   std::vector<std::string> names;
   for (std::size_t at = 0; at + 8 <= file.size();) {
@@ -151,7 +151,7 @@ std::vector<std::string> BoxesOf(const std::string& file) {
     for (std::size_t i = 0; i < 4; ++i)
       size = size << 8U | static_cast<unsigned char>(file[at + i]);
     names.push_back(file.substr(at + 4, 4));
-    if (size < 8) break;  // to the end of the file, or of 64 bits, which these are not
+    if (size < 8) break;  // open-ended or 64-bit boxes do not occur here
     at += size;
   }
   return names;

@@ -1,4 +1,4 @@
-// Annotations of pictures, recognised by the pixels that they change.
+// Tests of annotations of pictures, recognised by the pixels that they change.
 #include "product/annotation.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr int kWidth_px = 640;
 constexpr int kHeight_px = 360;
 constexpr int kGrey = 128;
 
-// A box of pixels, `high` not included.
+// A box of pixels, excluding `right` and `bottom`.
 struct Box {
   int left = 0, top = 0, right = 0, bottom = 0;
 };
@@ -54,7 +54,7 @@ int Changed(const frame::RgbImage& image, const Box& box) {
   return static_cast<int>(std::ranges::count_if(pixels, [](int v) { return v != kGrey; }) / 3);
 }
 
-// Number of pixels of almost that colour.
+// Returns the number of pixels of almost that colour.
 int Colored(const frame::RgbImage& image, const Box& box, int red, int green, int blue) {
   const std::vector<std::uint8_t> pixels = Pixels(image, box);
   int count = 0;
@@ -67,7 +67,7 @@ int Colored(const frame::RgbImage& image, const Box& box, int red, int green, in
   return count;
 }
 
-// Number of pixels that are almost white, as thin letters are where they are widest.
+// Returns the number of pixels that are almost white, as thin letters are where they are widest.
 int Bright(const frame::RgbImage& image, const Box& box) {
   const std::vector<std::uint8_t> pixels = Pixels(image, box);
   int count = 0;
@@ -77,7 +77,7 @@ int Bright(const frame::RgbImage& image, const Box& box) {
   return count;
 }
 
-// A red picture, the left half of which is transparent.
+// Returns a red picture whose left half is transparent.
 std::string LogoPng(int width_px, int height_px) {
   const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width_px, height_px));
   const CairoContext context(cairo_create(surface.get()));
@@ -122,7 +122,7 @@ TEST(Annotation, LettersOfOtherScriptsAreShaped) {
   const frame::RgbImage name = Annotated({.title = "Gewitter über Θεσσαλονίκη"});
   const frame::RgbImage plain = Annotated({.title = "Gewitter uber Thessaloniki"});
   EXPECT_NE(Pixels(name, kUpperLeft), Pixels(plain, kUpperLeft));
-  // Bytes that are no UTF-8, as in a file's attribute, do no harm.
+  // Bytes that are not UTF-8, as in a file's attribute, do no harm.
   EXPECT_GT(Changed(Annotated({.title = "G\xfc\xff"}), kUpperLeft), 20);
 }
 
@@ -139,7 +139,7 @@ TEST(Annotation, ALogoIsInTheUpperRightAndNeverLarge) {
   const auto logo = Logo::Decode(LogoPng(1000, 1000), "the test's");
   ASSERT_TRUE(logo.ok()) << logo.status();
   const frame::RgbImage image = Annotated({.logo = &*logo});
-  // A sixth of the height, half of it transparent.
+  // The logo is a sixth of the height, and half of it is transparent.
   EXPECT_NEAR(Colored(image, kUpperRight, 255, 0, 0), 30 * 60, 150);
   EXPECT_EQ(Changed(image, {0, 0, 570, kHeight_px}), 0);
   EXPECT_EQ(Changed(image, {0, 70, kWidth_px, kHeight_px}), 0);

@@ -1,5 +1,5 @@
-// Places on maps against closed forms of the projections on a sphere (Snyder, Map Projections: A
-// Working Manual, 1987).
+// Tests of places on maps against closed forms of the projections on a sphere (Snyder, Map
+// Projections: A Working Manual, 1987).
 #include "product/map_place.h"
 
 #include <cmath>
@@ -23,7 +23,7 @@ double ConeOf(double latitude_deg) {
   return std::tan(std::numbers::pi / 4.0 + 0.5 * latitude_deg * kRadian);
 }
 
-// Equations 15-1 to 15-5.
+// Returns the place by equations 15-1 to 15-5.
 glm::dvec2 Lambert_m(const Place& place) {
   const double n = std::log(std::cos(30.0 * kRadian) / std::cos(60.0 * kRadian)) /
                    std::log(ConeOf(60.0) / ConeOf(30.0));

@@ -28,7 +28,7 @@ std::vector<std::uint32_t> ListAt(const BallTiles& tiles, const glm::ivec2& pixe
   return {tiles.balls.begin() + tiles.starts[at], tiles.balls.begin() + tiles.starts[at + 1]};
 }
 
-// Whatever a ray meets is in the list of its tile, and the nearest is first.
+// Expects that each ball that a ray meets is in the list of its tile, with the nearest first.
 void ExpectAllListed(const std::vector<Ball>& balls, const scene::View& view,
                      const glm::ivec2& size_px) {
   const BallTiles tiles = TilesOf(balls, view, size_px);
@@ -74,7 +74,7 @@ std::vector<Ball> Cloud() {
 TEST(BallTiles, HoldEveryBallThatARayMeets) {
   scene::OrbitCamera camera;
   camera.target_m = {0.0, 0.0, 1000.0};
-  // From outside, from within, from far away and along the axes.
+  // The views are from outside, from inside, from far away and along the axes.
   for (const double distance_m : {5000.0, 300.0, 1.0, 1e6}) {
     for (const double azimuth_deg : {0.0, 33.0}) {
       camera.distance_m = distance_m;

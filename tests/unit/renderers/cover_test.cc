@@ -15,7 +15,7 @@ namespace {
 
 constexpr glm::ivec2 kSize_px(301, 157);
 
-// Boxes as a storm's: beside, above and behind one another, around the origin.
+// Returns boxes like those of a storm: next to, above and behind one another, around the origin.
 Boxes SomeBoxes(int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> across(-40e3, 40e3);
@@ -45,7 +45,7 @@ std::vector<scene::View> Views() {
   return views;
 }
 
-// The pixel that shows a point; outside the picture if none does.
+// Returns the pixel that shows a point; outside the picture if none does.
 glm::dvec2 PixelOf(const glm::dvec3& point_m, const scene::View& view) {
   const glm::dvec3 off_m = point_m - view.eye_m;
   const double forward_m = glm::dot(off_m, view.forward);
@@ -127,7 +127,7 @@ TEST(Cover, LeavesOutWhatHoldsNothing) {
   }
   EXPECT_GT(pixels, 0);
   EXPECT_LE(pixels, 32 * 32);
-  // Behind the eye.
+  // The box is behind the eye.
   one.middles_m[0] = view.eye_m - 10e3 * view.forward;
   EXPECT_TRUE(CoveredRects(one, view, {800, 400}, 1.0).empty());
   EXPECT_TRUE(CoveredRects({}, view, {800, 400}, 1.0).empty());
@@ -160,7 +160,7 @@ TEST(SliceReach, HoldsWhatEachSliceCutsOfTheBoxes) {
     for (int i = 0; i < 4000; ++i) {
       const auto at = static_cast<std::size_t>(i) % boxes.middles_m.size();
       glm::dvec3 point_m = points.In(at);
-      // Onto the nearest slice, if that cuts the box.
+      // Moves the point onto the nearest slice, if that slice cuts the box.
       const double along_m = glm::dot(slicing.normal, point_m - middle_m);
       const double place = (slicing.first_m - along_m) / slicing.spacing_m;
       const double slice = std::round(place);
@@ -192,7 +192,7 @@ TEST(SliceReach, IsEmptyWhereASliceCutsNothing) {
   const std::vector<SliceReach> reach = ReachOf(slicing, low, glm::dvec3(0.0), Views().back(),
                                                 kSize_px, LightFrameOf(box, up), {20, 20});
   for (std::size_t i = 0; i < reach.size(); ++i) {
-    // Slices are 1 km apart from 9.5 km down; the box lies around the one at -5.5 or -4.5 km.
+    // Slices are 1 km apart from 9.5 km down. The box lies around the slice at -5.5 or -4.5 km.
     const bool cuts = std::abs(slicing.Distance_m(static_cast<int>(i)) + 5e3) <= 500.0;
     EXPECT_EQ(reach[i].light.Empty(), !cuts) << i;
   }

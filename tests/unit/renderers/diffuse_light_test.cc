@@ -1,5 +1,5 @@
-// The diffusion equation on cells against its closed form in a plane-parallel layer, and at the
-// extremes.
+// Tests of the diffusion equation on cells, against its closed form in a plane-parallel layer and
+// at the extremes.
 #include "renderers/light_volume/diffuse_light.h"
 
 #include <algorithm>
@@ -16,7 +16,8 @@ constexpr int kLayers = 20;
 constexpr double kLayer_m = 100.0;
 constexpr double kAsymmetry = 0.75;
 
-// A layer with an empty cell above and below, its cells so wide that nothing leaves by the sides.
+// A layer with an empty cell above and below. Its cells are so wide that no light leaves through
+// the sides.
 struct Layer {
   DiffusionCells cells;
   double depth = 0.0;
@@ -52,9 +53,10 @@ struct Layer {
 glm::dvec3 Sun(double sine) { return {std::sqrt(1.0 - sine * sine), 0.0, sine}; }
 
 TEST(DiffuseLight, NetFluxIntoALayerIsEddingtons) {
-  // F (4 + 3 T) = 2 m (1 + e) + 3 m^2 (1 - e), e = exp(-depth / m), T the similarity-scaled depth:
-  // Eddington's two-stream solution with Marshak's boundary conditions, exact on these cells but
-  // for single precision and the solver's tolerance.
+  // The net flux F solves F (4 + 3 T) = 2 m (1 + e) + 3 m^2 (1 - e). Here e = exp(-depth / m), and
+  // T is the similarity-scaled depth. This is Eddington's two-stream solution with Marshak's
+  // boundary conditions. On these cells it is exact up to single precision and the solver's
+  // tolerance.
   for (const double depth : {0.01, 0.1, 1.0, 8.0, 100.0, 1e4}) {
     const Layer layer(depth);
     DiffuseLight light(layer.cells);
@@ -77,7 +79,8 @@ TEST(DiffuseLight, SkyOverAThickLayerIsReflected) {
   const glm::vec2 inward = light.SkyInward()[top];
   EXPECT_GT(seen.x + seen.y, 0.99);
   EXPECT_GT(seen.x, 0.99);  // a level top sees irradiance from above
-  // Of fluence 1 - K (3 t + 2) at depth t, 2 K at the bottom, which a black ground lights not.
+  // The fluence is 1 - K (3 t + 2) at depth t, and 2 K at the bottom, which a black ground does not
+  // light.
   EXPECT_NEAR(inward.x + inward.y, 1.0 / (4.0 + 750.0), 1e-4);
 }
 
@@ -101,7 +104,7 @@ TEST(DiffuseLight, AWarmStartFindsTheSame) {
   EXPECT_NEAR(cold.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle] / from_warm, 1.0, 0.01);
 }
 
-// Cores in haze, 40 by 41 by 20 cells.
+// Returns cores in haze, 40 by 41 by 20 cells.
 DiffusionCells HazeAndCores(bool mirrored) {
   DiffusionCells cells;
   cells.size = {40, 41, 20};
@@ -121,7 +124,7 @@ DiffusionCells HazeAndCores(bool mirrored) {
   return cells;
 }
 
-// Of a sun that is dragged: each step is solved for loosely from the last, and errors do not add
+// The sun is dragged. Each step is solved loosely from the previous one, and errors must not add
 // up.
 TEST(DiffuseLight, LooseSolutionsStayNearTheConvergedOne) {
   DiffuseLight loose(HazeAndCores(false));
@@ -146,15 +149,15 @@ TEST(DiffuseLight, LooseSolutionsStayNearTheConvergedOne) {
   EXPECT_LT(2 * iterations, exact_iterations);
 }
 
-// The number of iterations of loose solutions for a sun whose azimuth takes these steps, but for
-// the first three.
+// Returns the number of iterations of loose solutions for a sun whose azimuth takes these steps,
+// without the first three.
 int IterationsFor(const std::vector<double>& steps_rad) {
   DiffuseLight light(HazeAndCores(false));
   int iterations = 0;
   double azimuth_rad = 0.0;
   for (std::size_t i = 0; i < steps_rad.size(); ++i) {
     azimuth_rad += steps_rad[i];
-    // Its depth varies across the medium, and with the sun.
+    // The depth of the exit root varies across the medium and with the sun.
     std::vector<float> roots(light.ExitRoot().size());
     for (std::size_t cell = 0; cell < roots.size(); ++cell) {
       const double x = static_cast<double>(cell % 40) / 40.0;
@@ -174,7 +177,7 @@ TEST(DiffuseLight, ASunThatGoesOnIsFollowed) {
   EXPECT_LT(IterationsFor(on), 0.8 * IterationsFor(to_and_fro));
 }
 
-// Many blocks of columns, cut at other places in the mirrored medium.
+// There are many blocks of columns, divided at other places in the mirrored medium.
 TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
   const glm::ivec3 size(40, 41, 20);
   const std::vector<float> roots(static_cast<std::size_t>(size.x * size.y * size.z), 0.7F);
@@ -196,7 +199,7 @@ TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
     }
   }
   EXPECT_LT(off, 1e-3 * largest);
-  // Blocks that cut columns take five times as many.
+  // Blocks that divide columns would take five times as many iterations.
   EXPECT_LT(light.LastIterations(), 40);
 }
 
@@ -221,7 +224,7 @@ TEST(DiffuseLight, NothingBreaks) {
         sun = std::max(sun, net[i]);
         sky = std::max(sky, std::abs(inward.x) + std::abs(inward.y));
       }
-      // A depth of 1e-8 scatters less than single precision holds.
+      // A depth of 1e-8 scatters less light than single precision can represent.
       const bool scatters = depth > 1e-8;
       EXPECT_EQ(sky > 0.0F, scatters) << sky;
       if (scatters && sine > 0.0) {

@@ -1,5 +1,5 @@
-// docs/extending.md names files that are there, and no more of them for an extension than the
-// house's rules allow.
+// Tests that docs/extending.md names only existing files, and for an extension not more of them
+// than the house's rules allow.
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -18,8 +18,8 @@ using ::testing::Le;
 
 const fs::path kSource = THUNDERHEAD_SOURCE_DIR;
 
-// The files named by the numbered steps of each section of the page, new ones left out: those have
-// NAME in their path.
+// Returns the files named by the numbered steps of each section of the page. New files, which have
+// NAME in their path, are left out.
 std::map<std::string, std::set<std::string>> FilesBySection() {
   const std::regex file("`((?:server|proto|client-web|data|docs|tests)/[A-Za-z0-9_./-]+)`");
   std::ifstream page(kSource / "docs/extending.md");
@@ -41,7 +41,7 @@ std::map<std::string, std::set<std::string>> FilesBySection() {
   return sections;
 }
 
-// Counted are existing files that a person edits, besides new files and tests.
+// The count includes existing files that a developer edits, without new files and tests.
 TEST(ExtendingPage, NamesFilesThatExistAndNoMoreThanAllowed) {
   auto files = FilesBySection();
   const std::map<std::string, std::size_t> allowed = {{"A technique (a renderer)", 4},

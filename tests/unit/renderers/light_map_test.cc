@@ -23,15 +23,15 @@ TEST(LightMap, EvenLightStaysEven) {
   }
 }
 
-// A wall sees half of a bright sky, a roof all of it, a ceiling none.
+// A wall sees half of a bright sky, a roof all of it, and a ceiling none.
 TEST(LightMap, ASkyAloneLightsByHowMuchOfItIsSeen) {
   const auto map =
       LightMapOf([](const glm::vec3& from) { return glm::vec3(from.z > 0.0F ? 1.0F : 0.0F); });
   for (const glm::vec3& n : kNormals) EXPECT_NEAR(MapAt(map, n).r, 0.5F + 0.5F * n.z, 1e-3F);
 }
 
-// Of a small lamp in direction l a surface shows the cosine; the harmonics keep it within 7 % of
-// the brightest.
+// For a small lamp in direction l a surface shows the cosine. The harmonics approximate it within 7
+// % of the brightest value.
 TEST(LightMap, ALampFollowsTheCosine) {
   const glm::vec3 lamp = glm::normalize(glm::vec3(0.3F, -0.5F, 0.7F));
   const auto map = LightMapOf(

@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// Which level each disc is in.
+// Returns the level of each disc.
 std::vector<std::size_t> LevelsOf(const LightOrder& order) {
   std::vector<std::size_t> levels(order.discs.size());
   for (std::size_t level = 0; level < order.Levels(); ++level) {
@@ -50,7 +50,8 @@ TEST(LightOrder, DiscsBeyondTheBufferCountAsOnItsEdge) {
   EXPECT_THAT(LevelsOf(order), ElementsAre(1, 0, 1));
 }
 
-// Any two that touch keep the order of their distances; the order of all others does not matter.
+// Any two discs that touch keep the order of their distances. The order of all others does not
+// matter.
 TEST(LightOrder, TouchingDiscsAreNeverInOneLevel) {
   std::vector<LightDisc> discs;
   unsigned state = 1;

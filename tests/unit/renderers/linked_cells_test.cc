@@ -1,4 +1,4 @@
-// The linear system of diffusion, and the cells around what holds anything.
+// Tests of the linear system of diffusion, and of the cells around those that are not empty.
 #include "renderers/light_volume/linked_cells.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kLightPerM = 0.01F;
 
-// A box in which each cell holds something with probability `filled`.
+// Returns a box in which each cell is filled with probability `filled`.
 DiffusionCells RandomCells(const glm::ivec3& size, double filled) {
   std::mt19937 random(7);
   std::bernoulli_distribution holds(filled);
@@ -105,7 +105,7 @@ struct System {
               box.Contains(next) ? numbered.NumberOf(box.Offset(next)) : NumberedCells::kNone;
           Links& links = step < 0 ? down[n] : up[n];
           links.to[axis] = to;
-          // A link down has the conductance that the cell below, numbered before, has upwards.
+          // A downward link has the upward conductance of the cell below, whose number is lower.
           links.conductance[axis] = to != NumberedCells::kNone && step < 0
                                         ? up[static_cast<std::size_t>(to)].conductance[axis]
                                         : value(random);
@@ -114,7 +114,7 @@ struct System {
     }
   }
 
-  // The light that must be put into cell `n` for the cells to have `values`.
+  // Returns the light that must be put into cell `n` for the cells to have `values`.
   double Needed(std::size_t n, const std::vector<float>& values) const {
     double sum = static_cast<double>(loss[n]) * values[n];
     for (const Links* links : {&down[n], &up[n]}) {
@@ -130,7 +130,7 @@ struct System {
 };
 
 TEST(LinkedCells, SolveIsTheInverseOfTheirExchange) {
-  // More cells than a block and a share have, so that several are worked on.
+  // There are more cells than in a block and a share, so several are processed.
   const DiffusionCells box = RandomCells({30, 30, 20}, 0.7);
   const NumberedCells numbered(box);
   ASSERT_GT(numbered.Blocks().size(), 3U);
@@ -153,7 +153,7 @@ TEST(LinkedCells, SolveIsTheInverseOfTheirExchange) {
     worst = std::max(worst, std::abs(solution[n] - truth[n]));
   }
   EXPECT_LT(worst, 1e-4F);
-  // From the solution on there is nothing left to do.
+  // Starting from the solution, no iteration is left to do.
   EXPECT_EQ(linked.Solve(right, 1e-5, &solution), 0);
 }
 

@@ -1,4 +1,4 @@
-// The light from the ground that arrives at a place, against closed forms.
+// Tests of the light from the ground that arrives at a place, against closed forms.
 #include "renderers/lit_ground.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTexel_m = 200.0;
 
-// 51.2 km wide around the origin, at a height of 300 m.
+// Returns a map 51.2 km wide around the origin, at a height of 300 m.
 GroundMap MapOf(const std::function<float(const glm::dvec2& place_m)>& share) {
   GroundMap map;
   map.size = {256, 256};
@@ -42,7 +42,7 @@ TEST(LitGround, OpenGroundIsLitAlike) {
   }
 }
 
-// Of any shape; on the ground the share is that of the map, interpolated.
+// Maps may have any shape. On the ground the share is that of the map, interpolated.
 TEST(LitGround, OnTheGroundItIsTheMap) {
   for (const glm::ivec2& size :
        {glm::ivec2(1), glm::ivec2(1, 7), glm::ivec2(5, 192), glm::ivec2(3, 2)}) {
@@ -85,12 +85,13 @@ TEST(LitGround, WhatIsNoNumberIsLookedUpNowhereElse) {
 }
 
 TEST(LitGround, AboveADarkDiscComesWhatALevelFaceGets) {
-  // A face at the height h above a disc of radius a gets a^2 / (a^2 + h^2) of its light from there.
+  // A face at height h above a disc of radius a gets a^2 / (a^2 + h^2) of its light from the disc.
   for (const double radius_m : {1000.0, 3000.0, 9000.0}) {
     const LitGround ground = DarkDisc(radius_m);
     for (const double height_m : {700.0, 1500.0, 3000.0, 6000.0, 12000.0}) {
       const double dark = 1.0 / (1.0 + std::pow(height_m / radius_m, 2.0));
-      // The tolerance covers LitGround's approximation of the ground by three squares for discs.
+      // The tolerance covers LitGround's approximation of the ground by three squares instead of
+      // discs.
       EXPECT_NEAR(ground.ShareAt({0.0, 0.0, 300.0 + height_m}), 1.0 - dark, 0.07)
           << radius_m << ' ' << height_m;
     }
@@ -103,8 +104,8 @@ TEST(LitGround, AboveTheEdgeOfAShadowHalfOfTheGroundIsLit) {
   for (const double height_m : {0.0, 500.0, 2000.0}) {
     EXPECT_NEAR(ground.ShareAt({0.0, 0.0, 300.0 + height_m}), 0.6, 0.01) << height_m;
   }
-  // At a distance d from it, (1 - d / sqrt(d^2 + h^2)) / 2 of a level face's light is from beyond;
-  // of that the outermost of the three discs alone has the far part.
+  // At a distance d from the edge, (1 - d / sqrt(d^2 + h^2)) / 2 of a level face's light is from
+  // beyond it. Only the outermost of the three discs contains the far part.
   for (const double away_m : {1000.0, 2500.0, 6000.0}) {
     constexpr double kHeight_m = 2000.0;
     const double beyond = 0.5 * (1.0 - away_m / std::hypot(away_m, kHeight_m));
@@ -114,7 +115,7 @@ TEST(LitGround, AboveTheEdgeOfAShadowHalfOfTheGroundIsLit) {
 }
 
 TEST(LitGround, AWallSeesTheGroundOnItsSide) {
-  // Above the edge of a shadow a wall sees one half of the ground, and nothing of the other.
+  // Above the edge of a shadow a wall sees one half of the ground, and nothing of the other half.
   const LitGround ground(
       MapOf([](const glm::dvec2& place_m) { return place_m.x < 0.0 ? 0.0F : 1.0F; }));
   const glm::dvec3 place_m(0.0, 0.0, 1800.0);
@@ -126,7 +127,8 @@ TEST(LitGround, AWallSeesTheGroundOnItsSide) {
 TEST(LitGround, CloseToTheGroundItIsThatBelow) {
   const LitGround ground = DarkDisc(3000.0, 0.1F);
   EXPECT_NEAR(ground.ShareAt({500.0, 500.0, 300.0}), 0.1, 1e-5);
-  EXPECT_NEAR(ground.ShareAt({500.0, 500.0, 100.0}), 0.1, 1e-5);  // below it, in coarse terrain
+  EXPECT_NEAR(ground.ShareAt({500.0, 500.0, 100.0}), 0.1,
+              1e-5);  // below coarse terrain
   EXPECT_NEAR(ground.ShareAt({5000.0, 0.0, 300.0}), 1.0, 1e-5);
   EXPECT_NEAR(ground.ShareAt({5e5, 0.0, 300.0}), 1.0, 1e-5);
 }

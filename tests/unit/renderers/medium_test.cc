@@ -1,4 +1,4 @@
-// Which fields a renderer draws together. No GL.
+// Tests of which fields a renderer draws together, without GL.
 #include "renderers/medium.h"
 
 #include "gtest/gtest.h"

@@ -11,7 +11,7 @@ namespace {
 
 const LocalBox kBox{{500.0, 400.0, 100.0}};
 
-// Farthest that the box reaches along a unit vector from its middle.
+// Returns the farthest extent of the box along a unit vector from its middle.
 double Reach_m(const glm::dvec3& normal) { return glm::dot(glm::abs(normal), kBox.half_m); }
 
 TEST(Slicing, SlicesFillTheBox) {
@@ -19,7 +19,7 @@ TEST(Slicing, SlicesFillTheBox) {
     const Slicing slicing =
         SliceBox(kBox, scene::Direction(sun_deg, 20), scene::Direction(0, 20), 200);
     EXPECT_EQ(slicing.count, 200);
-    // Each stands for half the spacing to either side.
+    // Each slice represents half the spacing to either side.
     const double reach_m = Reach_m(slicing.normal);
     EXPECT_NEAR(slicing.Distance_m(0) + 0.5 * slicing.spacing_m, reach_m, 1e-9) << sun_deg;
     EXPECT_NEAR(slicing.Distance_m(199) - 0.5 * slicing.spacing_m, -reach_m, 1e-9) << sun_deg;
@@ -29,7 +29,7 @@ TEST(Slicing, SlicesFillTheBox) {
 TEST(Slicing, FacesHalfwayBetweenLightAndView) {
   const Slicing slicing = SliceBox(kBox, scene::Direction(30, 0), scene::Direction(-10, 0), 10);
   EXPECT_NEAR(glm::dot(slicing.normal, scene::Direction(10, 0)), 1.0, 1e-12);
-  // 20 degrees between the light and the normal.
+  // The angle between the light and the normal is 20 degrees.
   EXPECT_NEAR(slicing.light_path_m, slicing.spacing_m / std::cos(20 * M_PI / 180), 1e-9);
 }
 

@@ -13,7 +13,7 @@ glm::dvec3 SunAt(double azimuth_deg) {
   return {std::sin(azimuth), std::cos(azimuth), 0.0};
 }
 
-// How many parts are found for a sun.
+// Returns how many parts are computed for a sun.
 std::size_t FoundAt(SunParts* parts, double azimuth_deg, bool in_turns = true) {
   const SunParts::Parts found = parts->Next(SunAt(azimuth_deg), in_turns);
   parts->Found(found, SunAt(azimuth_deg));

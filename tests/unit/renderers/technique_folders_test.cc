@@ -1,5 +1,5 @@
-// A technique is a folder of server/renderers, and of server/shaders. Only its own files, the list
-// of techniques and the probes of measure/ include from it, and its bindings are there.
+// Tests that a technique is a folder of server/renderers and of server/shaders. Only its own files,
+// the list of techniques and the probes of measure/ include from it, and its bindings are there.
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -24,8 +24,8 @@ std::set<std::string> Techniques(const fs::path& renderers) {
   return names;
 }
 
-// The files of server/ that include a file of a technique in whose folder they are not. `room` is
-// the path that such includes begin with.
+// Returns the files of server/ that include a file of a technique but are not in its folder. `room`
+// is the path that such includes begin with.
 std::set<std::string> ForeignFiles(const fs::path& server, const std::string& room,
                                    const std::set<std::string>& techniques) {
   const std::regex include("^#include \"" + room + "([a-z_]+)/.*\"");
@@ -50,7 +50,7 @@ std::string TextOf(const fs::path& file) {
   return text.str();
 }
 
-// The constants that `file` declares.
+// Returns the constants that `file` declares.
 std::set<std::string> ConstantsOf(const fs::path& file) {
   const std::regex constant("const [a-z]+ (k[A-Za-z0-9_]+) =");
   const std::string text = TextOf(file);
@@ -61,7 +61,7 @@ std::set<std::string> ConstantsOf(const fs::path& file) {
   return names;
 }
 
-// The technique in whose folder a file is; empty for files that techniques share.
+// Returns the technique in whose folder a file is; empty for files that techniques share.
 std::string TechniqueOf(const fs::path& file, const std::set<std::string>& techniques) {
   const std::string folder = file.parent_path().filename();
   const std::string room = file.parent_path().parent_path().filename();
@@ -70,7 +70,7 @@ std::string TechniqueOf(const fs::path& file, const std::set<std::string>& techn
   return is_technique ? folder : "";
 }
 
-// Who mentions each constant, by TechniqueOf, besides the files that declare constants.
+// Returns the users of each constant, by TechniqueOf, except the files that declare constants.
 std::map<std::string, std::set<std::string>> UsersOf(const std::set<std::string>& constants,
                                                      const fs::path& server,
                                                      const std::set<std::string>& techniques) {
@@ -93,7 +93,7 @@ TEST(TechniqueFolders, AreIncludedByTheirOwnFilesTheirListAndTheProbesOfMeasure)
   const std::set<std::string> techniques = Techniques(kServer / "renderers");
   EXPECT_THAT(techniques,
               ::testing::IsSupersetOf({"half_angle", "light_volume", "metaball", "cumulus"}));
-  // measure/ looks into the buffers of techniques, where the interface shows only pictures.
+  // measure/ reads the buffers of techniques, because the interface gives only pictures.
   EXPECT_THAT(ForeignFiles(kServer, "renderers/", techniques),
               ::testing::ElementsAre("measure/extremes_metaballs.cc", "measure/probe.cc",
                                      "measure/soundness.h", "renderers/built_in_techniques.cc"));

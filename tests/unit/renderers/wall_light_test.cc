@@ -1,4 +1,4 @@
-// Which walls see each other, against view factors in closed form.
+// Tests of which walls see each other, against view factors in closed form.
 #include "renderers/light_volume/wall_light.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ DiffusionCells Empty(const glm::ivec3& size) {
   return cells;
 }
 
-// Two long walls, `gap_per_m` between them.
+// Returns two long walls with `gap_per_m` between them.
 DiffusionCells Canyon(float gap_per_m) {
   DiffusionCells cells = Empty({2 * kThick + kGap, kLong, kHigh});
   for (std::size_t i = 0; i < cells.transport_per_m.size(); ++i) {
@@ -45,14 +45,15 @@ TEST(WallLight, FacingWallsSeeTheirViewFactor) {
   const WallLight walls(cells);
   double expected = 0.0;
   double hidden = 0.0;
-  for (int z = 1; z + 1 < kHigh; ++z) {  // cells at the ends have a face more
-    // From a point of one endless strip, half the sum of the sines under which it sees the other.
+  for (int z = 1; z + 1 < kHigh; ++z) {  // cells at the ends have one more face
+    // From a point of one endless strip the view factor of the other is half the sum of the sines
+    // of its angles.
     const double up = std::atan2(kHigh - (z + 0.5), kGap);
     const double down = std::atan2(z + 0.5, kGap);
     expected += 0.5 * (std::sin(up) + std::sin(down));
     hidden += walls.Hidden()[cells.Offset({kThick - 1, kLong / 2, z})];
   }
-  // Twelve rays stand for all directions.
+  // Twelve rays represent all directions.
   EXPECT_NEAR(hidden / expected, 1.0, 0.1);
   EXPECT_EQ(walls.Hidden()[cells.Offset({0, kLong / 2, kHigh / 2})], 0.0F);  // inside
 }
@@ -68,7 +69,8 @@ TEST(WallLight, WhatComesAndGoesBetweenWhiteWallsAddsUp) {
   std::vector<float> all(own.size(), 0.0F);
   walls.FindArriving(own, &all);
   const float seen = walls.Hidden()[MiddleOfWall(cells)];
-  // All walls send 1: what is seen of them and, over and over, what they send on.
+  // All walls send 1. A wall receives the share that it sees of them, and repeatedly the light that
+  // they send on.
   EXPECT_GT(all[MiddleOfWall(cells)], seen);
   EXPECT_LT(all[MiddleOfWall(cells)], seen / (1.0F - seen));
   EXPECT_GT(*std::max_element(one.begin(), one.end()), 0.0F);
@@ -80,7 +82,7 @@ TEST(WallLight, HazeBetweenWallsHidesThem) {
   const DiffusionCells hazy = Canyon(1e-3F);
   const float seen = WallLight(clear).Hidden()[MiddleOfWall(clear)];
   const float through = WallLight(hazy).Hidden()[MiddleOfWall(hazy)];
-  EXPECT_GT(through, 0.2F * seen);  // the longest ways are three gaps long
+  EXPECT_GT(through, 0.2F * seen);  // the longest paths are three gaps long
   EXPECT_LT(through, std::exp(-0.6F) * seen);
 }
 
@@ -98,7 +100,7 @@ TEST(WallLight, LevelTopsAndSlopesOfStepsSeeNoWalls) {
   EXPECT_LT(*std::max_element(walls.Hidden().begin(), walls.Hidden().end()), 0.15F);
 }
 
-// Ridges one cell wide and high, on a slope of one step in `run` cells, in a high domain.
+// Returns ridges one cell wide and high, on a slope of one step in `run` cells, in a high domain.
 DiffusionCells Ridges(float transport_per_m, int height, int run) {
   DiffusionCells cells = Empty({20, 20, 120});
   for (std::size_t i = 0; i < cells.transport_per_m.size(); ++i) {
@@ -114,7 +116,8 @@ float MostHidden(const DiffusionCells& cells) {
   return *std::max_element(walls.Hidden().begin(), walls.Hidden().end());
 }
 
-// Light goes through cells of half a transport mean free path: their steps are the cloud's own.
+// Light passes through cells of half a transport mean free path, so their steps are the cloud's own
+// shape.
 TEST(WallLight, RidgesOfOneCellSeeEachOtherWhereCellsAreThin) {
   const float thin = MostHidden(Ridges(0.005F, 1, 20));
   const float thick = MostHidden(Ridges(0.05F, 1, 20));

@@ -1,5 +1,5 @@
-// Files that a confined process reads: they are read as by the program itself, and whatever they do
-// to their reader is one error, within limits, while others are read.
+// Tests of files that a confined process reads. The results must be those of the program itself.
+// Whatever a file does to its reader must be one error, within limits, while other files are read.
 #include "sandbox/confined_files.h"
 
 #include <gmock/gmock.h>
@@ -51,7 +51,7 @@ using volume::HydrometeorFields;
 
 constexpr std::uint64_t kMemory = std::uint64_t{256} << 20;
 
-// Writes what travels into a string, to compare values byte by byte.
+// An archive that writes the transmitted data into a string, to compare values byte by byte.
 class Bytes {
  public:
   template <Plain Value>
@@ -76,10 +76,10 @@ std::string BytesOf(const HydrometeorFields& fields) {
   return bytes.Text();
 }
 
-// Time stands still for readers, unless a test moves it.
+// A fixture in which time stands still for readers, unless a test advances it.
 class ConfinedFilesTest : public ::testing::Test {
  protected:
-  // Also the processor time that a reader has, which the kernel counts.
+  // This is also the limit of processor time for a reader, which the kernel counts.
   static constexpr milliseconds kTime{60'000};
 
   std::shared_ptr<ConfinedFiles> Files(std::uint64_t memory = kMemory, milliseconds time = kTime) {
@@ -90,7 +90,7 @@ class ConfinedFilesTest : public ::testing::Test {
     return std::make_shared<ConfinedFiles>(options);
   }
 
-  // Waits for it while time passes.
+  // Waits for the future while time passes.
   template <typename Value>
   Value GetInTime(std::future<Value> future) {
     EXPECT_TRUE(WaitFor([&] {
@@ -129,7 +129,7 @@ testing::SyntheticWrf Storm() {
   return file;
 }
 
-// The same by the program itself and by a confined reader, every record.
+// Expects that the program itself and a confined reader give the same storm, for every record.
 void ExpectSameStorm(ConfinedFiles& files, const std::string& path) {
   const auto own = storm_files::StormFormats::BuiltIn().Describe(path);
   const auto confined = files.Describe(path);
@@ -185,9 +185,9 @@ TEST_F(ConfinedFilesTest, AreReadAsByTheProgramItself) {
 }
 
 // ExpectSameStorm compares what the archive writes of both storms, so it does not notice a member
-// that the archive leaves out.
+// that the archive omits.
 TEST_F(ConfinedFilesTest, TheWindComesThrough) {
-  // As much as its fields need under ASan, which keeps for a while what is freed.
+  // The limit is what the fields need under ASan, which keeps freed memory for a while.
   const auto files = Files(std::uint64_t{2} << 30);
   const auto file = files->Describe(THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc");
   ASSERT_TRUE(file.ok()) << file.status();
@@ -199,7 +199,8 @@ TEST_F(ConfinedFilesTest, TheWindComesThrough) {
   EXPECT_EQ(fields->motion.time_s, 958858200.0);
 }
 
-// The cost of confinement, next to reading the same file in the process; for docs/reliability.md.
+// Measures the cost of confinement, compared with reading the same file in the process; for
+// docs/reliability.md.
 TEST(ConfinedFilesBenchmark, Cost) {
   const std::string path = THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc";
   const auto files = std::make_shared<ConfinedFiles>();
@@ -246,7 +247,8 @@ TEST_F(ConfinedFilesTest, AReaderThatCrashesIsOneError) {
   EXPECT_EQ(Failures("crashed"), before + 4);
 }
 
-// As by the kernel when memory is full: the file is not to blame, and is tried again.
+// The kernel kills processes like this when memory is full. The file is not to blame, and is tried
+// again.
 TEST_F(ConfinedFilesTest, AReaderThatIsKilledIsTriedAgain) {
   const std::uint64_t before = Failures("killed");
   const auto files = Files();
@@ -259,7 +261,7 @@ TEST_F(ConfinedFilesTest, AReaderThatIsKilledIsTriedAgain) {
   }
 }
 
-// Requests in a row have one process, which is ended when no other comes.
+// Consecutive requests share one process, which ends when no further request comes.
 TEST_F(ConfinedFilesTest, AReaderRestsForAMoment) {
   const std::string path = Bad("named");
   const auto files = Files();
@@ -274,11 +276,11 @@ TEST_F(ConfinedFilesTest, AReaderRestsForAMoment) {
   EXPECT_EQ(process(), first);
   EXPECT_TRUE(file->reader->ReadVerticalGrid(0).ok());
   EXPECT_EQ(process(), first);
-  // One that has ended meanwhile is no error.
+  // A process that has ended meanwhile is not an error.
   ASSERT_EQ(kill(first, SIGKILL), 0);
   const pid_t second = process();
   EXPECT_NE(second, first);
-  // Another file may be in its place.
+  // Another file may have replaced the first.
   std::ofstream(path) << "CDF and something else";
   const pid_t third = process();
   EXPECT_NE(third, second);
@@ -286,7 +288,7 @@ TEST_F(ConfinedFilesTest, AReaderRestsForAMoment) {
   EXPECT_TRUE(WaitFor([&] { return kill(third, 0) != 0; })) << "it is ended and collected";
 }
 
-// A link may take the place of a folder after the path was checked.
+// A link may replace a folder after the path was checked.
 TEST_F(ConfinedFilesTest, WhereAnOpenedFileReallyLiesIsChecked) {
   const std::string path = folder_.File("wrfout_d01");
   testing::WriteWrf(Storm(), folder_.File("elsewhere"));
@@ -304,8 +306,8 @@ TEST_F(ConfinedFilesTest, WhereAnOpenedFileReallyLiesIsChecked) {
   EXPECT_EQ(place, std::filesystem::canonical(path).string());
 }
 
-// A header that a fuzzer found: netCDF-C 4.9.0 crashes on it (nc_get_NC, free_NC_vararrayV). A
-// later one may refuse it.
+// A fuzzer found this header: netCDF-C 4.9.0 crashes on it (nc_get_NC, free_NC_vararrayV). A later
+// version may refuse it.
 TEST_F(ConfinedFilesTest, AFileThatCrashesNetcdfItselfIsOneError) {
   const std::string path = folder_.File("wrfout_d01");
   std::filesystem::copy_file(THUNDERHEAD_SOURCE_DIR "/tests/unit/sandbox/netcdf_header_crash.nc",
@@ -325,7 +327,7 @@ TEST_F(ConfinedFilesTest, AReaderHasATime) {
   EXPECT_EQ(Failures("time"), before + 2);
 }
 
-// Long before its time is over, so that others need not wait for it.
+// The reader is ended long before its time limit, so that others need not wait for it.
 TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
   const std::uint64_t before = Failures("time");
   for (const char* name : {"hang-reading", "spin-reading"}) {
@@ -338,7 +340,7 @@ TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
     EXPECT_TRUE(absl::IsDeadlineExceeded(status)) << status;
     EXPECT_THAT(std::string(status.message()), HasSubstr("nothing had come from it for 1m"));
     EXPECT_GE(time_.Now() - start, ReaderLimits().silence);
-    // It is left alone.
+    // The file is not read again.
     EXPECT_EQ(file->reader->Read(0, std::nullopt, {}).status().message(), status.message());
   }
   EXPECT_EQ(Failures("time"), before + 2);
@@ -346,7 +348,7 @@ TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
 
 TEST_F(ConfinedFilesTest, AReaderThatSaysNoMoreIsNotWaitedFor) {
   const std::uint64_t before = Failures("crashed");
-  // More time than passes.
+  // The limit is longer than the time that passes.
   const auto file = Files(kMemory, std::chrono::hours(100))->Describe(Bad("mute-reading"));
   ASSERT_TRUE(file.ok()) << file.status();
   const absl::Status status = GetInTime(std::async(
@@ -355,8 +357,8 @@ TEST_F(ConfinedFilesTest, AReaderThatSaysNoMoreIsNotWaitedFor) {
   EXPECT_EQ(Failures("crashed"), before + 1);
 }
 
-// The kernel ends it while the server's time stands still. A processor second is the least that it
-// can be given.
+// The kernel ends the reader while the server's time stands still. One second of processor time is
+// the smallest possible limit.
 TEST_F(ConfinedFilesTest, AReaderHasAProcessorTime) {
   const std::uint64_t before = Failures("time");
   const absl::Status status = Files(kMemory, milliseconds(1000))->Describe(Bad("spin")).status();
@@ -365,7 +367,7 @@ TEST_F(ConfinedFilesTest, AReaderHasAProcessorTime) {
   EXPECT_EQ(Failures("time"), before + 1);
 }
 
-// As read-ahead does, which gives way to others.
+// Read-ahead does this: it yields to other reads.
 TEST_F(ConfinedFilesTest, WhatTheServerWaitsForByItselfDoesNotCount) {
   const auto file = Files()->Describe(Bad("sound"));
   ASSERT_TRUE(file.ok()) << file.status();
@@ -519,7 +521,7 @@ TEST_F(ConfinedFilesTest, SeveralAreReadAtOnce) {
     return hang->reader->Read(0, std::nullopt, begins).status();
   });
   ASSERT_TRUE(WaitFor([&] { return begun.load(); }));
-  // While the other hangs, as time stands still.
+  // The other file still hangs, because time stands still.
   EXPECT_TRUE(files->Describe(path).ok());
   EXPECT_EQ(hanging.wait_for(milliseconds(0)), std::future_status::timeout);
   EXPECT_TRUE(absl::IsDeadlineExceeded(GetInTime(std::move(hanging))));

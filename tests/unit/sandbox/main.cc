@@ -1,5 +1,5 @@
-// The tests' program is also the reader that they start, with formats that misbehave besides the
-// program's own.
+// The test program is also the reader that the tests start. It has misbehaving formats in addition
+// to the program's own.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     _exit(thunderhead::sandbox::ReadStormFile(FormatsWithMisbehaving()));
   }
 #ifdef __SANITIZE_ADDRESS__
-  // A reader's signal is what these tests wait for, not AddressSanitizer's report of it.
+  // These tests wait for a reader's signal, not for AddressSanitizer's report of it.
   const char* options = std::getenv("ASAN_OPTIONS");
   const std::string all =
       std::string(options == nullptr ? "" : options) + ":handle_segv=0:handle_sigbus=0";

@@ -24,7 +24,8 @@ using storm_files::StormFile;
 using volume::HydrometeorField;
 using volume::HydrometeorFields;
 
-// Tries all that a process would which a file has taken over; returns the names of what succeeded.
+// Tries everything that a process taken over by a file would try. Returns the names of what
+// succeeded.
 std::string TryEverything() {
   std::string could;
   const auto note = [&could](bool done, const char* what) {
@@ -104,7 +105,7 @@ HydrometeorFields SoundFields() {
   return fields;
 }
 
-// Each breaks what another room relies on.
+// Breaks one property of the fields that another room relies on.
 void Spoil(const std::string& how, HydrometeorFields& fields) {
   HydrometeorField& field = fields.fields[0];
   const std::map<std::string, std::function<void()>> ways = {
@@ -157,7 +158,7 @@ class MisbehavingReader final : public storm_files::RecordReader {
     }
     if (name_ == "spin-reading") Spin();
     if (name_ == "chatty-reading") {
-      // Forever: the server is to end it by its time.
+      // The loop never ends; the server must end the reader by its time limit.
       while (checkpoint) static_cast<void>(checkpoint(0.5));
     }
     return fields;

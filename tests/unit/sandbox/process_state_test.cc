@@ -32,7 +32,7 @@ TEST(ProcessStateTest, TheStorageDoesNotExplainTheSilenceOfAStoppedProcess) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, WUNTRACED), child);
   StorageWatch watch(child);
-  watch.ExplainsSilence();  // pages that came before count the first time
+  watch.ExplainsSilence();  // page faults from before count the first time
   EXPECT_FALSE(watch.ExplainsSilence());
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);

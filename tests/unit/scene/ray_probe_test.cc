@@ -1,4 +1,4 @@
-// Rays through fields of known form: closed forms, and brute force by many small steps.
+// Tests of rays through fields of known form, against closed forms and many small steps.
 #include "scene/ray_probe.h"
 
 #include <cmath>
@@ -20,8 +20,8 @@ using ::testing::SizeIs;
 
 constexpr double kExtinction_per_m = 0.001;
 
-// 20 x 16 columns of 500 m and 10 levels of 250 m, over flat ground at 0 m; seen by a camera of a
-// flat world.
+// A storm of 20 x 16 columns of 500 m and 10 levels of 250 m, over flat ground at 0 m, seen by a
+// camera of a flat world.
 struct Storm {
   Storm() {
     fields.grid = {{20, 16, 10}, {500.0, 500.0, 250.0}, {-5000.0, -4000.0, 0.0}};
@@ -30,7 +30,7 @@ struct Storm {
     scene.camera = TopDownCamera();
   }
 
-  // A field in extinction that is this everywhere.
+  // Adds a field with this extinction everywhere.
   volume::HydrometeorField& Add(physics::Hydrometeor hydrometeor, double extinction_per_m) {
     volume::HydrometeorField field;
     field.hydrometeor = hydrometeor;
@@ -55,7 +55,7 @@ TEST(RayProbeTest, UniformFieldsDepthIsExtinctionTimesLength) {
   Storm storm;
   storm.Add(physics::Hydrometeor::kCloud, kExtinction_per_m);
   const auto extinction = static_cast<double>(static_cast<float>(kExtinction_per_m));
-  // Through the whole domain along x, up to its faces.
+  // The ray passes the whole domain along x, up to its faces.
   const StormRay level = storm.Ray({-50000.0, 130.0, 1234.0}, {1.0, 0.0, 0.0});
   EXPECT_NEAR(level.OpticalDepth(), extinction * 10000.0, 1e-9);
   EXPECT_NEAR(level.InDomain().begin_m, 45000.0, 1e-9);
@@ -63,12 +63,12 @@ TEST(RayProbeTest, UniformFieldsDepthIsExtinctionTimesLength) {
   EXPECT_NEAR(*level.WhereDepthIs_m(0.1), 45000.0 + 0.1 / extinction, 1e-6);
   EXPECT_FALSE(level.WhereDepthIs_m(10.1).has_value());
   EXPECT_FALSE(level.Ground_m().has_value());
-  // Slanting from above to the ground.
+  // The ray slants from above to the ground.
   const glm::dvec3 slant = glm::normalize(glm::dvec3(1.0, 0.5, -1.0));
   const StormRay down = storm.Ray({-2000.0, -1000.0, 5000.0}, slant);
   EXPECT_NEAR(down.OpticalDepth(), extinction * 2500.0 / -slant.z, 2e-3) << "the ground's metre";
   EXPECT_NEAR(*down.Ground_m(), 5000.0 / -slant.z, 1.5);
-  // From inside.
+  // The ray starts inside.
   EXPECT_NEAR(storm.Ray({0.0, 0.0, 1000.0}, {0.0, 1.0, 0.0}).OpticalDepth(), extinction * 4000.0,
               1e-9);
 }
@@ -99,10 +99,10 @@ TEST(RayProbeTest, ASingleCellIsATentAroundItsMiddle) {
   cloud.concentration_kg_per_m3[storm.fields.grid.Offset(10, 8, 4)] = 0.004F;
   storm.fields.condensate = {{10, 8, 4}, {11, 9, 5}};
   const glm::dvec3 middle_m(250.0, 250.0, 1125.0);
-  // Through its middle: a triangle of two cells' width.
+  // Through the cell's middle the extinction is a triangle two cells wide.
   const StormRay through = storm.Ray({-9000.0, 250.0, 1125.0}, {1.0, 0.0, 0.0});
   EXPECT_NEAR(through.OpticalDepth(), 0.004 * 500.0, 1e-6);
-  // Through a quarter of a cell beside it along y: three quarters of that.
+  // A quarter of a cell to the side along y, the optical depth is three quarters of that.
   EXPECT_NEAR(storm.Ray({-9000.0, 375.0, 1125.0}, {1.0, 0.0, 0.0}).OpticalDepth(),
               0.75 * 0.004 * 500.0, 1e-6);
   EXPECT_EQ(storm.Ray({-9000.0, 750.0, 1125.0}, {1.0, 0.0, 0.0}).OpticalDepth(), 0.0);
@@ -115,19 +115,20 @@ TEST(RayProbeTest, ASingleCellIsATentAroundItsMiddle) {
   ASSERT_THAT(probe.distances_m, SizeIs(21));
   EXPECT_NEAR(probe.distances_m.front(), 4000.0, 1e-9);
   EXPECT_NEAR(probe.distances_m.back(), 14000.0, 1e-9);
-  // Every 500 m from the western face: two samples on the tent, in its middles' halves.
+  // Samples are every 500 m from the western face; two of them lie within the triangle.
   EXPECT_NEAR(probe.fields[0].values[10], 0.002, 1e-6);
   EXPECT_NEAR(probe.fields[0].values[11], 0.002, 1e-6);
   EXPECT_EQ(probe.fields[0].values[12], 0.0F);
   EXPECT_EQ(probe.extinctions_per_m[10], probe.fields[0].values[10]);
-  // Across a corner, where the product of three tents is of degree 3: by 3 of its 8 pieces.
+  // Across a corner, the product of three triangles is of degree 3. The optical depth is that of 3
+  // of its 8 pieces.
   const glm::dvec3 diagonal(500.0, 500.0, 250.0);
   const StormRay across = storm.Ray(middle_m - 1.5 * diagonal, diagonal);
   EXPECT_NEAR(across.OpticalDepth(), 0.004 * glm::length(diagonal) / 2.0, 1e-6)
       << "the integral of 2 u^3";
 }
 
-// Against many small steps, in fields of random values and oblique rays.
+// Compares with many small steps, in fields of random values and for oblique rays.
 TEST(RayProbeTest, RandomFieldsDepthIsThatOfSmallSteps) {
   Storm storm;
   std::mt19937 random(7);
@@ -170,7 +171,7 @@ TEST(RayProbeTest, RandomFieldsDepthIsThatOfSmallSteps) {
     EXPECT_NEAR(ray.OpticalDepth(), depth, 1e-6 * depth);
     EXPECT_NEAR(probe.fields[0].optical_depth + probe.fields[1].optical_depth, depth, 1e-6 * depth);
     EXPECT_NEAR(probe.fields[0].maximum, largest, 1e-5 * largest) << "half a step from its kink";
-    // The place of a depth has that depth before it.
+    // The optical depth in front of the returned place must be the requested one.
     const double half_m = *ray.WhereDepthIs_m(depth / 2.0);
     EXPECT_NEAR(storm.Ray(ray.At_m(half_m), direction).OpticalDepth(), depth / 2.0, 1e-6 * depth);
   }

@@ -1,5 +1,5 @@
-// A vertical ray through the sample supercell's graupel, checked against an independent reading of
-// the file.
+// Tests of a vertical ray through the sample supercell's graupel, checked against an independent
+// reading of the file.
 #include <netcdf.h>
 
 #include <array>
@@ -20,7 +20,7 @@ constexpr std::size_t kNx = 200;
 constexpr std::size_t kNy = 160;
 constexpr std::size_t kLevels = 60;
 
-// Of column (x, y) at levels of the file, or of all columns.
+// Returns the values of column (x, y) at levels of the file, or of all columns.
 std::vector<float> Raw(const char* name, std::array<std::size_t, 4> start,
                        std::array<std::size_t, 4> count) {
   int file = 0;
@@ -75,14 +75,14 @@ TEST(SampleRay, GraupelAboveAColumnIsTheFiles) {
     return (*fields)->fields[field.index].variable == "QGRAUP";
   });
   ASSERT_NE(at, probe.fields.end());
-  // Exact but for the ground's metre.
+  // The path is exact except for the last metre above the ground.
   EXPECT_NEAR(at->path_kg_per_m2 / path_kg_per_m2, 1.0, 1e-3);
-  // The largest value, in a grid whose cells are means of the layers that they overlap and whose
-  // air is its block's mean.
+  // The largest value is in a grid whose cells are means of the layers that they overlap. Its air
+  // is the mean of its block.
   EXPECT_NEAR(at->maximum / graupel[largest], 1.0, 0.03);
   EXPECT_NEAR(ray.At_m(*at->maximum_m).z, middles_m[largest / (kNx * kNy)],
               (*fields)->grid.spacing_m.z);
-  // All values, linear between the file's levels.
+  // All values must be linear between the file's levels.
   for (std::size_t i = 0; i < probe.distances_m.size(); ++i) {
     const double height_m = ray.At_m(probe.distances_m[i]).z;
     const auto above = std::ranges::upper_bound(middles_m, height_m);

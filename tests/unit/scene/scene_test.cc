@@ -74,12 +74,12 @@ TEST(Scene, EachTechniqueRerunsFromItsOwnStage) {
   EXPECT_EQ(first(Metaballs{}, Metaballs{.count = 7}), Stage::kLight);
   EXPECT_EQ(first(Reference{}, Reference{.false_colors = true}), Stage::kExtinction);
   EXPECT_EQ(first(OtherTechnique{"a", {}}, OtherTechnique{"b", {}}), Stage::kExtinction);
-  // Techniques of a medium share it where they show the same of its fields.
+  // Techniques of a medium share it if they show the same of its fields.
   const HalfAngle detailed{
       .medium = {.transport = Transport::kConsistent, .look = {.detail = true}}};
   EXPECT_EQ(first(detailed, LightVolume{}), Stage::kLight);
   EXPECT_EQ(first(HalfAngle{}, LightVolume{}), Stage::kExtinction);  // which has detail
-  EXPECT_EQ(first(HalfAngle{}, Metaballs{}), Stage::kExtinction);    // whose surfaces have it
+  EXPECT_EQ(first(HalfAngle{}, Metaballs{}), Stage::kExtinction);    // whose surfaces have detail
 }
 
 TEST(Scene, LightsCountWhereTheyAreShown) {
@@ -100,7 +100,7 @@ TEST(Scene, LightsCountWhereTheyAreShown) {
     EXPECT_EQ(first([](Lights* lights) { lights->front().color.r = 0.5; }), Stage::kView);
     EXPECT_EQ(first([](Lights* lights) { lights->front().irradiance = 0.5; }), Stage::kView);
   }
-  // A frame that says that they are not shown.
+  // The frame reports that they are not shown.
   for (const Technique& technique :
        {Technique(LightVolume{}), Technique(HalfAngle{}), Technique(Cumulus{})}) {
     before.rendering.technique = technique;
@@ -167,7 +167,7 @@ TEST(View, FramingShowsEveryCornerOfTheBox) {
   }
 }
 
-// Elevation of a world point above the horizon of the view's eye.
+// Returns the elevation of a world point above the horizon of the view's eye.
 double ElevationSeen_deg(const View& view, const glm::dvec3& point_m) {
   const glm::dvec3 ray = glm::normalize(view.local_from_world * (point_m - view.eye_m));
   return std::asin(ray.z) * 180.0 / std::numbers::pi;
@@ -183,7 +183,7 @@ TEST(SpotterView, LooksWhereItsAzimuthAndElevationSay) {
   EXPECT_LT(glm::distance(looks, Direction(70.0, 12.0)), 1e-12);
   EXPECT_LT(glm::distance(view.local_from_world * view.right, Direction(160.0, 0.0)), 1e-12);
   EXPECT_NEAR(view.altitude_m, 201.7, 1e-9);
-  // At the storm's middle there is nothing to bend.
+  // At the storm's middle the view is not tilted.
   camera.place_m = {10e3, 5e3};
   EXPECT_LT(
       glm::distance(ViewOf(camera, {200.0, {10e3, 5e3}}, 1.0).eye_m, glm::dvec3(10e3, 5e3, 201.7)),
@@ -191,8 +191,8 @@ TEST(SpotterView, LooksWhereItsAzimuthAndElevationSay) {
 }
 
 TEST(SpotterView, DistantStormsSinkBelowTheHorizon) {
-  // The triangle of the Earth's centre, the eye and a point above the storm's middle, to the third
-  // order in the angle at the centre: 8e-6 radians at 150 km.
+  // The triangle is that of the Earth's centre, the eye and a point above the storm's middle. It is
+  // accurate to third order in the angle at the centre: 8e-6 radians at 150 km.
   for (const double distance_m : {20e3, 80e3, 150e3}) {
     SpotterCamera camera;
     camera.place_m = {5e3, -distance_m};
@@ -221,7 +221,7 @@ TEST(OrbitView, SeesTheGroundFallAwayFromTheStorm) {
   const View view = ViewOf(camera, {0.0, {0.0, 0.0}}, 1.5);
   EXPECT_LT(glm::distance(view.eye_m, glm::dvec3(0.0, -100e3, 0.0)), 1e-6);
   EXPECT_NEAR(view.altitude_m, 672.7, 0.1);
-  // Level in the world is falling for the eye, whose upright leans away.
+  // A level direction in the world descends for the eye, whose vertical leans away.
   EXPECT_NEAR((view.local_from_world * view.forward).z, -100e3 / kEffectiveEarthRadius_m, 1e-5);
 }
 

@@ -40,7 +40,7 @@ TEST(ShadedAir, IsBoundedForASunOnTheHorizon) {
   EXPECT_EQ(air.from_sun.high_m.x, kStorm.high_m.x);
 }
 
-// The round Earth's ground falls below the world's plane.
+// The ground of the round Earth falls below the world's plane.
 TEST(ShadedAir, ReachesTheGroundFarFromTheStorm) {
   EXPECT_LT(ShadedAirOf(kStorm, Direction(0.0, 40.0), 0.0).from_sun.low_m.z, -2000.0);
 }

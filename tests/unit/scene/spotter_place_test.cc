@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kAspectRatio = 16.0 / 9.0;
 
-// 60 x 60 x 16 km with a tower of 4 x 4 km from 1 to 12 km at its middle; fields are cloud and
-// rain.
+// Returns a storm of 60 x 60 x 16 km with a tower of 4 x 4 km from 1 to 12 km at its middle. Its
+// fields are cloud and rain.
 volume::HydrometeorFields SpottedStorm() {
   volume::HydrometeorFields fields;
   fields.grid = {{60, 60, 32}, {1000.0, 1000.0, 500.0}, {-30e3, -30e3, 0.0}};
@@ -45,7 +45,7 @@ volume::HydrometeorFields Thunderstorm() {
   return fields;
 }
 
-// Under a sun in the zenith, which lights all sides alike.
+// Returns the spotter's camera under a sun in the zenith, which lights all sides equally.
 SpotterCamera Spotted(const volume::HydrometeorFields& fields, SpotterCamera camera = {},
                       SpottersSide side = SpottersSide::kBest,
                       const glm::dvec3& towards_sun = {0.0, 0.0, 1.0}) {
@@ -59,7 +59,7 @@ double Distance_m(const SpotterCamera& camera, const volume::HydrometeorFields& 
   return glm::distance(camera.place_m, volume::StrongestCore(fields)->place_m);
 }
 
-// Height in the picture, from -1 at its lower edge to 1 at its upper.
+// Returns the height in the picture, from -1 at its lower edge to 1 at its upper edge.
 double HeightInPicture(const SpotterCamera& camera, const volume::HydrometeorFields& fields,
                        const glm::dvec3& point_m) {
   const View view = ViewOf(camera, SiteOf(fields, camera.place_m), kAspectRatio);
@@ -72,7 +72,7 @@ double HeightOfTop(const SpotterCamera& camera, const volume::HydrometeorFields&
   return HeightInPicture(camera, fields, {core->place_m, core->top_m});
 }
 
-// The share of the picture's height below the horizon of a low eye.
+// Returns the share of the picture's height below the horizon of a low eye.
 double GroundShare(const SpotterCamera& camera) {
   const double tan_half_height = ViewOf(camera, Site(), kAspectRatio).tan_half_height;
   return 0.5 - 0.5 * std::tan(glm::radians(camera.elevation_deg)) / tan_half_height;
@@ -122,7 +122,7 @@ TEST(SpotterPlace, TheWholeTowerAndALittleGroundAreInThePicture) {
   EXPECT_GT(HeightOfTop(camera, fields), 0.5);
   EXPECT_GE(GroundShare(camera), 0.16);
   EXPECT_LE(GroundShare(camera), 0.251);
-  // Of equal sides the one from which it looks as it does by default.
+  // If all sides are equal, the spotter looks in the default direction.
   EXPECT_NEAR(camera.azimuth_deg, SpotterCamera().azimuth_deg, 1e-6);
 }
 
@@ -154,21 +154,21 @@ TEST(SpotterPlace, LowCloudsAreSeenFromNear) {
 
 TEST(SpotterPlace, ACoreAtTheEdgeIsSeenFromWithinTheDomain) {
   volume::HydrometeorFields fields = SpottedStorm();
-  // Cut by the domain's western face.
+  // The second tower is cut by the domain's western face.
   Fill(fields, 0, {0, 28, 2}, {3, 32, 24});
   EXPECT_GT(Spotted(fields).place_m.x, -30e3);
 }
 
 TEST(SpotterPlace, TheEyeIsInClearAir) {
   volume::HydrometeorFields fields = Thunderstorm();
-  // Rain over all of the domain.
+  // It rains over the whole domain.
   Fill(fields, 1, {0, 0, 0}, {60, 60, 8});
   const SpotterCamera outside = Spotted(fields);
   const auto core = volume::StrongestCore(fields);
   const volume::CoreSight sight(fields, *core);
   EXPECT_TRUE(sight.IsClear(glm::dvec3(outside.place_m, 1.7)));
   EXPECT_GT(glm::length(outside.place_m), 29e3);
-  // With a gap it is in there.
+  // With a gap in the rain the spotter stands in it.
   auto& rain = fields.fields[1].concentration_kg_per_m3;
   for (int z = 0; z < 8; ++z) {
     for (int x = 45; x < 52; ++x) {
@@ -201,7 +201,7 @@ TEST(SpotterPlace, ShowsTheTowersOfTheSampleStorm) {
     ASSERT_TRUE(fields.ok());
     const SpotterCamera camera = Spotted(**fields);
     EXPECT_GE(Distance_m(camera, **fields), 15e3);
-    // Later the anvil is overhead there.
+    // Later the anvil is overhead at that place.
     EXPECT_LE(Distance_m(camera, **fields), time < 2 ? 25e3 : 50e3);
     EXPECT_LT(HeightOfTop(camera, **fields), 0.9);
     EXPECT_GE(GroundShare(camera), 0.16);

@@ -1,5 +1,5 @@
-// The updates that the people of a session get: at a limited rate, the newest only, made once for
-// all of them; and the states that time out without anybody doing anything.
+// Tests of the updates that a session's participants receive: at a limited rate, only the newest,
+// made once for all of them. They also test the states that time out without any action.
 #include "session/audience.h"
 
 #include <atomic>
@@ -28,10 +28,10 @@ class ToldViewer : public delivery::Viewer {
 
 Ray RayTo(double x_m) { return {.origin_m = {x_m, 0.0, 0.0}}; }
 
-// Where its ray begins.
+// Returns the place where the ray begins.
 glm::dvec3 PlaceOf(const Ray& ray) { return ray.origin_m; }
 
-// A presenter, Ana and Ben, who were told of one another a minute ago.
+// A fixture with a presenter, Ana and Ben, who were told about one another a minute ago.
 class AudienceTest : public ::testing::Test {
  protected:
   AudienceTest() {
@@ -60,7 +60,8 @@ class AudienceTest : public ::testing::Test {
                             now_);
   }
 
-  // Writes the updates as texts: who asks and who steers; whose pointers are where; marks.
+  // Writes the updates as texts: who asks for control and who has it, whose pointers are where, and
+  // marks.
   AudienceFormat Format() {
     return {.presence =
                 [this](const Roster& roster) {
@@ -188,7 +189,7 @@ TEST_F(AudienceTest, PointersAreToldThirtyTimesASecondTheNewestOfThem) {
   const std::uint64_t told = audience_.Pointers().count;
   const Audience::Time start = now_;
   int searches = 0;
-  for (int i = 0; i < 1000; ++i) {  // of one millisecond
+  for (int i = 0; i < 1000; ++i) {  // one millisecond each
     ASSERT_TRUE(audience_.Point(presenter_, RayTo(i), now_).ok());
     const std::uint64_t before = audience_.Pointers().count;
     audience_.Tick(now_, [&](const Ray& ray) {
@@ -205,7 +206,7 @@ TEST_F(AudienceTest, PointersAreToldThirtyTimesASecondTheNewestOfThem) {
   EXPECT_LE(times, 31U) << "30 a second, and the first";
   EXPECT_GE(times, 28U);
   EXPECT_LE(searches, 31) << "places cost time, and those that nobody is told are not found";
-  // The last is told too.
+  // The last place is sent too.
   EXPECT_TRUE(audience_.Point(presenter_, RayTo(5000.0), now_).ok());
   const auto next = Tick();
   if (next.has_value()) now_ = *next;
@@ -324,7 +325,7 @@ TEST_F(AudienceTest, ALostConnectionIsAskedForASignOfLifeAndForgotten) {
   EXPECT_FALSE(audience_.IsThere(lost));
   EXPECT_TRUE(audience_.IsThere(*back));
   EXPECT_THAT(lost_viewer->wakes, Gt(wakes)) << "to end its call";
-  audience_.Leave(lost, now_);  // as its call ends
+  audience_.Leave(lost, now_);  // when its call ends
   EXPECT_TRUE(audience_.IsThere(*back));
 }
 
@@ -341,7 +342,7 @@ TEST_F(AudienceTest, WhoHasSaidSomethingIsNoLostConnection) {
   EXPECT_TRUE(audience_.IsThere(second));
 }
 
-// Clients decide by the first presence whether they steer.
+// Clients decide by the first presence whether they have control.
 TEST_F(AudienceTest, TheFirstPresenceIsNotOlderThanTheJoining) {
   ASSERT_TRUE(
       audience_
@@ -441,7 +442,7 @@ TEST(BoardTest, MarksAreShownWithTheDomainThatTheyWereDrawnOn) {
   EXPECT_THAT(change.erased, ElementsAre(1U));
   EXPECT_THAT(change.drawn, IsEmpty());
   ASSERT_TRUE(board.Add(1, {{}}, {}, "key").ok());
-  // Whoever is handed them over is told of those shown alone, and erases no others.
+  // The new owner is told only about the marks that are shown, and can erase only those.
   board.HandOver("key", 7);
   EXPECT_THAT(IdsOf(board.TakeMarksChange().drawn), ElementsAre(2U));
   board.Erase({}, std::nullopt);
@@ -452,7 +453,7 @@ TEST(BoardTest, MarksAreShownWithTheDomainThatTheyWereDrawnOn) {
   change = board.TakeMarksChange();
   EXPECT_THAT(IdsOf(change.drawn), ElementsAre(1U));
   EXPECT_EQ(change.drawn[0].person_id, 7U);
-  // There and back between two tellings: a client would take it off last.
+  // The domain changes there and back between two updates. A client would apply the removal last.
   board.ShowDomain("Bavaria");
   board.ShowDomain("Oklahoma");
   EXPECT_THAT(board.TakeMarksChange().erased, IsEmpty());

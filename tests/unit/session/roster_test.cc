@@ -1,4 +1,4 @@
-// The rules of control, following and marks among a session's people.
+// Tests of the rules of control, following and marks among a session's participants.
 #include "session/roster.h"
 
 #include "base/error_details.h"
@@ -15,7 +15,7 @@ const RosterTimeouts kTimeouts;
 
 std::string ReasonOf(const absl::Status& status) { return base::DetailsOf(status).reason; }
 
-// A presenter, Ana and Ben.
+// A session with a presenter, Ana and Ben.
 struct Class {
   explicit Class(const Rules& rules = {}) : roster(rules, kOpenedAt) {
     presenter = roster.Join(Role::kPresenter, "Teacher", kOpenedAt);
@@ -232,7 +232,7 @@ TEST(RosterTest, ControlOfAnAbsentPresenterBecomesFreeIfChosen) {
   EXPECT_FALSE(group.roster.presenter_away());
   ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt + kTimeouts.away).ok());
   EXPECT_EQ(group.roster.steering(), group.ana);
-  // A presenter who comes back does not take it by coming.
+  // A presenter who comes back does not get control merely by returning.
   const std::uint64_t back = group.roster.Join(Role::kPresenter, "Teacher", kOpenedAt);
   EXPECT_EQ(group.roster.steering(), group.ana);
   EXPECT_TRUE(group.roster.TakeControl(back).ok());
@@ -253,7 +253,7 @@ TEST(RosterTest, SecondPresenterTakesOverFromOneWhoLeaves) {
   EXPECT_EQ(group.roster.steering(), second);
 }
 
-// Two presenters with keys, and Ana with a key; the first presenter steers.
+// A session with two presenters with keys, and Ana with a key. The first presenter has control.
 struct ClassWithKeys {
   ClassWithKeys() : roster({.free_when_away = true}, kOpenedAt) {
     presenter = roster.Join(Role::kPresenter, "Teacher", kOpenedAt, "teacher");
@@ -294,7 +294,7 @@ TEST(RosterTest, ControlOfAPresenterWhoStaysAwayGoesToAnother) {
   group.roster.Advance(kOpenedAt + kTimeouts.come_back);
   EXPECT_EQ(group.roster.steering(), group.tablet);
   EXPECT_GT(group.roster.revision(), before);
-  // Who comes later takes it by the button.
+  // A presenter who comes back later takes control by the button.
   group.roster.Join(Role::kPresenter, "Teacher", kOpenedAt + seconds(20), "teacher");
   EXPECT_EQ(group.roster.steering(), group.tablet);
 }
@@ -320,7 +320,7 @@ TEST(RosterTest, AViewerWhoSteersAndReconnectsSteersAgain) {
   const std::uint64_t ben = group.roster.Join(Role::kViewer, "Ben", kOpenedAt, "ben");
   ASSERT_TRUE(group.roster.AskControl(ben, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), 0U);
-  // The key is no key to another role.
+  // A key is valid only for its role.
   group.roster.Join(Role::kPresenter, "Ana", kOpenedAt, "ana");
   EXPECT_EQ(group.roster.steering(), 0U);
   const std::uint64_t back = group.AnaAgain(kOpenedAt + seconds(5));
@@ -385,7 +385,8 @@ TEST(RosterTest, OnANewServerControlWaitsForTheViewerWhoSteered) {
   EXPECT_EQ(waited.awaited(), nullptr);
 }
 
-// As after a change of network: the server has not noticed yet that the first connection is lost.
+// This happens after a change of network: the server has not yet noticed that the first connection
+// is lost.
 TEST(RosterTest, WhoComesBackReplacesALostConnectionThatGivesNoSignOfLife) {
   ClassWithKeys group;
   ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());
@@ -404,7 +405,7 @@ TEST(RosterTest, WhoComesBackReplacesALostConnectionThatGivesNoSignOfLife) {
   EXPECT_EQ(group.roster.steering(), back);
 }
 
-// As behind a large picture on a slow link.
+// The answer may be delayed, for example behind a large picture on a slow link.
 TEST(RosterTest, TheTimeForASignOfLifeCountsFromTheQuestion) {
   ClassWithKeys group;
   group.AnaAgain(kOpenedAt);
@@ -440,7 +441,7 @@ TEST(RosterTest, ARequestThatWasRefusedByLockingDoesNotComeBack) {
   EXPECT_FALSE(group.roster.Find(group.AnaAgain(kOpenedAt + seconds(1)))->asks);
 }
 
-// A duplicated tab brings the key of the tab that it was made from, which is well.
+// A duplicated tab brings the key of the original tab, whose connection is intact.
 TEST(RosterTest, WhoGivesASignOfLifeStaysAndSteersOn) {
   ClassWithKeys group;
   ASSERT_TRUE(group.roster.GiveControl(group.presenter, group.ana, kOpenedAt).ok());

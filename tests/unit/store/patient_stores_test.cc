@@ -1,4 +1,4 @@
-// A state file whose storage hangs: callers are answered in time, and so is its end.
+// Tests of a state file whose storage hangs: calls and the shutdown must return in time.
 #include "store/patient_stores.h"
 
 #include <atomic>
@@ -46,7 +46,7 @@ class Storage {
 class Sessions final : public session::SessionStore {
  public:
   explicit Sessions(std::shared_ptr<Storage> storage) : storage_(std::move(storage)) {}
-  // A database writes as it is closed.
+  // A database writes when it is closed.
   ~Sessions() override { (void)storage_->Use(); }
   absl::Status Save(const std::vector<SessionRecord>&) override { return storage_->Use(); }
   absl::Status Remove(const std::vector<std::string>&) override { return storage_->Use(); }
@@ -77,7 +77,7 @@ class PatientStoresTest : public ::testing::Test {
     EXPECT_TRUE(base::DetailsOf(status).retry_after.has_value());
   }
 
-  // Uses the storage while it hangs, for as long as there is patience.
+  // Uses the storage while it hangs, until the timeout.
   template <typename Use>
   auto UseInVain(Use use) {
     const int begun = storage_->begun;
@@ -87,7 +87,8 @@ class PatientStoresTest : public ::testing::Test {
     return hangs.get();
   }
 
-  // It moves only where a test moves it. A call that is left behind outlives the test.
+  // The time advances only where a test advances it. It is static because an abandoned call
+  // outlives the test.
   static ManualTime& Time() {
     static ManualTime time;
     return time;
@@ -116,9 +117,9 @@ TEST_F(PatientStoresTest, GiveWhatTheStoresGive) {
 TEST_F(PatientStoresTest, AreUnavailableWhileTheStorageHangs) {
   storage_->Hang();
   ExpectHangs(UseInVain([&] { return sessions_->Save({}); }));
-  // That it hangs is known: these end while time stands still.
+  // The hang is known, so these calls end while time stands still.
   for (int i = 0; i < 20; ++i) ExpectHangs(sessions_->Remove({}));
-  // Of the same file, though it would answer.
+  // The job store has the same file, so its calls are refused, although the storage would answer.
   ExpectHangs(jobs_->Add({}));
   EXPECT_EQ(storage_->uses, 0);
   storage_->Answer();
@@ -130,7 +131,7 @@ TEST_F(PatientStoresTest, AreUnavailableWhileTheStorageHangs) {
 TEST_F(PatientStoresTest, EndWhileTheStorageHangs) {
   storage_->Hang();
   ExpectHangs(UseInVain([&] { return sessions_->Save({}); }));
-  // While time stands still.
+  // Time stands still meanwhile.
   sessions_.reset();
   jobs_.reset();
   EXPECT_EQ(storage_->uses, 0) << "it stays open";

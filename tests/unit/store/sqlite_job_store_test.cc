@@ -1,4 +1,5 @@
-// Render jobs as they come back, and the keeping of a file of sessions from before jobs existed.
+// Tests of how render jobs are restored, and that a file of sessions from before jobs existed is
+// kept.
 #include "store/sqlite_job_store.h"
 
 #include <sqlite3.h>
@@ -91,7 +92,7 @@ TEST_F(SqliteJobStoreTest, RemovesAJobWithItsPictures) {
   ASSERT_TRUE(store->Add(JobRecordOf("a", 2)).ok());
   ASSERT_TRUE(store->Add(JobRecordOf("b", 2)).ok());
   ASSERT_TRUE(store->Remove({"a", "gone"}).ok());
-  // The pictures of "a" would be in its way.
+  // Leftover pictures of the removed "a" would conflict with the new job.
   ASSERT_TRUE(store->Add(JobRecordOf("a", 1)).ok());
   EXPECT_THAT(*store->Load(), SizeIs(2));
 }

@@ -1,4 +1,5 @@
-// The store's file: what comes back, who may read it, and which files are refused with what words.
+// Tests of the store's file: what is restored, who may read it, and which files are refused with
+// which messages.
 #include "store/sqlite_session_store.h"
 
 #include <sqlite3.h>
@@ -45,7 +46,7 @@ SessionRecord SessionRecordOf(const std::string& id) {
   return record;
 }
 
-// Runs SQL on the file behind the store's back.
+// Runs SQL on the file without the store's knowledge.
 void Execute(const std::string& path, const std::string& sql) {
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
@@ -83,7 +84,7 @@ class SqliteSessionStoreTest : public ::testing::Test {
     return status;
   }
 
-  // The records that a later run finds.
+  // Returns the records that a later run finds.
   std::vector<SessionRecord> Loaded() const {
     const auto records = Open()->Load();
     EXPECT_TRUE(records.ok()) << records.status();
@@ -139,7 +140,7 @@ TEST_F(SqliteSessionStoreTest, MarksOfAFileWithoutOwnersComeBackWithoutThem) {
     mark.domain.clear();
   }
   EXPECT_THAT(Loaded(), ElementsAre(without_owners));
-  // They are written although the marks are the same.
+  // The owners are written although the marks are the same.
   ASSERT_TRUE(Open()->Save({SessionRecordOf("a")}).ok());
   EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
 }
@@ -150,7 +151,7 @@ TEST_F(SqliteSessionStoreTest, AllRecordsAreSavedOrNone) {
   const auto store = Open();
   EXPECT_FALSE(store->Save({SessionRecordOf("a"), same_key}).ok());
   EXPECT_TRUE(store->Load()->empty());
-  // It goes on after the error.
+  // The store still works after the error.
   EXPECT_TRUE(store->Save({SessionRecordOf("a")}).ok());
 }
 
@@ -195,7 +196,7 @@ TEST_F(SqliteSessionStoreTest, WhatWasSavedOutlivesAKilledProcess) {
   char done = 0;
   ASSERT_EQ(read(saved[0], &done, 1), 1);
   EXPECT_EQ(done, 'y');
-  // While that process has it open.
+  // The other process has the file open meanwhile.
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
@@ -258,7 +259,7 @@ TEST(MarkBytesTest, CutBytesAreAnError) {
   }
   EXPECT_EQ(accepted, 2) << "nothing, and the first mark alone";
   std::string long_one = whole;
-  long_one[5 * 8 + 7] = '\x7f';  // of the number of positions
+  long_one[5 * 8 + 7] = '\x7f';  // in the number of positions
   EXPECT_FALSE(store::MarksFrom(long_one).ok());
 }
 

@@ -1,5 +1,5 @@
-// Files that cannot be read give one clear error that names the file and the cause; never a crash,
-// never half a storm.
+// Tests that unreadable files give one clear error that names the file and the cause, and never a
+// crash or half a storm.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using testing::WrfFormat;
 
 class BrokenFiles : public ::testing::Test {
  protected:
-  // The first error from opening the storm to reading the fields of its first time.
+  // Returns the first error between opening the storm and reading the fields of its first time.
   absl::Status Read() {
     auto store = storm_store::StormStore::Open({path_}, {.read_ahead = 0});
     if (!store.ok()) return store.status();

@@ -1,5 +1,5 @@
-// CF files as storms: axes in any order and direction, quantities by standard name or name, clear
-// errors for files that lack something.
+// Tests of CF files as storms: axes in any order and direction, quantities by standard name or
+// name, clear errors for incomplete files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ using testing::SyntheticCf;
 using testing::TemporaryFolder;
 using Index = std::map<std::string, std::size_t>;
 
-// Different in every cell, all above zero.
+// Returns a value that differs in every cell and is above zero.
 double Value(std::size_t x, std::size_t y, std::size_t z) {
   return 1e-3 * static_cast<double>(1 + x + 10 * y + 100 * z);
 }
@@ -133,7 +133,7 @@ TEST_F(CfReader, DepthsPointDown) {
   ExpectValues(**fields);
 }
 
-// The names are meaningless; each axis has one other attribute that identifies it.
+// The names are meaningless. Each axis is identified by a different attribute.
 TEST_F(CfReader, AxesAreKnownByAttributesStandardNamesOrUnits) {
   SyntheticCf file = Small();
   file.coordinates[0] = {"a", Middles(4, 0.0, 0.1), {{"units", "km"}, {"axis", "X"}}, {}};
@@ -161,7 +161,7 @@ TEST_F(CfReader, SingleCellsHaveTheSizeOfTheirBounds) {
   file.coordinates[2].faces = {};
   file.coordinates[2].values = {0.0};
   ExpectError(file, "bounds");
-  // A slice of one cell at 0 is as wide as its other cells.
+  // In a slice of one cell at 0, the missing width is taken from the other cells.
   file = ExtinctionFile(4, 1, 1, 100.0, 1.0, 50.0, Value);
   file.coordinates[1].values = {0.0};
   const auto slice = Read(file);
@@ -169,7 +169,8 @@ TEST_F(CfReader, SingleCellsHaveTheSizeOfTheirBounds) {
   EXPECT_EQ((*slice)->grid.spacing_m, glm::dvec3(100.0, 100.0, 50.0));
 }
 
-// Layers of 50, 50, 100 and 200 m become eight of 50 m, each wholly of one layer.
+// Layers of 50, 50, 100 and 200 m become eight layers of 50 m, each entirely within one original
+// layer.
 TEST_F(CfReader, UnevenLayersBecomeEvenOnesExactlyWhereTheyCan) {
   SyntheticCf file = ExtinctionFile(2, 2, 4, 100.0, 100.0, 1.0, Value);
   file.coordinates[2].values = {25.0, 75.0, 150.0, 300.0};
@@ -183,7 +184,7 @@ TEST_F(CfReader, UnevenLayersBecomeEvenOnesExactlyWhereTheyCan) {
   }
 }
 
-// Layers that stretch by 7.3 % each: the column's optical depth is kept.
+// Each layer is 7.3 % thicker than the one below. The column's optical depth must be kept.
 TEST_F(CfReader, UnevenLayersKeepTheirOpticalDepth) {
   SyntheticCf file = ExtinctionFile(1, 1, 20, 100.0, 100.0, 1.0, Value);
   std::vector<double> faces = {0.0};
@@ -256,7 +257,7 @@ CfContent UniformField(const std::string& name, const std::string& units, double
   return {name, {"y", "z", "x"}, {{"units", units}}, [value](const Index&) { return value; }};
 }
 
-// Mixing ratios times the density of the air that they refer to.
+// Mixing ratios are multiplied by the density of the air that they refer to.
 TEST_F(CfReader, MixingRatiosTakeTheAirsDensity) {
   const double q_v = 0.01;
   const double dry = physics::DryAirDensity_kg_per_m3(9e4, 290.0, q_v);
@@ -296,7 +297,7 @@ TEST_F(CfReader, TimesAreRecords) {
   EXPECT_EQ(info_.times[1].valid_time, "2013-05-20T19:30:30Z");
 }
 
-// One time, in these units.
+// Returns a file with one time in these units.
 SyntheticCf Timed(const std::string& units, double time) {
   SyntheticCf file = Small();
   file.coordinates.push_back({"time", {time}, {{"units", units}}, {}});
@@ -312,7 +313,7 @@ TEST_F(CfReader, TimesCountFromTheDateOfTheirUnits) {
       {"days since 2012-02-28", 1.0, "2012-02-29T00:00:00Z"},
       {"days since 2013-02-28", 1.0, "2013-03-01T00:00:00Z"},
       {"minutes since 0001-01-01 00:00:00", 20.0, "0001-01-01T00:20:00Z"},
-      {"min", 20.0, "0001-01-01T00:20:00Z"},  // of an idealised run
+      {"min", 20.0, "0001-01-01T00:20:00Z"},  // from an idealised run
       {"", 20.0, "0001-01-01T00:00:00Z"},
   };
   for (const auto& [units, time, expected] : cases) {
@@ -346,7 +347,7 @@ TEST_F(CfReader, TimesOfOtherCalendarsAreRefused) {
     file.coordinates.back().attributes["calendar"] = calendar;
     ExpectError(file, "counts in the calendar '" + calendar + "'");
   }
-  // CF's default calendar has two days more in the years since 1.
+  // CF's default calendar has two more days in the years since 1.
   file = Timed("hours since 0001-01-01 00:00:00", 17'637'120.0);
   ExpectError(file, "across the change of calendars in 1582");
   file.coordinates.back().attributes["calendar"] = "proleptic_gregorian";
@@ -487,7 +488,7 @@ TEST_F(CfReader, AmountsInUnknownUnitsAreRefused) {
                                   "kg kg-2", "(not text)", "%"}) {
     ExpectError(Water("lwc", {{"units", units}}, 1e-3), "lwc has units '" + units + "'");
   }
-  // "Mm-1", as of aerosols, is not "mm-1".
+  // "Mm-1", used for aerosols, is not "mm-1".
   for (const std::string units : {"Mm-1", "mm-1", "kg m-3", "cm-1"}) {
     SyntheticCf file = Small();
     file.variables[0].attributes["units"] = units;
@@ -505,7 +506,7 @@ TEST_F(CfReader, AmountsInUnknownUnitsAreRefused) {
   }
 }
 
-// Units that are a number say nothing, and are not absent either.
+// Units that are a number carry no meaning, but do not count as absent either.
 TEST_F(CfReader, UnitsThatAreNoTextAreRefused) {
   SyntheticCf file = Small();
   file.number_attributes["extinction"]["units"] = 1.0;
@@ -527,7 +528,7 @@ TEST_F(CfReader, AirWithoutUnitsIsTakenToBeInThoseOfTheSi) {
   EXPECT_THAT(log.Text(), HasSubstr("rho has no units"));
 }
 
-// Cloud water below ice, and wind that grows with height: two layers of 50 m.
+// Returns cloud water below ice, and wind that grows with height, in two layers of 50 m.
 SyntheticCf Windy() {
   SyntheticCf file = Water("lwc", {{"units", "kg m-3"}}, 0.0);
   file.variables[0].value = [](const Index& at) { return at.at("z") == 0 ? 1e-3 : 0.0; };
@@ -552,8 +553,8 @@ TEST_F(CfReader, TurbulenceIsThatOfTheWindsDeformation) {
   EXPECT_EQ(motion.shear_m_per_s, glm::dvec2(6.0, 0.0));
   EXPECT_EQ(motion.steering_m_per_s, glm::dvec2(7.0, -3.0));
   ASSERT_THAT(motion.ascent, SizeIs((*fields)->grid.CellCount()));
-  EXPECT_EQ(motion.ascent[7], 8);  // in 0.25 m/s
-  // Shear of 6 m/s on 50 m, in cells of 100 x 200 x 50 m.
+  EXPECT_EQ(motion.ascent[7], 8);  // in units of 0.25 m/s
+  // The shear is 6 m/s over 50 m, in cells of 100 x 200 x 50 m.
   const double root = 0.4 * std::cbrt(100.0 * 200.0 * 50.0) * 6.0 / 50.0;
   ASSERT_THAT(motion.turbulence, SizeIs((*fields)->grid.CellCount()));
   EXPECT_NEAR(motion.turbulence[7], 255.0 * root * root / (root * root + 0.25), 1.0);
@@ -568,7 +569,7 @@ TEST_F(CfReader, TurbulenceIsTheFilesOwnWhereItHasSome) {
   EXPECT_EQ((*fields)->motion.variable, "tke");
   EXPECT_EQ((*fields)->motion.turbulence[7], 128);
   EXPECT_EQ((*fields)->motion.shear_m_per_s, glm::dvec2(6.0, 0.0));
-  // Without one component there is no wind; the energy stays.
+  // If one component is missing there is no wind, but the energy remains.
   file.variables.erase(file.variables.begin() + 4);
   fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
@@ -577,7 +578,7 @@ TEST_F(CfReader, TurbulenceIsTheFilesOwnWhereItHasSome) {
 }
 
 TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
-  // Pressure velocity; wind on a grid of its own, as CM1 has it; missing values.
+  // The cases are pressure velocity, wind on a separate grid (as in CM1), and missing values.
   SyntheticCf file = Windy();
   file.variables[4].attributes["units"] = "Pa s-1";
   const CapturedLog log;

@@ -1,4 +1,4 @@
-// Dates and units of time: each is read as it is meant, or not at all.
+// Tests of dates and units of time: each is read correctly or refused.
 #include "storm_files/date_time.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST(ParseDateTime, KnowsLeapYears) {
   }
 }
 
-// A place six hours west of UTC is behind it.
+// A place six hours west of UTC has an earlier local time.
 TEST(ParseDateTime, TakesOffsetsFromUtcOff) {
   const absl::Time noon = At(2013, 5, 20, 12);
   for (const char* text :
@@ -59,7 +59,8 @@ TEST(ParseDateTime, ReadsNothingElse) {
         "2013-04-31", "20130520", "20-05-2013", "05-20-2013", "2013/05/20", "2013-May-20",
         "+2013-05-20", "-2013-05-20", "12013-05-20", "2013-05-20T", "2013-05-20_", "2013-05-20 x",
         "2013-+5-20", "2013- 5-20",
-        // Times of day; 24:00 is the next day's 0:00, and calendars of models have no leap seconds.
+        // Times of day: 24:00 is 0:00 of the next day, and the calendars of models have no leap
+        // seconds.
         "2013-05-20 24:00:00", "2013-05-20 24:00", "2013-05-20 25:00:00", "2013-05-20 99:99:99",
         "2013-05-20 18:60:00", "2013-05-20 18:00:60", "2016-12-31 23:59:60", "2013-05-20 1800",
         "2013-05-20 18:", "2013-05-20 18:00:", "2013-05-20 -1:00:00", "2013-05-20 18:000:00",

@@ -1,6 +1,6 @@
-// HDF5 files that keep values outside themselves, and variables of types that netCDF-C does not
-// know. Both come from attackers: the first shows other files of the server's user, the second
-// makes netCDF-C write past its memory.
+// Tests of HDF5 files that store values outside themselves, and of variables with types that
+// netCDF-C does not know. Both come from attackers. The first would show other files of the
+// server's user, and the second makes netCDF-C write past its memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -37,7 +37,7 @@ class ForeignLayoutsTest : public ::testing::Test {
     if (file_ >= 0) H5Fclose(file_);
   }
 
-  // Puts another dataset in the place of QCLOUD.
+  // Replaces QCLOUD by another dataset.
   void ReplaceCloud(hid_t type, hid_t creation) {
     ASSERT_GE(H5Ldelete(file_, "QCLOUD", H5P_DEFAULT), 0);
     const hid_t made =
@@ -46,7 +46,7 @@ class ForeignLayoutsTest : public ::testing::Test {
     H5Dclose(made);
   }
 
-  // The first error from opening the storm to reading its fields, as a storm on disk.
+  // Returns the first error between opening the storm and reading its fields, as a storm on disk.
   absl::Status Read() {
     H5Fclose(file_);
     file_ = -1;
@@ -55,7 +55,7 @@ class ForeignLayoutsTest : public ::testing::Test {
     return (*store)->Get((*store)->Storms()[0]->id, 0, {}).status();
   }
 
-  // What is said of the same bytes in memory, as the confined reader has them.
+  // Returns the result of checking the same bytes in memory, as the confined reader does.
   absl::Status LookAtBytes() {
     std::ifstream file(path_, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(file), {});
@@ -86,7 +86,7 @@ TEST_F(ForeignLayoutsTest, ASoundFileIsRead) {
 TEST_F(ForeignLayoutsTest, ExternalStorageIsRefused) {
   const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_external(creation, secret_.c_str(), 0, H5F_UNLIMITED);
-  // The dimension of time must not grow with external storage.
+  // A dataset with external storage must not have an unlimited time dimension.
   hsize_t lengths[H5S_MAX_RANK];
   const int rank = H5Sget_simple_extent_dims(space_, lengths, nullptr);
   space_ = H5Screate_simple(rank, lengths, nullptr);
@@ -118,7 +118,7 @@ TEST_F(ForeignLayoutsTest, ALinkToAnotherFileIsFoundInAGroup) {
   ExpectRefused("link to another file");
 }
 
-// NetCDF-C would follow such links without end.
+// NetCDF-C would follow such links forever.
 TEST_F(ForeignLayoutsTest, CirclesOfGroupsAreRefused) {
   ASSERT_GE(H5Lcreate_hard(file_, "/", file_, "root", H5P_DEFAULT, H5P_DEFAULT), 0);
   ExpectRefused("second link to a group");

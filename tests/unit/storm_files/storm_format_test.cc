@@ -1,5 +1,5 @@
-// A format defined here alone is recognised, described and read as the built-in ones are; a file of
-// several formats or of none is one clear error.
+// Tests that a format defined only here is recognised, described and read like the built-in
+// formats. A file of several formats or of none must give one clear error.
 #include "storm_files/storm_format.h"
 
 #include <gmock/gmock.h>
@@ -24,7 +24,8 @@ using testing::SyntheticWrf;
 using testing::TemporaryFolder;
 using testing::WrfCell;
 
-// A toy file is text: "toy N C", a cube of N cells a side with C kg/m3 of rain in each.
+// A reader of toy files. A toy file is the text "toy N C": a cube of N cells a side with C kg/m3 of
+// rain in each.
 class ToyReader final : public RecordReader {
  public:
   explicit ToyReader(std::string path) : path_(std::move(path)) {}
@@ -86,7 +87,7 @@ class ToyFormat final : public StormFormat {
   }
 };
 
-// Fits every netCDF file with the given closeness; cannot describe any.
+// A format that matches every netCDF file with the given closeness, but cannot describe any.
 class Greedy final : public StormFormat {
  public:
   explicit Greedy(FormatFit fit) : fit_(fit) {}

@@ -31,9 +31,10 @@ double Path(const VerticalGrid& grid, const std::vector<float>& cells) {
   return path;
 }
 
-// Layer 1 (100 to 300 m) has the central slope (4 - 1) / (450 - 50) = 0.0075 per m, below the limit
-// 2 * 1 / 200 = 0.01; the outer layers are flat. Cell 0 holds 100 * 1 from layer 0 and from layer 1
-// 50 * (2 + 0.0075 * (125 - 200)) = 71.875; cell 1 holds 150 * (2 + 0.0075 * 25) = 328.125.
+// Layer 1 (100 to 300 m) has the central slope (4 - 1) / (450 - 50) = 0.0075 per m. That is below
+// the limit 2 * 1 / 200 = 0.01. The outer layers are flat. Cell 0 contains 100 * 1 from layer 0 and
+// 50 * (2 + 0.0075 * (125 - 200)) = 71.875 from layer 1. Cell 1 contains 150 * (2 + 0.0075 * 25) =
+// 328.125.
 TEST(VerticalRemap, AgreesWithAColumnComputedByHand) {
   const VerticalGrid grid{0.0, 150.0, 4};
   EXPECT_THAT(RemapColumns({0, 100, 300, 600}, {1, 2, 4}, 3, 1, grid),
@@ -41,9 +42,9 @@ TEST(VerticalRemap, AgreesWithAColumnComputedByHand) {
                           FloatEq(4), FloatEq(4)));
 }
 
-// Of neighbours 1 and 100 the smaller step decides: 2 * 1 / 100 per m, so the top half of the
-// middle layer holds 2 + 0.02 * 25 = 2.5, the lower 1.5, and neither leaves the range of its
-// neighbours.
+// With the neighbours 1 and 100, the smaller step limits the slope: 2 * 1 / 100 per m. The top half
+// of the middle layer therefore has 2 + 0.02 * 25 = 2.5, and the lower half 1.5. Neither leaves the
+// range of its neighbours.
 TEST(VerticalRemap, LimitsTheSlopeSoThatNoNewExtremeAppears) {
   const VerticalGrid grid{0.0, 50.0, 6};
   EXPECT_THAT(RemapColumns({0, 100, 200, 300}, {1, 2, 100}, 3, 1, grid),
@@ -70,7 +71,7 @@ TEST(VerticalRemap, PreservesThePathOfRandomColumnsAndStaysWithinTheirRange) {
     const VerticalGrid grid = ChooseVerticalGrid(interfaces_m, 40, 1);
     ASSERT_GT(grid.cells, 0);
     const std::vector<float> cells = RemapColumns(interfaces_m, concentration, 40, 1, grid);
-    // Single precision sums of some hundred terms.
+    // The sums have some hundred terms in single precision.
     EXPECT_NEAR(Path(grid, cells) / Path(interfaces_m, concentration), 1.0, 1e-5);
     const float largest = *std::max_element(concentration.begin(), concentration.end());
     EXPECT_THAT(cells, Each(::testing::AllOf(::testing::Ge(0.0F),
@@ -92,7 +93,7 @@ TEST(VerticalRemap, PutsWhatLiesOutsideTheGridIntoItsEndCells) {
               ElementsAre(FloatNear(3, 1e-6F), FloatNear(7, 1e-6F)));
 }
 
-// 20 columns are more than one block and not two; each is told apart by its mass.
+// 20 columns are more than one block and less than two. The mass identifies each column.
 TEST(VerticalRemap, KeepsColumnsApart) {
   constexpr int kColumns = 20;
   std::vector<float> interfaces_m(3 * kColumns);
@@ -111,7 +112,7 @@ TEST(VerticalRemap, KeepsColumnsApart) {
   }
 }
 
-// Eight layers of 100 m: 8.04 cells with the room above, so nine.
+// Eight layers of 100 m need 8.04 cells with the space above, so there are nine.
 TEST(ChooseVerticalGrid, IsAsFineAsEqualLayersWithRoomAbove) {
   std::vector<float> interfaces_m;
   for (int k = 0; k <= 8; ++k) interfaces_m.push_back(100.0F * k + 30.0F);
@@ -122,7 +123,7 @@ TEST(ChooseVerticalGrid, IsAsFineAsEqualLayersWithRoomAbove) {
 }
 
 TEST(ChooseVerticalGrid, HasAtMostAQuarterMoreCellsThanLevels) {
-  // Layers from 10 m to 1.3 km, as over land; the thinnest would need 1,000 cells.
+  // Layers are from 10 m to 1.3 km thick, as over land. The thinnest would require 1,000 cells.
   std::vector<float> interfaces_m = {0.0F};
   for (int k = 0; k < 40; ++k) {
     interfaces_m.push_back(interfaces_m.back() + 10.0F * std::pow(1.13F, static_cast<float>(k)));

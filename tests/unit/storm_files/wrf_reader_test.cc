@@ -1,5 +1,5 @@
-// Reading of synthetic files whose contents are known: terrain, subsets of fields, packing, missing
-// values.
+// Tests of reading synthetic files with known contents: terrain, subsets of fields, packing,
+// missing values.
 #include "storm_files/wrf_reader.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ using testing::TemporaryFolder;
 using testing::WrfCell;
 using testing::WrfFormat;
 
-// Density of SyntheticWrf's air: 80 kPa, 310 K, 10 g/kg (see layer_air_test).
+// The density of SyntheticWrf's air: 80 kPa, 310 K, 10 g/kg (see layer_air_test).
 constexpr double kDensity_kg_per_m3 = 0.94321;
 
 class WrfReader : public ::testing::Test {
@@ -59,7 +59,7 @@ TEST_F(WrfReader, GivesTheMassOfUniformCloud) {
   const auto fields = Read(Uniform(1e-3));
   ASSERT_TRUE(fields.ok()) << fields.status();
   const volume::RegularGrid& grid = fields->grid;
-  EXPECT_EQ(grid.cells, glm::ivec3(4, 3, 9));  // 8 layers of 500 m and room above
+  EXPECT_EQ(grid.cells, glm::ivec3(4, 3, 9));  // 8 layers of 500 m and space above
   EXPECT_NEAR(grid.spacing_m.z, 500.0, 1e-2);
   EXPECT_EQ(grid.spacing_m.x, 1000.0);
   EXPECT_EQ(grid.spacing_m.y, 2000.0);
@@ -85,7 +85,8 @@ TEST_F(WrfReader, ReadsEveryFormatOfNetcdf) {
   }
 }
 
-// Every cell that lies wholly within its column holds the same mass; none lies below the ground.
+// Every cell that lies entirely within its column has the same mass, and none lies below the
+// ground.
 TEST_F(WrfReader, FollowsSlopingTerrain) {
   SyntheticWrf file = Uniform(2e-3);
   file.nx = 20;
@@ -149,7 +150,7 @@ TEST_F(WrfReader, ReadsAnySubsetOfFieldsInTheirOrder) {
 TEST_F(WrfReader, HoldsNoArrayForAFieldThatIsZero) {
   SyntheticWrf file = Uniform(1e-3);
   file.mixing_ratios["QICE"] = [](const WrfCell&) { return 0.0; };
-  file.mixing_ratios["QSNOW"] = [](const WrfCell&) { return 1e-42; };  // denormal: as good as zero
+  file.mixing_ratios["QSNOW"] = [](const WrfCell&) { return 1e-42; };  // denormal, counts as zero
   const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   ASSERT_EQ(fields->fields.size(), 3U);
@@ -181,7 +182,7 @@ TEST_F(WrfReader, UnpacksShorts) {
 
 TEST_F(WrfReader, CountsNegativesAndMissingValuesAndDrawsNeither) {
   SyntheticWrf file = Uniform(1e-3);
-  file.fill_values["QCLOUD"] = 0.25;  // an odd choice, but the file's own
+  file.fill_values["QCLOUD"] = 0.25;  // an unusual value, but it is the file's own
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   file.stored_values = {
@@ -223,8 +224,8 @@ TEST_F(WrfReader, TakesCellsWithoutAirAsMissing) {
   EXPECT_NEAR(ColumnPath(*fields, 0, 3, 1), 8 * layer, 1e-4);
 }
 
-// The top layer holds all the mass: it must not be cut off when the layers of a later time rise
-// above the grid.
+// The top layer has all the mass. It must not be cut off when the layers of a later time rise above
+// the grid.
 TEST_F(WrfReader, AddsCellsForCondensateAboveTheStormsGrid) {
   SyntheticWrf file;
   file.mixing_ratios["QICE"] = [](const WrfCell& cell) { return cell.level == 7 ? 1e-3 : 0.0; };

@@ -15,7 +15,7 @@ using testing::BorderSegment;
 using testing::PaintedAt;
 using testing::SegmentThrough;
 
-// Columns of 1 km.
+// Returns a grid with columns of 1 km.
 volume::RegularGrid Columns(int count) {
   volume::RegularGrid grid;
   grid.cells = {count, count, 1};
@@ -33,7 +33,7 @@ StormInfo StormAt(const volume::EarthPlace& middle, const std::string& proj) {
   return storm;
 }
 
-// From west to east through a place.
+// Returns a segment from west to east through a place.
 BorderSegment Through(const glm::dvec2& place, int level = 1) {
   return SegmentThrough({place - glm::dvec2(0.1, 0.0), place + glm::dvec2(0.1, 0.0)}, level);
 }
@@ -65,7 +65,8 @@ TEST_F(BorderDataTest, IsFoundWhereCoastsAndBordersAre) {
   EXPECT_EQ(BorderData::Find(folder_.Path().string()), nullptr);
 }
 
-// Places of PROJ 9.1.1, as in map_projection_test.cc: two parallels, the south, the date line.
+// The places are from PROJ 9.1.1, as in map_projection_test.cc: two parallels, the south, the date
+// line.
 TEST_F(BorderDataTest, LinesAreWhereTheirPlacesAreProjected) {
   const glm::dvec2 there_m(120e3, -80e3);
   struct Case {
@@ -84,7 +85,8 @@ TEST_F(BorderDataTest, LinesAreWhereTheirPlacesAreProjected) {
     for (int step = -1000; step <= 1000; ++step) {
       painted += PaintedAt(*map, there_m + glm::dvec2(0.0, 10.0 * step)) * 10.0;
     }
-    // 120 m across, a little more where the parallel is not from west to east on the map.
+    // The line is 120 m wide, and a little more where the parallel does not run from west to east
+    // on the map.
     EXPECT_NEAR(painted, 122.0, 3.0);
   }
   const StormInfo pacific = StormAt({12.0, -179.5}, "+proj=merc +lat_ts=15 +lon_0=120");
@@ -92,8 +94,8 @@ TEST_F(BorderDataTest, LinesAreWhereTheirPlacesAreProjected) {
   EXPECT_GT(PaintedAt(*Map(pacific), {-120e3, -80e3}), 0.99F);
 }
 
-// A parallel is a curve on a conic map: 3 km off the straight line between meridians 5 degrees
-// apart, though its segment has two points.
+// On a conic map a parallel is a curve. It is 3 km off the straight line between meridians 5
+// degrees apart, although its segment has two points.
 TEST_F(BorderDataTest, ParallelsAreCurves) {
   Write({}, {SegmentThrough({{-99.0, 36.7}, {-94.0, 36.7}})});
   const auto projection = volume::MapProjection::Of(plains_.projection, {36.7, -96.2});
@@ -104,7 +106,7 @@ TEST_F(BorderDataTest, ParallelsAreCurves) {
   }
 }
 
-// One of the 65536 values is netCDF's code for a missing one.
+// One of the 65536 coordinates is netCDF's code for a missing value.
 TEST_F(BorderDataTest, EveryCoordinateIsOne) {
   const int middle = 36 * 5 + 26;  // 30 to 40 degrees north, 100 to 90 west
   Write({{.bin = middle, .points = {{32'769, 30'000}, {32'769, 32'769}, {32'769, 50'000}}}}, {});
@@ -129,14 +131,15 @@ TEST_F(BorderDataTest, LinesAtSeaGroundedIceAndSmallIslandsAreLeftOut) {
   EXPECT_GT(paint({Through(place, 2)}, {}), 0.99F);
   EXPECT_EQ(paint({Through(place, 6)}, {}), 0.0F);
   BorderSegment island = Through(place);
-  island.area_km2 = 20.0;  // of 64 texels of 0.59 km: 22 km2
+  island.area_km2 = 20.0;  // it covers 64 texels of 0.59 km: 22 km2
   EXPECT_EQ(paint({island}, {}), 0.0F);
   EXPECT_GT(paint({}, {Through(place)}), 0.99F);
   EXPECT_NEAR(paint({}, {Through(place, 2)}), 0.6F, 0.01F);
   EXPECT_EQ(paint({}, {Through(place, 3)}), 0.0F);
 }
 
-// As fine as texels are: 0.6 km of 1024 for 600 km, 1.4 km for 1400.
+// The set must be as fine as the texels: 1024 texels are 0.6 km wide for 600 km, and 1.4 km for
+// 1400 km.
 TEST_F(BorderDataTest, ASetThatIsAsFineAsTheMapIsRead) {
   const glm::dvec2 place(-96.2, 36.7);
   Write({}, {Through(place)}, 'h');
@@ -169,14 +172,14 @@ TEST_F(BorderDataTest, WithoutAMapProjectionOrWithDamagedDataThereIsNone) {
   EXPECT_NE(Map(plains_), nullptr);
   std::ofstream(folder_.File("binned_border_h.nc")) << "nothing of the kind";
   EXPECT_EQ(Map(plains_), nullptr);
-  // A segment that the file does not have.
+  // The file declares more points than the segment has.
   BorderSegment cut = Through({-96.2, 36.7});
   cut.declared_points = 9;
   Write({cut}, {});
   EXPECT_EQ(Map(plains_), nullptr);
 }
 
-// By the store, which gives them to storms with a place alone.
+// The store adds the map, which it does only for storms with a place.
 TEST_F(BorderDataTest, TimesOfAStormShareItsMap) {
   Write({Through({-96.85, 35.1})}, {});
   testing::SyntheticWrf file;

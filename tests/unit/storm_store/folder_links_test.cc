@@ -1,4 +1,5 @@
-// Symbolic links in data folders: circles, ways out, and links that nobody can follow.
+// Tests of symbolic links in data folders: cycles, links to the outside, and links that cannot be
+// followed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,14 +27,15 @@ class FolderLinks : public ::testing::Test {
     Write(outside_ / "secret.nc", "QRAIN");
   }
 
-  // Files with other fields are other storms, not further times of one.
+  // Writes a file with `field`. Files with different fields are different storms, not further times
+  // of one.
   static void Write(const fs::path& path, const std::string& field) {
     testing::SyntheticWrf storm;
     storm.mixing_ratios[field] = [](const testing::WrfCell&) { return 1e-3; };
     testing::WriteWrf(storm, path.string());
   }
 
-  // Searches the data folder. Returns the storms' ids, and keeps what was left out and which
+  // Searches the data folder and returns the storms' ids. Also records what was left out and which
   // folders were listed.
   std::vector<std::string> Find(const LinkPolicy& links = {}) {
     left_out_.clear();
@@ -82,7 +84,7 @@ TEST_F(FolderLinks, AllowedFoldersMayBeLinkedTo) {
   EXPECT_THAT(Find({.allowed = {outside_.string()}, .untrusted = {}}),
               UnorderedElementsAre("own", "linked"));
   EXPECT_THAT(left_out_, IsEmpty());
-  // A folder whose name only begins like an allowed one is another.
+  // A folder whose name merely begins like an allowed one is not allowed.
   EXPECT_THAT(Find({.allowed = {(folder_.Path() / "out").string()}, .untrusted = {}}),
               ElementsAre("own"));
 }
@@ -96,7 +98,7 @@ TEST_F(FolderLinks, WhereAFileReallyLiesDecides) {
   EXPECT_FALSE(CheckPlace({data}, trusted, own, secret).ok());
   EXPECT_TRUE(
       CheckPlace({data}, {.allowed = {outside_.string()}, .untrusted = {}}, own, secret).ok());
-  // What is found in an untrusted folder lies there, whatever else may be linked to.
+  // A file found in an untrusted folder must lie there, whatever other links are allowed.
   const LinkPolicy untrusted{.allowed = {outside_.string()}, .untrusted = {data + "/sub/"}};
   EXPECT_TRUE(CheckPlace({data}, untrusted, data + "/sub/a.nc", data + "/sub/a.nc").ok());
   EXPECT_FALSE(CheckPlace({data}, untrusted, data + "/sub/a.nc", secret).ok());

@@ -1,4 +1,5 @@
-// The catalogue follows its folders: scans told the time, and a store with the kernel's events.
+// Tests that the catalogue follows its folders: scans with a given time, and a store with the
+// kernel's events.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ std::string Bytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// In place: the file stays the same one.
+// Writes in place, so that the file stays the same inode.
 void Put(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
@@ -49,7 +50,7 @@ class LiveFolder : public ::testing::Test {
     fs::create_directory(elsewhere_);
   }
 
-  // The bytes of a file with those hours, with that much cloud water in it.
+  // Returns the bytes of a file with those hours, with that much cloud water in it.
   std::string WrfBytes(const std::vector<int>& hours, double cloud = 1e-3) {
     SyntheticWrf file;
     file.top_m = top_m_;
@@ -60,7 +61,7 @@ class LiveFolder : public ::testing::Test {
       return cell.level == 4 ? cloud : 0.0;
     };
     const std::string path = elsewhere_ + "/written";
-    const netcdf::NetcdfLock lock;  // a catalogue may be reading
+    const netcdf::NetcdfLock lock;  // a catalogue may be reading meanwhile
     testing::WriteWrf(file, path);
     return Bytes(path);
   }
@@ -74,7 +75,7 @@ class LiveFolder : public ::testing::Test {
     fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(1));
   }
 
-  // Becomes visible in one step.
+  // Writes the file elsewhere and moves it into place, so that it becomes visible in one step.
   void MoveInto(const std::string& path, const std::string& bytes) {
     Put(elsewhere_ + "/complete", bytes);
     fs::rename(elsewhere_ + "/complete", path);
@@ -87,7 +88,7 @@ class LiveFolder : public ::testing::Test {
                           .retry = seconds(30)});
   }
 
-  // The numbers of times of the storms found after `after`, which the scan is told.
+  // Scans at the time `after` and returns the numbers of times of the storms found.
   std::vector<std::size_t> TimesAt(CatalogueScan& scan, seconds after) {
     const auto result = scan.Scan(CatalogueScan::Time(std::chrono::hours(1)) + after);
     EXPECT_TRUE(result.ok()) << result.status();
@@ -106,8 +107,8 @@ class LiveFolder : public ::testing::Test {
     return *std::move(store);
   }
 
-  // Lets the stores' time pass until `condition()` is true. Elsewhere it stands still. An hour, the
-  // usual pause of scans, never passes.
+  // Advances the stores' time until `condition()` is true. Elsewhere it stands still. An hour, the
+  // usual pause between scans, never passes.
   template <typename Condition>
   bool Eventually(Condition condition) {
     return testing::WaitFor([&] {
@@ -130,7 +131,8 @@ class LiveFolder : public ::testing::Test {
   const std::string elsewhere_ = folder_.File("elsewhere");
 };
 
-// Of two folders one hangs: the other's news come, and the one's storms stay.
+// One of two folders hangs. Changes in the other are still found, and the storms of the first
+// remain.
 TEST_F(LiveFolder, AFolderThatHangsHoldsUpNoOther) {
   const std::string other = folder_.File("other");
   fs::create_directories(other);
@@ -155,12 +157,12 @@ TEST_F(LiveFolder, AFolderThatHangsHoldsUpNoOther) {
   EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1, 1));
   *hangs = true;
   PutOld(other + "/wrfout_d01_01:00:00", WrfBytes({1}));
-  fs::remove(File(0));  // nobody can tell
+  fs::remove(File(0));  // the scan cannot detect this
   auto waiting = std::async(std::launch::async, [&] { return TimesAt(scan, seconds(10)); });
   ASSERT_TRUE(testing::WaitFor([&] { return *begun == 1; }));
   time_.Advance(milliseconds(100));
   EXPECT_THAT(waiting.get(), ElementsAre(1, 1));
-  // That it hangs is known: nobody waits for it while time stands still.
+  // The hang is known, so no scan waits for the folder while time stands still.
   EXPECT_THAT(TimesAt(scan, seconds(20)), ElementsAre(1, 2));
   storage.set_value();
   EXPECT_TRUE(testing::WaitFor([&] { return TimesAt(scan, seconds(30)).size() == 1; }));
@@ -183,7 +185,7 @@ TEST_F(LiveFolder, DoesNotOfferAFileWhoseSizeMoves) {
   const std::string whole = WrfBytes({0});
   CatalogueScan scan = Scanner();
   TimesAt(scan, seconds(0));
-  // Readable at any time, but never at rest.
+  // The file is readable at any time, but it keeps changing.
   for (int second = 1; second < 20; second += 2) {
     Put(File(0), whole + std::string(static_cast<std::size_t>(second), '\0'));
     EXPECT_THAT(TimesAt(scan, seconds(second)), ElementsAre()) << second;
@@ -198,7 +200,7 @@ TEST_F(LiveFolder, OffersOldFilesAtOnceAndNewOnesLater) {
   EXPECT_THAT(TimesAt(scan, minutes(30)), ElementsAre(2)) << "one series of both";
 }
 
-// One of them alone would be a storm of its own name.
+// One of these files alone would be a storm with its own name.
 TEST_F(LiveFolder, FilesThatCameJustBeforeTheStartAreOfferedTogether) {
   for (int hour = 0; hour < 2; ++hour) {
     Put(File(hour), WrfBytes({hour}));
@@ -270,7 +272,7 @@ TEST_F(LiveFolder, AnEmptyFolderIsWaitedFor) {
   EXPECT_TRUE(store->Storms().empty());
   MoveInto(File(0), WrfBytes({0}));
   EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
-  // The scan after the start is over, so that only the kernel's event tells of this one.
+  // The scan at the start is over, so only the kernel's event reports this file.
   MoveInto(File(1), WrfBytes({1}));
   EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 2; }));
 }
@@ -401,7 +403,7 @@ TEST_F(LiveFolder, AFileThatIsReplacedKeepsItsTimesUntilTheOtherIsRead) {
   EXPECT_THAT(TimesAt(scan, seconds(10)), ElementsAre());
 }
 
-// It was not moved there whole.
+// This file was not moved into place complete.
 TEST_F(LiveFolder, AFileThatIsWrittenInTheOthersPlaceHasNoTimesUntilItIsComplete) {
   PutOld(File(0), WrfBytes({0}));
   CatalogueScan scan = Scanner();
@@ -438,7 +440,7 @@ TEST_F(LiveFolder, NothingIsReadOfAFileThatIsNotTheOneDescribed) {
   }));
 }
 
-// As WRF does it that is started once more: the file stays the same, and so may its size.
+// WRF does this when it is started again: the file stays the same, and its size may too.
 TEST_F(LiveFolder, AFileThatIsWrittenAnewIsReadAgain) {
   PutOld(File(0), WrfBytes({0}, 1e-3));
   const auto store = Open();
@@ -472,7 +474,7 @@ TEST_F(LiveFolder, AFileThatIsReplacedIsReadAgain) {
   PutOld(File(0), WrfBytes({0}, 1e-3));
   const auto store = Open();
   const std::string id = store->Storms()[0]->id;
-  const auto shown = store->Get(id, 0, {});  // held, so that it stays in memory
+  const auto shown = store->Get(id, 0, {});  // holding it keeps it in memory
   ASSERT_TRUE(shown.ok());
   EXPECT_NEAR((*shown)->fields[0].statistics.maximum, 1e-3, 1e-8);
   MoveInto(File(0), WrfBytes({0}, 4e-3));

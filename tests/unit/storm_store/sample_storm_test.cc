@@ -1,4 +1,4 @@
-// The supercell in samples/, checked against an independent reading of the file.
+// Tests of the supercell in samples/, checked against an independent reading of the file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netcdf.h>
@@ -37,14 +37,14 @@ std::vector<float> Raw(const char* name, std::size_t record, std::size_t levels)
   return values;
 }
 
-// In SI units; the density is that of dry air.
+// The values are in SI units; the density is that of dry air.
 struct Layer {
   double density;
   double temperature;
   double thickness;
 };
 
-// Every layer from first principles and in double precision.
+// Returns every layer, computed from first principles and in double precision.
 std::vector<Layer> ReadLayers(std::size_t record) {
   const auto ph = Raw("PH", record, kLevels + 1);
   const auto phb = Raw("PHB", record, kLevels + 1);
@@ -64,7 +64,7 @@ std::vector<Layer> ReadLayers(std::size_t record) {
   return layers;
 }
 
-// What `read` gives for a record, read once for tests of one record that follow one another.
+// Returns the result of `read` for a record. It is read once for consecutive tests of one record.
 template <typename Value, typename Read>
 const Value& Kept(std::size_t record, Read read) {
   static std::optional<std::pair<std::size_t, Value>> kept;
@@ -79,7 +79,7 @@ const std::vector<Layer>& SampleLayers(std::size_t record) {
   return Kept<std::vector<Layer>>(record, ReadLayers);
 }
 
-// The fields by the reader that is tested.
+// Returns the fields as read by the reader under test.
 const volume::HydrometeorFields& SampleFields(std::size_t record) {
   return Kept<volume::HydrometeorFields>(record, [](std::size_t wanted) {
     return storm_files::ReadWrfTime(storm_files::ReadWrfMetadata(kSample).value(), wanted,
@@ -88,13 +88,13 @@ const volume::HydrometeorFields& SampleFields(std::size_t record) {
   });
 }
 
-// A store that has read each time once for all tests.
+// Returns a store that has read each time once for all tests.
 StormStore& SampleStore() {
   static const auto store = StormStore::Open({kSample}, {.read_ahead = 0}).value();
   return *store;
 }
 
-// Mass per area of dry air in every layer.
+// Returns the mass per area of dry air in every layer.
 std::vector<double> AirMass(std::size_t record) {
   std::vector<double> mass;
   for (const Layer& layer : SampleLayers(record)) mass.push_back(layer.density * layer.thickness);
@@ -138,8 +138,8 @@ TEST(SampleStorm, IsDescribedWithoutReadingFields) {
   EXPECT_EQ((*store)->CachedBytes(), 0U);
 }
 
-// One per cent is promised. What is left is single precision: heights of 20 km are kept to 2 mm,
-// which is 1e-5 of a layer.
+// The promised accuracy is one per cent. The remaining error is single precision: heights of 20 km
+// are accurate to 2 mm, which is 1e-5 of a layer.
 TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
   for (std::size_t record = 0; record < 4; ++record) {
     const volume::HydrometeorFields& fields = SampleFields(record);
@@ -151,7 +151,7 @@ TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
       double worst = 0.0;
       double total = 0.0;
       for (std::size_t i = 0; i < kSampleColumns; ++i) {
-        // Below this a column holds nothing but the tails of denormals.
+        // Below this limit a column contains only denormal remainders.
         constexpr double kNothing_kg_per_m2 = 1e-30;
         worst = std::max(
             worst, std::abs(actual[i] - expected[i]) / std::max(expected[i], kNothing_kg_per_m2));
@@ -167,7 +167,7 @@ TEST(SampleStorm, KeepsTheWaterPathOfEveryColumnAndField) {
   }
 }
 
-// 3 rho q / (2 rho_f R) by the distributions of WSM6, from first principles.
+// Returns 3 rho q / (2 rho_f R) by the distributions of WSM6, from first principles.
 double Wsm6Extinction_per_m(const std::string& variable, double content, double temperature) {
   const auto exponential = [content](double density, double intercept, double largest_slope) {
     const double slope = std::pow(M_PI * density * intercept / content, 0.25);
@@ -188,8 +188,8 @@ double Wsm6Extinction_per_m(const std::string& variable, double content, double 
   return 1.5 * content / (917.0 * std::clamp(radius, 10e-6, 125e-6));
 }
 
-// Its microphysics is WSM6, and no size is in the file. What is left of the difference are half
-// floats.
+// The microphysics scheme is WSM6, and the file has no sizes. The remaining difference comes from
+// half floats.
 TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
   constexpr std::size_t kRecord = 1;
   const volume::HydrometeorFields& fields = SampleFields(kRecord);
@@ -215,14 +215,14 @@ TEST(SampleStorm, KeepsTheOpticalDepthOfEveryColumnByItsScheme) {
       actual[i % kSampleColumns] += extinction[i] * fields.grid.spacing_m.z;
     }
     for (std::size_t i = 0; i < kSampleColumns; ++i) {
-      // Below this a column holds nothing but traces.
+      // Below this limit a column contains only traces.
       if (expected[i] < 1e-3) continue;
       ASSERT_NEAR(actual[i] / expected[i], 1.0, 1e-3) << field.variable << " " << i;
     }
   }
 }
 
-// Where graupel and all else are strongest, found in the file itself.
+// Finds in the file where graupel and all other fields are strongest.
 TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
   constexpr std::size_t kRecord = 1;
   const volume::HydrometeorFields& fields = SampleFields(kRecord);
@@ -261,8 +261,8 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
       }
       bottom_m = top_m;
     }
-    // Columns keep their water, and cells may differ from plain means by the slope within layers:
-    // here by up to 2.8 %, of ice. The air's density is its block's mean.
+    // Columns keep their water. Cells may differ from plain means because of the slope within
+    // layers: here by up to 2.8 %, for ice. The air's density is the mean of its block.
     EXPECT_NEAR(peak.kg_per_m3 / (water / cell_m), 1.0, 0.03) << variable;
     EXPECT_NEAR(peak.value / (water / air), 1.0, 0.03) << variable;
     const auto& grid = fields.grid;
@@ -271,8 +271,8 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
         peak.kg_per_m3,
         fields.fields[peak.index].concentration_kg_per_m3[grid.Offset(cell.x, cell.y, cell.z)])
         << variable;
-    // The largest mixing ratio of the file: the same column, within a level, and more by what the
-    // mean over layers takes from a thin one, here up to 6 % of ice.
+    // The file's largest mixing ratio is in the same column, within a level. It may be higher,
+    // because the mean over layers reduces thin maxima, here by up to 6 % for ice.
     const auto largest = static_cast<std::size_t>(std::ranges::max_element(q) - q.begin());
     EXPECT_NEAR(peak.value / q[largest], 0.97, 0.05) << variable;
     double height_m = 0.0;
@@ -291,7 +291,7 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
   }
 }
 
-// The density of every layer in the file, against the mean over its block at the middle of its
+// Compares the density of every layer in the file with the mean over its block at the middle of its
 // cell.
 TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
   constexpr std::size_t kRecord = 1;
@@ -311,7 +311,7 @@ TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
       const float air =
           fields.air.At(fields.grid, static_cast<int>(column % kNx), static_cast<int>(column / kNx),
                         std::min(z, fields.grid.cells.z - 1));
-      // From the cell's middle to the layer's, with the scale height.
+      // Converts from the cell's middle to the layer's with the scale height.
       const double cell_m = fields.grid.low_corner_m.z + (z + 0.5) * fields.grid.spacing_m.z;
       const double error = air * std::exp((cell_m - middle_m) / 8000.0) / layers[i].density - 1.0;
       worst = std::max(worst, std::abs(error));
@@ -319,7 +319,8 @@ TEST(SampleStorm, AirsMeansAreWithinAFewPerCentOfEveryLayer) {
       ++count;
     }
   }
-  // Of the overshooting top, whose air is far from its surroundings': 0.091 by numpy from the file.
+  // The worst layer is in the overshooting top, whose air differs much from its surroundings:
+  // 0.091, computed with numpy from the file.
   EXPECT_LT(worst, 0.10);
   EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.01);
 }
@@ -331,7 +332,7 @@ TEST(SampleStorm, WithoutWindTellsNothingOfTheAir) {
   EXPECT_TRUE(fields.motion.ascent.empty());
 }
 
-// Peaks over all times, as known of this run.
+// The expected peaks over all times are known for this run.
 TEST(SampleStorm, HasThePeaksOfItsRun) {
   std::map<std::string, float> peaks;
   for (int time = 0; time < 4; ++time) {
@@ -373,7 +374,7 @@ TEST(SampleStorm, LiesOnOneGridThatIsCentredAndSmall) {
       size_bytes += field.sizes.inverse_radius.size() * sizeof(std::uint16_t);
     }
     EXPECT_LE((*fields)->Bytes() - size_bytes, kRawBytes * 3 / 2);
-    // At most two bytes a cell, and nothing above and below a field's particles.
+    // There are at most two bytes per cell, and none above and below a field's particles.
     EXPECT_LE(size_bytes, 5 * grid.CellCount() * sizeof(std::uint16_t) * 3 / 4);
   }
 }
@@ -420,22 +421,22 @@ TEST(FinerSampleStorm, TellsTheMotionOfItsAir) {
   EXPECT_EQ(motion.source, volume::TurbulenceSource::kEnergy);
   ASSERT_EQ(motion.turbulence.size(), fields->grid.CellCount());
   ASSERT_EQ(motion.ascent.size(), fields->grid.CellCount());
-  // The file's largest energy and updraught at that time, in m2/s2 and m/s.
+  // These are the file's largest energy and updraught at that time, in m2/s2 and m/s.
   EXPECT_GT(*std::ranges::max_element(motion.turbulence), 250);
   EXPECT_NEAR(*std::ranges::max_element(motion.ascent) * volume::kAscentUnit_m_per_s, 55.0, 8.0);
-  // The storm was made with westerly shear, and its anvil lies in the east.
+  // The simulation has westerly shear, so the anvil lies in the east.
   EXPECT_GT(motion.shear_m_per_s.x, 10.0);
   EXPECT_LT(std::abs(motion.shear_m_per_s.y), motion.shear_m_per_s.x);
-  // Computed with numpy; 21:30 on 20 May 2000.
+  // The values were computed with numpy. The time is 21:30 on 20 May 2000.
   EXPECT_NEAR(motion.steering_m_per_s.x, 4.766, 0.005);
   EXPECT_NEAR(motion.steering_m_per_s.y, 2.325, 0.005);
   EXPECT_EQ(motion.time_s, 958858200.0);
-  // Without its energy the wind's deformation counts.
+  // Without the model's energy, the wind's deformation is used.
   metadata->energy = {};
   const auto deformed = storm_files::ReadWrfTime(*metadata, 1, std::nullopt, {});
   ASSERT_TRUE(deformed.ok()) << deformed.status();
   EXPECT_EQ(deformed->motion.source, volume::TurbulenceSource::kDeformation);
-  // Deformation makes the energy that the model has.
+  // The energy from deformation should be that of the model.
   double stirred = 0.0;
   double calm = 0.0;
   double stirred_count = 0.0;

@@ -1,4 +1,4 @@
-// Storms that are larger than the memory, and storages that hang.
+// Tests of storms that are larger than the memory, and of storages that hang.
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -65,8 +65,8 @@ class Storage {
 
 constexpr std::uint64_t kFarDevice = 4711;
 
-// "cube" is one storm of many times of cells in a cube; a file whose name begins with "far" comes
-// from the storage, which is a device of its own.
+// A format whose file "cube" is one storm with many times, of cells in a cube. A file whose name
+// begins with "far" comes from the storage, which is a separate device.
 class CubeFormat final : public storm_files::StormFormat {
  public:
   explicit CubeFormat(std::shared_ptr<Storage> storage) : storage_(std::move(storage)) {}
@@ -125,7 +125,7 @@ class CubeFormat final : public storm_files::StormFormat {
   const std::shared_ptr<Storage> storage_;
 };
 
-// Time moves only where a test moves it.
+// A fixture whose time advances only where a test advances it.
 class StormMemory : public ::testing::Test {
  protected:
   static constexpr milliseconds kDeadline{200};
@@ -147,7 +147,7 @@ class StormMemory : public ::testing::Test {
     return *std::move(store);
   }
 
-  // Asks for a time of "far.cube", whose storage hangs; returns once it is being read.
+  // Requests a time of "far.cube", whose storage hangs. Returns once it is being read.
   std::future<absl::Status> GetFar(StormStore& store, int time) {
     const int passed = storage_->Passed();
     auto far = std::async(std::launch::async,
@@ -178,12 +178,12 @@ TEST_F(StormMemory, SixtyFourTimesThatAreHeldKeepWithinTheBudget) {
     EXPECT_TRUE(base::DetailsOf(fields.status()).retry_after.has_value());
     EXPECT_THAT(std::string(fields.status().message()), HasSubstr("storm 'storm.cube'"));
   }
-  // Reading takes room besides.
+  // Reading needs additional memory.
   EXPECT_GE(held.size(), 8U);
   EXPECT_EQ(held.size() + static_cast<std::size_t>(refused), std::size_t{kManyTimes});
   EXPECT_GE(budget->Used(base::MemoryUse::kFields), held.size() * kTimeBytes);
   EXPECT_EQ(budget->Used(base::MemoryUse::kReading), 0U);
-  // Those who are shown less leave room to others.
+  // Times that are no longer held can be evicted for others.
   held.clear();
   EXPECT_TRUE(store->Get("storm.cube", kManyTimes - 1, {}).ok());
   EXPECT_LE(budget->Used(), budget->Bytes());
@@ -214,7 +214,7 @@ TEST_F(StormMemory, CellsWhoseNumberOverflowsAreRefusedBeforeAnythingIsAllocated
 }
 
 TEST_F(StormMemory, ATimeBeyondTheBudgetIsRefusedBeforeItIsRead) {
-  // 64 MB each.
+  // A time has 64 MB.
   const auto budget = base::MemoryBudget::Make({.bytes = std::size_t{32} << 20U});
   const auto store = Open({Cube("large", 250)}, {.memory = budget, .read_ahead = 0});
   const absl::Status refused = store->Get("large.cube", 0, {}).status();
@@ -238,12 +238,12 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   EXPECT_TRUE(base::DetailsOf(late).retry_after.has_value());
   ASSERT_TRUE(store->Hung().has_value());
   EXPECT_THAT(store->Hung()->file, HasSubstr("far.cube"));
-  // Times in memory are still given; a read of the same storage is refused at once, while time
+  // Times in memory are still returned. A read of the same storage is refused at once, while time
   // stands still.
   EXPECT_TRUE(store->Get("near.cube", 0, {}).ok());
   EXPECT_EQ(store->Storms().size(), 2U);
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 9, {}).status()));
-  // Or the store would wait for its thread, while time stands still.
+  // Otherwise the store would wait for its thread, while time stands still.
   storage_->Answer();
 }
 
@@ -254,7 +254,7 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   ASSERT_TRUE(store->Get("b.cube", 0, {}).ok());
   storage_->Hang();
   auto far = GetFar(*store, 0);
-  // Others' reads, that wait behind it: of another storage, and of its own.
+  // These reads wait behind it: one of another storage, and one of the same storage.
   auto behind =
       std::async(std::launch::async, [&] { return store->Get("b.cube", 1, {}).status(); });
   auto behind_it =
@@ -264,11 +264,11 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   EXPECT_TRUE(absl::IsDeadlineExceeded(far.get()));
   EXPECT_TRUE(absl::IsDeadlineExceeded(behind_it.get()));
   EXPECT_TRUE(behind.get().ok());
-  // Now that it is known, others go at once, while time stands still.
+  // The hang is now known, so other reads begin at once, while time stands still.
   double progress = 0.0;
   EXPECT_TRUE(store->Get("b.cube", 2, [&](double share) { progress = share; }).ok());
   EXPECT_EQ(progress, 0.5);
-  // Of the storage that hangs nothing more is read, of no folder.
+  // Nothing else is read from the storage that hangs, from any folder.
   const int before = storage_->Passed();
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("farther.cube", 0, {}).status()));
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 1, {}).status()));
@@ -278,7 +278,7 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   EXPECT_TRUE(WaitFor([&] { return store->Get("far.cube", 0, {}).ok(); }));
 }
 
-// One that has gone on a little, and does not hang.
+// A slow read that has made some progress does not count as hanging.
 TEST_F(StormMemory, AReadThatTakesLongLeavesOtherFilesToAnotherThread) {
   const auto store = Open({Cube("far", kCells), Cube("far2", kCells)}, {.read_ahead = 0});
   storage_->Hang();
@@ -291,7 +291,7 @@ TEST_F(StormMemory, AReadThatTakesLongLeavesOtherFilesToAnotherThread) {
   ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 3; }));
   EXPECT_EQ(storage_->Passed(), 1);
   time_.Advance(std::chrono::seconds(5));
-  // The other file's read begins; that of the same file waits on.
+  // The read of the other file begins. The reads of the same file continue to wait.
   ASSERT_TRUE(WaitFor([&] { return storage_->Passed() == 2; }));
   EXPECT_EQ(behind[0].wait_for(milliseconds(0)), std::future_status::timeout);
   EXPECT_FALSE(store->Hung().has_value());
@@ -300,7 +300,7 @@ TEST_F(StormMemory, AReadThatTakesLongLeavesOtherFilesToAnotherThread) {
   for (auto& read : behind) EXPECT_TRUE(read.get().ok());
 }
 
-// However many of its files are asked for, a storage does not take the last thread.
+// However many of its files are requested, a hanging storage does not occupy the last thread.
 TEST_F(StormMemory, AStorageThatHangsDoesNotTakeTheLastThread) {
   std::vector<std::string> paths{Cube("near", kCells)};
   for (int i = 0; i < 6; ++i) paths.push_back(Cube(absl::StrCat("far", i), kCells));
@@ -335,7 +335,7 @@ TEST_F(StormMemory, PlaybackGoesOnBesideAStorageThatHangs) {
   ASSERT_TRUE(WaitFor([&] { return storage_->Passed() == 1; }));
   time_.Advance(kDeadline + milliseconds(1));
   EXPECT_TRUE(absl::IsDeadlineExceeded(hung.get()));
-  // It is known to hang, so these are given while time stands still.
+  // The hang is known, so these are returned while time stands still.
   for (int time = 1; time < 8; ++time) {
     EXPECT_TRUE(store->Get("near.cube", time, {}).ok()) << time;
   }
@@ -356,7 +356,7 @@ TEST_F(StormMemory, AStorageThatAnswersAgainGivesWhatWasAskedFor) {
 
 TEST_F(StormMemory, AReadThatGoesOnSlowlyIsNotRefused) {
   const auto store = Open({Cube("near", kCells)}, {.read_ahead = 0, .read_deadline = kDeadline});
-  // Several wait behind one another, in all for longer than the deadline.
+  // Several reads wait behind one another, together for longer than the deadline.
   std::vector<std::jthread> callers;
   std::atomic<int> given = 0;
   for (int time = 0; time < 6; ++time) {

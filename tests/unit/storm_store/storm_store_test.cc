@@ -24,8 +24,8 @@ using testing::WrfCell;
 
 constexpr int kTimes = 6;
 
-// A series of six files, one time each; the cloud of time t has 1e-3 * (t + 1) kg/kg, and the
-// layers breathe by some metres from time to time.
+// A fixture with a series of six files, one time each. The cloud of time t has 1e-3 * (t + 1)
+// kg/kg. The layers' heights vary by some metres from time to time.
 class StormSeries : public ::testing::Test {
  protected:
   StormSeries() {
@@ -53,8 +53,8 @@ class StormSeries : public ::testing::Test {
     return *std::move(store);
   }
 
-  // Waits until that time has been read ahead and nothing else is read after it: the reading thread
-  // begins the next time before others see the one that it has read.
+  // Waits until that time has been read ahead and no later time is read. The reading thread begins
+  // the next time before others see the one that it has read.
   static bool ReadsAheadNoFurtherThan(StormStore& store, int time) {
     return WaitFor(
         [&] { return store.Peek("series", time) != nullptr && store.PendingReads() == 0; });
@@ -122,7 +122,7 @@ TEST_F(StormSeries, ForgetsAStormThatIsRemoved) {
   EXPECT_EQ(info->id, "series") << "what was pointed to stays";
   EXPECT_GT((*held)->Bytes(), 0U) << "and what was given";
   EXPECT_TRUE(WaitFor([&] { return store->CachedBytes() == 0; }));
-  // Another of that name may come.
+  // Another storm of that name may be added.
   ASSERT_TRUE(store->Add(folder_.File("series")).ok());
   EXPECT_TRUE(store->Get("series", 1, {}).ok());
 }
@@ -150,7 +150,7 @@ TEST_F(StormSeries, ReadsATimeOnceWhileItIsHeld) {
 TEST_F(StormSeries, LetsTheLeastRecentlyUsedGo) {
   const auto store = Open({.byte_budget = 3 * one_time_, .read_ahead = 0});
   for (const int time : {0, 1, 2}) ASSERT_TRUE(store->Get("series", time, {}).ok());
-  ASSERT_TRUE(store->Get("series", 0, {}).ok());  // 1 is now the oldest
+  ASSERT_TRUE(store->Get("series", 0, {}).ok());  // time 1 is now the oldest
   ASSERT_TRUE(store->Get("series", 3, {}).ok());
   EXPECT_EQ(store->Peek("series", 1), nullptr);
   for (const int time : {0, 2, 3}) EXPECT_NE(store->Peek("series", time), nullptr) << time;
@@ -165,7 +165,7 @@ TEST_F(StormSeries, KeepsTheNewestEvenIfItAloneIsTooLarge) {
   ASSERT_TRUE(second.ok()) << second.status();
   EXPECT_EQ(store->Peek("series", 0), nullptr);
   EXPECT_EQ(store->CachedBytes(), one_time_);
-  // To evict what a caller holds would free nothing.
+  // Evicting a time that a caller holds would free nothing.
   ASSERT_TRUE(store->Get("series", 2, {}).ok());
   EXPECT_EQ(store->Peek("series", 1), *second);
 }
@@ -248,7 +248,7 @@ TEST_F(StormSeries, ServesManyThreadsThatWanderAboutWithinABudget) {
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(failures, 0);
-  // Times in use are kept beyond the budget until another one is read.
+  // Times in use are kept beyond the budget until another time is read.
   ASSERT_TRUE(WaitFor([&] { return store->PendingReads() == 0; }));
   int time = 0;
   while (store->Peek("series", time) != nullptr) ++time;
@@ -260,7 +260,7 @@ TEST_F(StormSeries, EndsWhileItReadsAhead) {
   for (int i = 0; i < 20; ++i) {
     const auto store = Open({.read_ahead = 5});
     ASSERT_TRUE(store->Get("series", 0, {}).ok());
-    // At another stage each time.
+    // The store ends at a different stage each time.
     const auto read = static_cast<std::size_t>(i % kTimes);
     ASSERT_TRUE(WaitFor([&] { return store->TimesInMemory("series").size() >= read; }));
   }

@@ -1,4 +1,4 @@
-// Counting, the text that Prometheus reads, and the operator's port.
+// Tests of counters, of the text that Prometheus reads, and of the operator's port.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -156,11 +156,11 @@ TEST_F(Port, ASlowClientIsCutOff) {
 }
 
 TEST_F(Port, SilentClientsHoldUpNobody) {
-  // More than there may be.
+  // These are more clients than allowed.
   std::vector<boost::asio::ip::tcp::socket> silent;
   for (int i = 0; i < 100; ++i) silent.push_back(Connect());
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200"));
-  // The oldest made room, the newest is still there.
+  // The oldest client was disconnected; the newest is still connected.
   boost::system::error_code error;
   char byte = 0;
   boost::asio::read(silent.front(), boost::asio::buffer(&byte, 1), error);
@@ -182,7 +182,7 @@ TEST_F(Port, TheSamePortTwiceIsAnError) {
   EXPECT_EQ(second.status().code(), absl::StatusCode::kUnavailable);
 }
 
-// Debian's Prometheus scrapes the port, and finds the values by its own query language.
+// Debian's Prometheus scrapes the port, and finds the values with its own query language.
 TEST_F(Port, IsScrapedByPrometheus) {
   if (std::system("command -v prometheus promtool > /dev/null") != 0) {
     GTEST_SKIP() << "needs Debian's package prometheus (deploy/packages/test.txt)";

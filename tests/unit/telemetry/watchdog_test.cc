@@ -19,7 +19,7 @@ namespace {
 
 using testing::WaitFor;
 
-// The socket that systemd listens on.
+// A fixture with the socket that systemd listens on.
 class WatchdogTest : public ::testing::Test {
  protected:
   WatchdogTest() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -38,14 +38,14 @@ class WatchdogTest : public ::testing::Test {
 
   static void Set(const char* name, const std::string& value) { setenv(name, value.c_str(), 1); }
 
-  // The message that has come; empty if none has.
+  // Returns the next message if it has arrived; empty if none has.
   std::string Come() {
     std::string message(64, '\0');
     const ssize_t bytes = recv(socket_.Get(), message.data(), message.size(), MSG_DONTWAIT);
     message.resize(bytes < 0 ? 0 : static_cast<std::size_t>(bytes));
     return message;
   }
-  // The next message.
+  // Waits for the next message and returns it.
   std::string Next() {
     std::string message;
     WaitFor([&] { return !(message = Come()).empty(); });
@@ -67,7 +67,7 @@ TEST_F(WatchdogTest, IsToldAsLongAsThereIsProgress) {
   ASSERT_TRUE(watchdog.ok() && *watchdog != nullptr) << watchdog.status();
   for (int i = 0; i < 3; ++i) EXPECT_EQ(Next(), "WATCHDOG=1");
   alive = false;
-  // What was sent before has come by then.
+  // All messages sent before have arrived by now.
   ASSERT_TRUE(WaitFor([&] { return denied >= 2; }));
   while (!Come().empty()) {
   }

@@ -32,7 +32,7 @@ double Distance_m(const BorderLine& line, const glm::dvec2& place_m) {
   return nearest_m;
 }
 
-// Far thinner than a texel, in any direction and at any place between texels.
+// The line is far thinner than a texel, in any direction and at any place between texels.
 TEST(BorderMapTest, AStraightLineIsPaintedAsWideAsItIs) {
   const glm::dvec2 from_m(-7'873.0, -16'821.0);
   for (const glm::dvec2 to_m : {glm::dvec2(40e3, -16'821.0), glm::dvec2(-7'873.0, 30e3),
@@ -70,14 +70,15 @@ TEST(BorderMapTest, DistancesAreThoseToTheNearestOfManyLines) {
       }
       const glm::vec4 texel =
           glm::unpackHalf4x16(map.nearest[static_cast<std::size_t>(100 * y + x)]);
-      // Danielsson's transform misses the nearest by parts of a texel, and halves have 11 bits.
+      // Danielsson's transform misses the nearest point by a fraction of a texel, and half floats
+      // have 11 bits.
       EXPECT_NEAR(texel.z, nearest_m / kTexel_m, 0.02) << x << ' ' << y;
       EXPECT_NEAR(glm::length(glm::vec2(texel)), texel.z, 1e-3F * (1.0F + texel.z));
     }
   }
 }
 
-// Offsets from two lines cancel out halfway between them.
+// The offsets from two lines cancel halfway between them.
 TEST(BorderMapTest, NothingIsPaintedBetweenTwoLines) {
   for (const double apart_m : {1'250.0, 2'000.0, 11e3}) {
     const BorderLine south{{{-10e3, 0.0}, {40e3, 0.0}}, 1.0F};

@@ -19,7 +19,7 @@ float Luminance(const glm::vec3& rgb) {
   return glm::dot(rgb, glm::vec3(0.2126F, 0.7152F, 0.0722F));
 }
 
-// The west is sea, the east forest, its north under snow.
+// Returns a coast: the west is sea, the east is forest, and the north of the forest is under snow.
 SyntheticWrf Coast() {
   SyntheticWrf file;
   file.nx = 10;
@@ -59,7 +59,7 @@ TEST_F(LandSurfaceTest, HasWaterForestAndSnow) {
   EXPECT_EQ(sea.water, 1.0F);
   const LandSample forest = LandAt(fields.land, fields.grid, {3000.0, -5000.0});
   EXPECT_EQ(forest.water, 0.0F);
-  // Eight bits a colour.
+  // A colour has eight bits.
   EXPECT_NEAR(Luminance(forest.reflectance), 0.12F, 0.003F);
   EXPECT_GT(forest.reflectance.y, 1.3F * forest.reflectance.x);
   const LandSample snow = LandAt(fields.land, fields.grid, {3000.0, 5000.0});
@@ -68,8 +68,8 @@ TEST_F(LandSurfaceTest, HasWaterForestAndSnow) {
   EXPECT_NEAR(fields.land.mean_albedo, 0.5 * 0.08 + 0.25 * 0.12 + 0.25 * 0.5, 0.002);
 }
 
-// Between the middles of the columns on either side, within a tenth of a cell; land's colour goes
-// on below the water, so that none of another shows there.
+// The coast lies between the middles of the columns on either side, within a tenth of a cell. The
+// land's colour continues below the water, so that no other colour appears there.
 TEST_F(LandSurfaceTest, TheCoastIsWhereHalfIsWater) {
   const HydrometeorFields fields = Read(Coast());
   EXPECT_EQ(LandAt(fields.land, fields.grid, {-80.0, -5000.0}).water, 1.0F);
@@ -139,7 +139,7 @@ TEST_F(LandSurfaceTest, TakesMaskOrClassWhereXlandIsLeftOut) {
 TEST_F(LandSurfaceTest, TheTableOfClassesFollowsFromItsNameElseFromItsSize) {
   SyntheticWrf file = Coast();
   file.columns.erase("XLAND");
-  file.columns["LU_INDEX"] = [](const WrfCell&) { return 17.0; };  // water of MODIS alone
+  file.columns["LU_INDEX"] = [](const WrfCell&) { return 17.0; };  // MODIS's class of water
   const auto water = [&] {
     const HydrometeorFields fields = Read(file);
     return LandAt(fields.land, fields.grid, {0.0, 0.0}).water;

@@ -13,7 +13,7 @@ struct Case {
   const char* proj;
   EarthPlace middle;
   glm::dvec2 world_m;
-  EarthPlace expected;  // by PROJ 9.1.1: proj of the middle, plus metres, proj -I
+  EarthPlace expected;  // from PROJ 9.1.1: proj of the middle, plus metres, proj -I
 };
 
 class MapProjections : public ::testing::TestWithParam<Case> {};
@@ -28,7 +28,7 @@ TEST_P(MapProjections, PlacesAreThoseOfProj) {
   EXPECT_NEAR(middle->longitude_deg, GetParam().middle.longitude_deg, 1e-9);
   const auto place = map->PlaceOf(GetParam().world_m);
   ASSERT_TRUE(place.has_value());
-  // A millimetre.
+  // The tolerance is a millimetre.
   EXPECT_NEAR(place->latitude_deg, GetParam().expected.latitude_deg, 1e-8);
   EXPECT_NEAR(place->longitude_deg, GetParam().expected.longitude_deg, 1e-8);
   const auto back_m = map->WorldOf(GetParam().expected);
@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(
                            {36.7, -96.2},
                            {120000.0, -80000.0},
                            {35.937287006, -94.853252053}},
-                      // One parallel, south.
+                      // There is one parallel, in the south.
                       Case{"+proj=lcc +lat_1=-30 +lat_2=-30 +lat_0=-30 +lon_0=140",
                            {-33.0, 138.0},
                            {120000.0, -80000.0},
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
                            {-75.0, 170.0},
                            {120000.0, -80000.0},
                            {-74.067033356, 166.552719220}},
-                      // Across the date line.
+                      // The grid crosses the date line.
                       Case{"+proj=merc +lat_ts=15 +lon_0=120",
                            {12.0, -179.5},
                            {-120000.0, -80000.0},

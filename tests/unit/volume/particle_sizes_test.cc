@@ -1,5 +1,5 @@
-// Effective radii and numbers of particles from synthetic files: extinction by cell keeps each
-// column's optical depth through the remapping.
+// Tests of effective radii and numbers of particles from synthetic files. Extinction by cell must
+// keep each column's optical depth through the remapping.
 #include "volume/particle_sizes.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ using physics::SizeSource;
 using testing::SyntheticWrf;
 using testing::WrfCell;
 
-// Density of SyntheticWrf's air (see layer_air_test).
+// The density of SyntheticWrf's air (see layer_air_test).
 constexpr double kAir_kg_per_m3 = 0.94321;
 
 class ParticleSizesTest : public ::testing::Test {
@@ -38,7 +38,7 @@ class ParticleSizesTest : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
-// The optical depth of a column if `mass_extinction` holds.
+// Returns the optical depth of a column with `mass_extinction`.
 double ColumnDepth(const HydrometeorFields& fields, const MassExtinction& mass_extinction, int x,
                    int y) {
   double depth = 0.0;
@@ -50,7 +50,7 @@ double ColumnDepth(const HydrometeorFields& fields, const MassExtinction& mass_e
   return depth;
 }
 
-// A cloud over sloping ground whose droplets grow with height.
+// The mixing ratio and radius of a cloud over sloping ground whose droplets grow with height.
 double MixingRatio(const WrfCell& cell) { return 1e-4 * (1 + cell.level % 5); }
 double Radius_m(const WrfCell& cell) { return 2e-6 * (1 + cell.level) * (1 + 0.1 * cell.x); }
 
@@ -119,12 +119,12 @@ TEST_F(ParticleSizesTest, FollowFromNumbers) {
   const std::size_t counted = fields.grid.Offset(1, 1, 3);
   EXPECT_NEAR(InverseRadius_per_m(rain.sizes, counted) * expected_m, 1.0, 1e-3);
   EXPECT_EQ(rain.sizes.origin, SizeOrigin::kNumber);
-  // No drops are counted there: the observed radius.
+  // No drops are counted in this cell, so it has the observed radius.
   const std::size_t uncounted = fields.grid.Offset(0, 1, 3);
   EXPECT_NEAR(InverseRadius_per_m(rain.sizes, uncounted) * 6.7e-4, 1.0, 1e-3);
 }
 
-// The effective radius in a cell that is far from the others' levels.
+// Returns the effective radius in a cell whose level differs from the levels of the others.
 double RadiusIn_m(const HydrometeorFields& fields, std::size_t field) {
   return 1.0 / InverseRadius_per_m(fields.fields[field].sizes, fields.grid.Offset(1, 1, 3));
 }
@@ -160,7 +160,7 @@ TEST_F(ParticleSizesTest, RadiiComeBeforeNumbersAndTheSchemeLast) {
   EXPECT_FLOAT_EQ(MassExtinctionOf(fields.fields[0], optics, SizeSource::kModel).m2_per_kg, 150.0F);
 }
 
-// Where no drop is counted the scheme still knows a radius.
+// In cells without counted drops, the scheme still provides a radius.
 TEST_F(ParticleSizesTest, TheNextSourceFillsTheGapsOfTheOneBefore) {
   SyntheticWrf file;
   file.microphysics = 6;
@@ -173,7 +173,7 @@ TEST_F(ParticleSizesTest, TheNextSourceFillsTheGapsOfTheOneBefore) {
   EXPECT_NEAR(RadiusIn_m(fields, 0), 6.602e-4, 1e-6);
 }
 
-// Air of 290.86 K, where snow has the intercept of its melting level, and graupel as hail.
+// The air has 290.86 K. There snow has the intercept of its melting level, and graupel is hail.
 TEST_F(ParticleSizesTest, OfTheSchemeFollowFromTheAir) {
   SyntheticWrf file;
   file.microphysics = 6;
@@ -184,9 +184,9 @@ TEST_F(ParticleSizesTest, OfTheSchemeFollowFromTheAir) {
   // 1.5 / (pi 100 2e6 / 9.4321e-4)^(1/4)
   EXPECT_NEAR(RadiusIn_m(fields, 0), 1.6604e-3, 2e-6);
   EXPECT_EQ(fields.fields[1].sizes.name, "WSM6 with hail");
-  // 1.5 / (pi 700 4e4 / 9.4321e-4)^(1/4), of 700 kg/m3 where 500 are drawn
+  // 1.5 / (pi 700 4e4 / 9.4321e-4)^(1/4), for 700 kg/m3 where 500 are drawn
   EXPECT_NEAR(RadiusIn_m(fields, 1), 2.7143e-3 * 1.4, 4e-6);
-  // 30 K colder air, of 253.30 K and 1.0831 kg/m3.
+  // The air is 30 K colder, with 253.30 K and 1.0831 kg/m3.
   file.potential_temperature_K = 270.0;
   fields = Read(file);
   EXPECT_NEAR(RadiusIn_m(fields, 0), 9.478e-4, 2e-6);
@@ -209,7 +209,7 @@ TEST_F(ParticleSizesTest, OfThompsonAreCountedOrItsOwnOrObserved) {
   EXPECT_EQ(fields.fields[4].sizes.name, "Thompson");
 }
 
-// Advection leaves them; they have no size, and no part in the field's.
+// Advection leaves such traces. They have no size, and do not count in the field's sizes.
 TEST_F(ParticleSizesTest, OfTracesAreFinite) {
   for (const double trace : {0.0, 1e-42, 1e-38, 1e-30, 1e-13, -1e-13}) {
     SyntheticWrf file;
@@ -270,7 +270,7 @@ TEST_F(ParticleSizesTest, AreHeldFromTheFirstCellWithParticlesToTheLast) {
     const bool held = cell >= cloud.sizes.first_cell && cell < cloud.sizes.EndCell();
     EXPECT_EQ(cloud.concentration_kg_per_m3[cell] > 0.0F, held) << cell;
   }
-  // Every way to cut the cells into two runs gives the same.
+  // Every division of the cells into two runs gives the same result.
   const auto& optics = physics::DefaultOptics(Hydrometeor::kCloud);
   const MassExtinction by_cell = MassExtinctionOf(cloud, optics, SizeSource::kModel);
   std::vector<float> whole(sized.grid.CellCount(), 0.0F);

@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-// 6 x 4 columns of 1 km and 5 levels of 200 m from 100 m up, all empty.
+// Returns 6 x 4 columns of 1 km and 5 levels of 200 m from 100 m up, all empty.
 HydrometeorFields Empty(std::initializer_list<physics::Hydrometeor> hydrometeors,
                         Quantity quantity) {
   HydrometeorFields fields;
@@ -100,7 +100,7 @@ TEST(StormMapTest, ASmallerMapKeepsTheMassOfTheDomain) {
     EXPECT_EQ(map.terrain_height_m.size(), map.values.size());
     EXPECT_FLOAT_EQ(map.terrain_height_m[0], 100.0F);
   }
-  // Two columns a pixel, whose rows are from the south.
+  // A pixel covers two columns, and rows count from the south.
   const StormMap half = MapOf(fields, {{0}, 3, false});
   EXPECT_EQ(half.size_px, glm::ivec2(3, 2));
   EXPECT_FLOAT_EQ(half.values[0], 0.001F * (1 + 2 + 7 + 8) / 4.0F * 200.0F);

@@ -1,4 +1,4 @@
-// Chooses what to compare with: another time, another storm or run, or the settings as they are now.
+// Chooses the comparison: another time, another storm or run, or the settings as they are now.
 import { awayInWords } from "../../core/comparison";
 import { timeInWords } from "../../core/moment";
 import { Choice, Segments } from "../controls";
@@ -87,7 +87,7 @@ export function Compare({ page }: { page: Page }) {
   );
 }
 
-// That B is not of A's time, and how far from it.
+// Shows that B's time differs from A's, and by how much.
 function TimeAway({ page: { comparing } }: { page: Page }) {
   const known = comparing.other.value !== undefined;
   const words =

@@ -1,4 +1,4 @@
-// B's picture beside or over A's, what each is, and the handle between them.
+// B's picture next to A's or over it, the names of both, and the handle between them.
 import { useEffect, useRef } from "preact/hooks";
 import { timeInWords } from "../../core/moment";
 import { nameOfStorm } from "../../core/storm_names";
@@ -29,7 +29,7 @@ export function CompareView({ page }: { page: Page }) {
         role="img"
         aria-label={`To compare: ${names.b}`}
       />
-      {/* Each name in its half, and no wider than what is left of that. */}
+      {/* Each name is in its half, and no wider than the free part of that half. */}
       <div class="half" style={{ clipPath: `inset(0 calc(100% - ${edge}) 0 0)`, "--edge": edge }}>
         <p class="compared-name a" data-testid="name-a">
           A · {names.a}
@@ -60,7 +60,7 @@ export function CompareView({ page }: { page: Page }) {
   );
 }
 
-// Why B is not what it should be.
+// Shows why B's picture is missing or differs from the request.
 function Missing({ page: { comparing } }: { page: Page }) {
   const why = comparing.interrupted.value ?? comparing.problem.value;
   if (why === undefined) return null;
@@ -71,7 +71,7 @@ function Missing({ page: { comparing } }: { page: Page }) {
   );
 }
 
-// Of what is different, in words.
+// Returns names that describe the difference between A and B.
 function namesOf({ state, comparing }: Page): { readonly a: string; readonly b: string } {
   const choice = comparing.choice.value;
   const index = comparing.time.value.index;

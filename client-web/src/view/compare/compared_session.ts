@@ -1,4 +1,5 @@
-// The session of B: a second one of this page alone, whose scene follows A's. Closed when the comparison ends.
+// The session of B. It is a second session that only this page uses, and its scene follows A's. It
+// is closed when the comparison ends.
 import { create } from "@bufbuild/protobuf";
 import type { Later } from "../../core/newest";
 import { SceneSync } from "../../core/scene_sync";
@@ -20,11 +21,11 @@ import { PictureFlow } from "../picture_flow";
 
 export interface ComparedSteps {
   painted(frame: Frame): void;
-  // SceneSync.agreed of B's session.
+  // Reports SceneSync.agreed of B's session.
   agreed(revision: bigint | undefined): void;
-  // Something that B cannot show.
+  // Reports something that B cannot show.
   problem(text: string | undefined): void;
-  // Why nothing comes from B's session; undefined once it is there.
+  // Reports why nothing arrives from B's session; undefined once the session exists.
   interrupted(reason: string | undefined): void;
   onNextPaint(callback: () => void): () => void;
   later: Later;
@@ -39,7 +40,7 @@ export class ComparedSession implements SessionListener {
   #scene: Scene = create(SceneSchema);
   #presenterKey: string | undefined;
   #viewerId = 0n;
-  // Of the last problem.
+  // The revision of the last problem.
   #problemRevision = 0n;
   #sizePx = { widthPx: 1280, heightPx: 720 };
 
@@ -74,7 +75,7 @@ export class ComparedSession implements SessionListener {
     return this.#scene;
   }
 
-  // Opens the session, with this scene.
+  // Opens the session with this scene.
   start(scene: Scene): void {
     this.#scene = scene;
     void this.#client.run();
@@ -98,7 +99,7 @@ export class ComparedSession implements SessionListener {
     this.sendWindow();
   }
 
-  // A hidden page is sent no pictures.
+  // Reports the window to the server, which sends no pictures to a hidden page.
   sendWindow(): void {
     this.#client.send({ case: "window", value: this.#window() });
   }
@@ -111,7 +112,7 @@ export class ComparedSession implements SessionListener {
       void this.#calls.closeSession(this.#presenterKey).catch(() => undefined);
   }
 
-  // SessionListener.
+  // The methods of SessionListener follow.
 
   sceneToOpen(): Scene {
     this.#sync.opening();
@@ -163,17 +164,17 @@ export class ComparedSession implements SessionListener {
   }
 
   refused({ subject, message }: Refusal): void {
-    // A late acknowledgement is of no interest.
+    // The refusal of an acknowledgement does not matter.
     if (subject !== "acknowledge") this.#steps.problem(message);
   }
 
-  // Opens another one.
+  // Returns true to open another session.
   gone(): boolean {
     this.#presenterKey = undefined;
     return true;
   }
 
-  // A picture of what could not be shown before.
+  // A newer picture ends the problem.
   #painted(frame: Frame): void {
     if (frame.sceneRevision >= this.#problemRevision) this.#steps.problem(undefined);
     this.#steps.painted(frame);

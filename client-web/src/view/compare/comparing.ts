@@ -1,4 +1,5 @@
-// Compares: holds what B is, runs its session while there is a B, and keeps its scene beside A's.
+// The comparison. It holds what B shows, runs B's session while there is a B, and keeps B's scene
+// in step with A's.
 import { ConnectError } from "@connectrpc/connect";
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 import { cameraOfPose, type Pose, poseOfCamera } from "../../core/camera";
@@ -21,33 +22,33 @@ import { attachPointer } from "../pointer";
 import type { SeenPicture } from "../probing";
 import { ComparedSession } from "./compared_session";
 
-// A share of the window's width from the left, or the picture's own box.
+// A fraction of the window's width from the left, or the picture's own rectangle.
 export type MarkedView = number | "picture";
 
 export interface ComparingSteps {
   move(motion: (pose: Pose) => Pose): void;
-  // The tool in the hand, which takes places over A.
+  // Returns the active tool, which takes places over A.
   tool(): PictureTool | undefined;
-  // A click, or two at once, on B.
+  // These report a click or a double click on B.
   clicked(point: PicturePoint, picture: SeenPicture): void;
   doubleClicked(point: PicturePoint, picture: SeenPicture): void;
-  // B is to show something else.
+  // Reports that B will show something else.
   changed(): void;
   onNextPaint(callback: () => void): () => void;
   later: Later;
 }
 
 export class Comparing {
-  // Picture B; undefined while nothing is compared.
+  // The choice of picture B; undefined while nothing is compared.
   readonly choice = signal<ComparisonChoice | undefined>(undefined);
   readonly frame = signal<Frame | undefined>(undefined);
-  // A part of its scene that B cannot show, in words.
+  // A text about a part of the scene that B cannot show.
   readonly problem = signal<string | undefined>(undefined);
-  // Why no picture of B comes.
+  // Why no picture of B arrives.
   readonly interrupted = signal<string | undefined>(undefined);
-  // Share of the window that is A's, where one is swiped over the other.
+  // A's fraction of the window, while one picture is swiped over the other.
   readonly swipe = signal(0.5);
-  // The description of B's storm, if it is another.
+  // The description of B's storm, if B shows another storm.
   readonly other = signal<StormDescription | undefined>(undefined);
   // Why B's storm is not described.
   readonly undescribed = signal<string | undefined>(undefined);
@@ -56,8 +57,8 @@ export class Comparing {
     if (choice === undefined) return { index: scene.timeIndex ?? 0, awayS: 0 };
     return timeOfB(scene, choice, { storm: this.#state.storm.value, other: this.other.value });
   });
-  // Where marks and pointers are shown. They are places of A's domain, and B may be swiped over A with a storm of another; side by
-  // side they stay in A.
+  // The area in which marks and pointers are shown. They are places of A's domain, and B may show a
+  // storm of another domain. In the side-by-side layout they stay in A.
   readonly markedView = computed((): MarkedView => {
     if (this.choice.value?.layout === "side") return "picture";
     return this.#isOfADomain.value ? 1 : this.swipe.value;
@@ -98,7 +99,7 @@ export class Comparing {
           void this.#describe(stormId);
         });
       }),
-      // New times arrive in B's storm, too.
+      // This describes B's storm again, because it may have new times.
       effect(() => {
         void this.#state.storms.value;
         untracked(() => void this.#describe(this.choice.peek()?.stormId));
@@ -110,7 +111,7 @@ export class Comparing {
     ];
   }
 
-  // Compares with the settings as they are now, or changes what is compared.
+  // Begins a comparison, or changes what is compared.
   change(part: Partial<ComparisonChoice>): void {
     const first: ComparisonChoice = {
       stormId: undefined,
@@ -125,7 +126,7 @@ export class Comparing {
     this.choice.value = undefined;
   }
 
-  // The window was hidden or is seen again, or is still looked at.
+  // Reports that the window was hidden, became visible, or is still visible.
   sendWindow(): void {
     this.#session?.sendWindow();
   }
@@ -166,13 +167,13 @@ export class Comparing {
     this.#session = undefined;
   }
 
-  // B's scene; undefined while there is none, or no place for it.
+  // Returns B's scene; undefined without a comparison or a canvas.
   #wanted(): Scene | undefined {
     const choice = this.choice.value;
     const size = this.#size.value;
     const pose = this.#state.viewPose.value;
     if (choice === undefined || size.widthPx === 0 || pose === undefined) return undefined;
-    // Which of its times is A's is not known yet.
+    // Without the description, the time of B that corresponds to A's is unknown.
     const described = this.other.value !== undefined || this.undescribed.value !== undefined;
     if (choice.stormId !== undefined && !described) return undefined;
     return comparedScene(this.#state.scene.value, choice, {
@@ -183,10 +184,10 @@ export class Comparing {
     });
   }
 
-  // Strokes and pointer places on B are passed on to the same place of A, the picture that others see.
+  // Passes strokes and pointer places on B to the same places of A, because others see A.
   #toolOverA(): PictureTool | undefined {
     const tool = this.#steps.tool();
-    // Places of B are none of A's where it has a storm of another domain.
+    // If B's storm has another domain, places of B do not correspond to places of A.
     if (tool === undefined || !this.#isOfADomain.peek()) return undefined;
     const overA = (use: (place: StrokePoint) => void) => (place: StrokePoint) => {
       const [point, box] = [this.#pointAt(place), this.#state.pictureBox.peek()];
@@ -211,7 +212,7 @@ export class Comparing {
     use(point, { name: "B", scene, pose: poseOfCamera(scene.camera), projection });
   }
 
-  // The point of B's picture at a place of the window.
+  // Returns the point of B's picture at a place of the window.
   #pointAt({ left, top }: StrokePoint): PicturePoint | undefined {
     const [canvas, frame] = [this.#canvas, this.frame.peek()];
     if (canvas === undefined || frame === undefined) return undefined;
@@ -258,7 +259,7 @@ export class Comparing {
     this.#session.start(scene);
   }
 
-  // For tests: what B's canvas shows.
+  // Publishes for tests what B's canvas shows.
   #tell(data: Record<string, string>): void {
     if (this.#canvas !== undefined) Object.assign(this.#canvas.dataset, data);
   }
@@ -271,7 +272,7 @@ export class Comparing {
       this.other.value = described;
       this.undescribed.value = undefined;
     } catch (error) {
-      // An older description stays.
+      // An older description is kept.
       if (this.choice.peek()?.stormId !== stormId || this.other.peek() !== undefined) return;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
       this.undescribed.value = `The times of B are not known: ${why}`;

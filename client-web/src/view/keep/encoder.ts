@@ -1,4 +1,4 @@
-// True if this browser encodes video at all; known without the part that writes movies.
+// True if this browser can encode video. This is known without loading the code that writes movies.
 
 export const NO_VIDEO_ENCODER =
   "the browser encodes video only on pages by HTTPS or from localhost";

@@ -1,4 +1,4 @@
-// Keeps what is shown: as a picture, a scene, a link or a movie; and takes it back.
+// Saves what is shown as a picture, a scene, a link or a movie, and opens saved files.
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { PictureSize } from "../../core/camera";
 import { clampToLimits } from "../../core/limits";
@@ -65,7 +65,7 @@ export function Keep({ page }: { page: Page }) {
   );
 }
 
-// Why what was asked for in this section is not done.
+// Shows why the request of this section was refused.
 function Refused({ page, asked }: { page: Page; asked: Refusal["asked"] }) {
   const refusal = page.keeper.refusal.value;
   if (refusal?.asked !== asked) return null;
@@ -80,7 +80,8 @@ function useSize(page: Page) {
   const [name, setName] = useState<SizeName>("window");
   const [own, setOwn] = useState(page.screen.size);
   const [fixedWidth, fixedHeight] = name === "window" ? [] : name.split("x").map(Number);
-  // When it is asked for: the window may have changed since the panel was drawn.
+  // The size is computed at the time of the request, because the window may have changed since the
+  // panel was drawn.
   const size = () => {
     if (name === "own") return own;
     const window = page.screen.size;
@@ -154,7 +155,8 @@ function Movie({ page }: { page: Page }) {
   const chosen = useSize(page);
   const [form, setForm] = useState<Partial<Omit<MovieDraft, "widthPx" | "heightPx">>>({});
   const change = (part: typeof form) => setForm({ ...form, ...part });
-  // From the time shown to the newest, or all where that is shown, until they are chosen.
+  // The defaults are the times from the one shown to the newest. If the newest is shown, they are
+  // all times.
   const shown = state.timeIndex.value;
   const draft = {
     ...MOVIE,

@@ -1,4 +1,5 @@
-// Saves files: pictures with the scene inside, scenes, movies. One at a time; its progress is a signal.
+// Saves files, one at a time: pictures that contain the scene, scenes, movies. The progress is a
+// signal.
 import type { Transport } from "@connectrpc/connect";
 import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
@@ -21,28 +22,28 @@ import { drawMarks } from "../mark_drawing";
 import type { Notes } from "../notes";
 import { couldNotBeLoaded } from "../part";
 
-// What is written into the pictures of a file and its name: as it was when the file was begun.
+// The texts for the pictures of a file and for its name, as they were when the file was begun.
 interface Caption {
   readonly labels: Labels;
   readonly choice: AnnotationChoice;
   readonly marks: readonly Mark[];
-  // Of the file, without its ending.
+  // The file's name without its extension.
   readonly fileName: string;
 }
 
 export interface KeeperSteps {
-  // The named views, with the storm's own times.
+  // Returns the named views, with the storm's own times.
   views(): readonly NamedView[];
   pausePlayback(): void;
 }
 
 export interface Work {
   readonly what: string;
-  // 0 to 1.
+  // Progress from 0 to 1.
   readonly share: number;
 }
 
-// "Movie: 34 %".
+// Returns a text like "Movie: 34 %".
 export function workInWords({ what, share }: Work): string {
   return `${what}: ${Math.round(100 * share)} %`;
 }
@@ -68,11 +69,11 @@ export class Keeper {
   readonly #steps: KeeperSteps;
   readonly #remembered: RememberedMovies;
   #working: AbortController | undefined;
-  // The file that is being made is not lost with the page.
+  // True if the file being made is not lost with the page.
   #outlivesPage = false;
-  // The file being made; undefined if none is.
+  // The file being made; undefined if there is none.
   readonly work = signal<Work | undefined>(undefined);
-  // The last one, until something is asked for again.
+  // The last refusal, until the next request.
   readonly refusal = signal<Refusal | undefined>(undefined);
 
   constructor(
@@ -80,7 +81,7 @@ export class Keeper {
     state: PageState,
     notes: Notes,
     steps: KeeperSteps,
-    // Of this tab alone.
+    // The storage of this tab only.
     tabStore: TextStore | undefined,
   ) {
     this.#calls = new RenderCalls(transport);
@@ -141,14 +142,14 @@ export class Keeper {
     );
   }
 
-  // Opens a picture or a scene that was saved before.
+  // Opens a saved picture or scene.
   async open(file: File): Promise<void> {
     this.#allow("file");
     try {
       const scene = sceneOfFile(new Uint8Array(await file.arrayBuffer()));
       const block = this.#state.session.editBlock.peek();
       if (block !== undefined) throw new Error(`the scene cannot be changed from here: ${block}`);
-      // Its own time is to stay on the screen.
+      // Playback stops so that the file's time stays on the screen.
       this.#steps.pausePlayback();
       this.#state.restore(scene);
       this.#notes.say("file", `The view of ${file.name}`);
@@ -157,12 +158,12 @@ export class Keeper {
     }
   }
 
-  // True if this browser puts another codec than H.264, which every player knows, into an MP4.
+  // Returns true if this browser cannot write an MP4 with H.264, which every player supports.
   async lacksH264(size: PictureSize): Promise<boolean> {
     try {
       return (await (await movieFile()).codecOf({ ...size, format: "mp4" })) !== "avc";
     } catch {
-      // Making the movie says why.
+      // The reason is shown when the movie is made.
       return false;
     }
   }
@@ -172,7 +173,7 @@ export class Keeper {
     const stormId = this.#state.stormId.peek();
     return this.#make("Movie", async (abort, progress) => {
       const scenes = movieScenes(this.sceneShown(), draft, this.#steps.views());
-      // Before the server draws pictures that this browser cannot make a movie of.
+      // The codec is checked before the server draws pictures that this browser could not encode.
       await (await movieFile()).codecOf(draft);
       const jobId = await this.#calls.beginJob(scenes, `movie of ${stormId}`, abort);
       if (jobId === undefined) {
@@ -185,7 +186,7 @@ export class Keeper {
     });
   }
 
-  // Goes on with the movie that a reload interrupted, once its storm is shown.
+  // Continues a movie that a reload interrupted, once its storm is shown.
   resumeMovie(stormId: string): void {
     const work = this.#remembered.of(stormId);
     if (work === undefined || this.#working !== undefined) return;
@@ -206,7 +207,7 @@ export class Keeper {
       const drawn = this.#calls.picturesOfJob(jobId, pictures, abort);
       await this.#writeMovie(draft, caption, drawn, pictures, progress);
     } finally {
-      // Done or given up: nobody else fetches them.
+      // The movie is finished or cancelled, so no other client fetches its pictures.
       this.#remembered.forget(stormId);
       await this.#calls.forgetJob(jobId);
     }
@@ -259,7 +260,8 @@ export class Keeper {
     }
   }
 
-  // Says it in the panel, or where that is closed, as after a long movie or when a file was dropped on the page, over the picture.
+  // Shows the reason in the panel. If the panel is closed, for example after a long movie or a
+  // dropped file, shows it over the picture.
   #refuse(subject: string, asked: Asked, why: string): void {
     if (this.#state.popover.peek() === "keep") this.refusal.value = { asked, why };
     else this.#notes.problem(subject, why);
@@ -270,7 +272,7 @@ export class Keeper {
     this.#state.dismiss(subject);
   }
 
-  // The scene, with the own view's camera while this page looks around.
+  // Returns the scene. While this page looks around, it has the camera of the own view.
   sceneShown(): Scene {
     const scene = this.#state.scene.peek();
     const frame = this.#state.frame.peek();
@@ -318,6 +320,6 @@ function download(bytes: Uint8Array<ArrayBuffer>, name: string, type: string): v
   link.href = url;
   link.download = name;
   link.click();
-  // The browser has taken the data by then.
+  // The delay gives the browser time to read the data.
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

@@ -1,4 +1,5 @@
-// A movie from pictures, encoded by the browser: VP9 in WebM, H.264 or else VP9 in MP4. Loaded with the first movie.
+// Encodes pictures to a movie in the browser: VP9 in WebM, or H.264 in MP4, with VP9 as the
+// fallback. This code is loaded with the first movie.
 import {
   BufferTarget,
   CanvasSource,
@@ -26,15 +27,16 @@ const CODECS: Readonly<Record<MovieDraft["format"], readonly VideoCodec[]>> = {
 
 type FileForm = Pick<MovieDraft, "format"> & PictureSize;
 
-// Encoders want even sides.
+// Video encoders require even sides.
 const sidesOf = ({ widthPx, heightPx }: PictureSize) => [widthPx & ~1, heightPx & ~1] as const;
 
-// The codec of that movie's file. Throws an Error for people if this browser encodes no such video.
+// Returns the codec of that movie's file. Throws an Error with a message for people if this browser
+// cannot encode such a video.
 export function codecOf({ format, ...size }: FileForm): Promise<VideoCodec> {
   return encodable(format, ...sidesOf(size));
 }
 
-// Throws as codecOf does.
+// Starts a movie. Throws the same errors as codecOf.
 export async function startMovie(draft: MovieDraft): Promise<MovieFile> {
   const [width, height] = sidesOf(draft);
   const codec = await codecOf(draft);

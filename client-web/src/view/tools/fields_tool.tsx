@@ -1,4 +1,4 @@
-// The storm's contents: a row for each of its fields.
+// The storm's contents, with a row for each of its fields.
 import { FieldsSection } from "../fields_section";
 import type { Page } from "../page";
 

@@ -1,5 +1,6 @@
-// The inset map: the storm's column water path, coasts and borders, the camera with its angle of view, the sun. A click stands
-// there, a drag from there looks, a double click turns around that place.
+// The inset map: the storm's column water path, coasts and borders, the camera with its angle of
+// view, the sun. A click moves the camera to that place. A drag from there sets its direction. A
+// double click turns the camera around that place.
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Pose, TopDownPose } from "../../core/camera";
 import { type Extent, extentOf, placeOnMap, standOf, worldOfMap } from "../../core/map_frame";
@@ -17,7 +18,7 @@ export interface MapSteps {
 // A second click within this time makes a double click.
 const DOUBLE_CLICK_MS = 230;
 const DRAG_PX = 5;
-// Of the map's width, by an arrow key.
+// Step of an arrow key, as a fraction of the map's width.
 const CURSOR_STEP = 0.025;
 const SIZE = 100;
 
@@ -78,7 +79,7 @@ const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
 
 const clamp = (share: number) => Math.min(1, Math.max(0, share));
 
-// Before the server has sent the map, the storm's description tells the domain.
+// Returns the domain. Before the server has sent the map, it is that of the storm's description.
 function domainOf(map: GetStormMapResponse | undefined, state: PageState): Extent {
   const grid = state.storm.value?.grid;
   const low = map?.low ?? grid?.low;
@@ -178,7 +179,8 @@ function usePointer(extent: Extent, steps: MapSteps) {
   };
 }
 
-// Above this share of the largest water path a column is as white as it gets; columns' paths span many powers of ten.
+// Above this fraction of the largest water path a column is fully white. The columns' paths span
+// many powers of ten.
 const WHITE_SHARE = 0.6;
 const FAINTEST_SHARE = 2e-4;
 
@@ -192,7 +194,7 @@ function WaterPath({ map, extent }: { map: GetStormMapResponse; extent: Extent }
     for (let row = 0; row < map.heightPx; row += 1) {
       for (let column = 0; column < map.widthPx; column += 1) {
         const value = map.values[row * map.widthPx + column] ?? 0;
-        // Rows count from the south.
+        // The map's rows count from the south.
         const at = 4 * ((map.heightPx - 1 - row) * map.widthPx + column);
         const share =
           value <= faintest ? 0 : Math.log(value / faintest) / Math.log(whitest / faintest);
@@ -239,7 +241,7 @@ function Domain(props: { state: PageState; extent: Extent; map: GetStormMapRespo
   return <Ground name="map-domain" part={domain} extent={props.extent} />;
 }
 
-// A part of the ground, as a rectangle of class `name`.
+// Draws a part of the ground as a rectangle of class `name`.
 function Ground({ name, part, extent }: { name: string; part: Extent; extent: Extent }) {
   const corner = placeOnMap(extent, [part.westM, part.northM]);
   const other = placeOnMap(extent, [part.eastM, part.southM]);
@@ -262,7 +264,7 @@ function CameraOnMap({ state, extent }: { state: PageState; extent: Extent }) {
   const stand = standOf(pose);
   if (stand === undefined) return null;
   const place = placeOnMap(extent, stand.placeM);
-  // A camera that is far away is at the edge.
+  // A camera that is far away is shown at the edge.
   const x = SIZE * Math.min(0.97, Math.max(0.03, place.right));
   const y = SIZE * Math.min(0.97, Math.max(0.03, place.down));
   const right = state.frame.value?.projection?.right;
@@ -292,7 +294,7 @@ interface FromAbove {
   readonly extent: Extent;
 }
 
-// The part of the ground that a picture from above shows.
+// Draws the part of the ground that a picture from above shows.
 function SeenFromAbove({ pose: { centerM, widthM }, state, extent }: FromAbove) {
   const { widthPx = 1, heightPx = 1 } = state.frame.value ?? {};
   const [halfWidthM, halfHeightM] = [widthM / 2, (widthM / 2) * (heightPx / widthPx)];
@@ -317,7 +319,7 @@ function SeenFromAbove({ pose: { centerM, widthM }, state, extent }: FromAbove) 
   );
 }
 
-// In the corner: where the light comes from.
+// Draws in the corner the direction from which the light comes.
 function SunOnMap({ azimuthDeg }: { azimuthDeg: number }) {
   const azimuth = (azimuthDeg * Math.PI) / 180;
   const [x, y] = [88, 20];
@@ -344,7 +346,8 @@ interface ScaleBarProps {
   readonly cameraM: readonly [number, number] | undefined;
 }
 
-// In the lower left corner, or in the lower right one while the camera is at the left.
+// Draws a scale bar in the lower left corner. While the camera is at the left, it is in the lower
+// right corner.
 function ScaleBar({ extent, cameraM }: ScaleBarProps) {
   const width = extent.eastM - extent.westM;
   const lengthM = roundLength(width / 4);

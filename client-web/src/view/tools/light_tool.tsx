@@ -1,4 +1,4 @@
-// Where the light comes from: the sun by the clock or by hand, and other lights.
+// The sources of light: the sun by the clock or by hand, and other lights.
 import { LightsSection } from "../lights_section";
 import type { Page } from "../page";
 import { SunControls } from "../sun_section";

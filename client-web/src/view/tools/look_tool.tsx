@@ -1,4 +1,5 @@
-// How the picture is made and how far to trust it: quality, what it misses, colours, exposure, detail, what is written over it.
+// How the picture is made and how accurate it is: quality, what it leaves out, colours, exposure,
+// detail, and annotations.
 import type { AnnotationChoice } from "../../core/annotations";
 import { hasSetting, isSettingOn } from "../../core/rendering";
 import type { PageState } from "../../core/state";
@@ -28,7 +29,7 @@ const COLOURS = [
   ["false", "False colours", "Each field in a colour of its own, with a legend."],
 ] as const;
 
-// Only what the technique that draws can show.
+// Shows only the choices that the technique can draw.
 function Colours({ state }: { state: PageState }) {
   const settings = state.settings.value;
   const technique = state.technique.value;

@@ -1,5 +1,5 @@
-// Coasts, borders and states as lines in world metres, by the projection of the model's grid. Loaded with its data when a map
-// of a storm with a place opens.
+// Coasts, borders and states as lines in world metres, by the projection of the model's grid. The
+// code and its data are loaded when a map of a storm with a place opens.
 import {
   type GeoProjection,
   geoAzimuthalEquidistant,
@@ -13,26 +13,28 @@ import { mesh } from "topojson-client";
 import type { GeometryCollection, Topology } from "topojson-specification";
 import type { Extent } from "../../core/map_frame";
 
-// WRF's Earth.
+// Radius of WRF's Earth.
 const EARTH_M = 6_370_000;
-// Distance within which curves follow the projection.
+// Maximum distance between a curve and its approximation by lines.
 const PRECISION_M = 500;
 
 export interface GridPlace {
-  // As PROJ writes it; may be empty.
+  // The projection in PROJ's notation; may be empty.
   readonly projection: string;
   readonly latitudeDeg: number;
   readonly longitudeDeg: number;
 }
 
-// x east and y north of the middle of the domain, in metres, of a place on Earth. d3 counts y down.
+// Returns the projection of a place on Earth to x east and y north of the domain's middle, in
+// metres. d3 counts y down.
 export function gridProjection(place: GridPlace): GeoProjection {
   const projection = unshifted(place).translate([0, 0]).precision(PRECISION_M);
   const middle = projection([place.longitudeDeg, place.latitudeDeg]) ?? [0, 0];
   return projection.translate([-middle[0], -middle[1]]);
 }
 
-// Projections that the page does not know are close to an azimuthal one near the domain's middle.
+// Projections that the page does not know are approximated by an azimuthal one, which is close to
+// them near the domain's middle.
 function unshifted({ projection, latitudeDeg, longitudeDeg }: GridPlace): GeoProjection {
   const number = (name: string): number | undefined => {
     const text = new RegExp(`\\+${name}=(-?[\\d.]+)`).exec(projection)?.[1];
@@ -71,7 +73,7 @@ function unshifted({ projection, latitudeDeg, longitudeDeg }: GridPlace): GeoPro
 }
 
 export interface MapLines {
-  // Paths of SVG in metres, x to the east and y to the south.
+  // SVG paths in metres, x to the east and y to the south.
   readonly countries: string;
   readonly states: string;
 }

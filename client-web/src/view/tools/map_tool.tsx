@@ -1,4 +1,5 @@
-// Where the picture is taken from: the inset map, the kind of camera, places by distance and direction, named views.
+// The camera's position: the inset map, the kind of camera, places by distance and direction, named
+// views.
 import { create } from "@bufbuild/protobuf";
 import { useState } from "preact/hooks";
 import { placeFrom } from "../../core/map_frame";
@@ -36,7 +37,7 @@ export function MapTool({ page }: { page: Page }) {
   );
 }
 
-// Absent values are the server's to choose: it looks at the storm.
+// The server chooses absent values, so that the camera looks at the storm.
 function spotterAt([xM, yM]: readonly [number, number], azimuthDeg?: number): Camera {
   return create(CameraSchema, { kind: { case: "spotter", value: { xM, yM, azimuthDeg } } });
 }
@@ -46,7 +47,7 @@ const DIRECTIONS = [0, 45, 90, 135, 180, 225, 270, 315].map(
 );
 const MIDDLE = -1;
 
-// "20 km SE of the graupel core".
+// Chooses a place such as "20 km SE of the graupel core".
 function StandOff({ page }: { page: Page }) {
   const { state } = page;
   const cores = (state.stormMap.value?.maxima ?? []).filter(({ position }) => position);

@@ -1,4 +1,5 @@
-// Marks that everybody sees over the picture: pen, arrow, words and a pointer, at their places in the world.
+// Marks that all people see over the picture: pen, arrow, text and a pointer, at their positions in
+// the world.
 import { leftOutInWords, MAX_LETTERS } from "../../core/lettering";
 import type { Tool } from "../../core/session_state";
 import { Icon } from "../icons";

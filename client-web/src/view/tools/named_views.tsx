@@ -1,4 +1,4 @@
-// Views to come back to: a click on one shows it, the last button keeps the present one.
+// The named views. A click on a view shows it, and the last button keeps the present view.
 import { useState } from "preact/hooks";
 import { cameraOfPose } from "../../core/camera";
 import { MAX_VIEWS } from "../../core/named_views";

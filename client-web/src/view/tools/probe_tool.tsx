@@ -1,4 +1,5 @@
-// The probe: a click on the picture asks the server for the place, and the values of every field along the ray.
+// The probe. A click on the picture asks the server for the place, and for the values of every
+// field along the ray.
 
 import { nameOfHydrometeor } from "../../core/names";
 import { displacementBetween, type Probed, placeInWords, readable } from "../../core/probe";
@@ -137,14 +138,15 @@ function FieldRow({ state, field }: { state: PageState; field: FieldAlongRay }) 
   );
 }
 
-// Models leave traces of condensate where there is none: smaller values are shown as "< 0.001".
+// Models leave traces of condensate in clear air, so smaller values are shown as "< 0.001".
 const LEAST = 0.001;
 
 function amount(value: number): string {
   return value > 0 && value < LEAST ? `< ${LEAST}` : formatNumber(value);
 }
 
-// Where each field is strongest in the whole storm; a click turns the camera around that place.
+// The places where each field is strongest in the whole storm. A click turns the camera around that
+// place.
 function Cores({ page }: { page: Page }) {
   const { state } = page;
   const map = state.stormMap.value;
@@ -173,7 +175,8 @@ function Cores({ page }: { page: Page }) {
 interface CoreProps {
   readonly page: Page;
   readonly core: FieldMaximum;
-  // True while the core is that of the time shown before, until the answer for this time arrives.
+  // True while the core belongs to the previously shown time, until the answer for this time
+  // arrives.
   readonly old: boolean;
 }
 

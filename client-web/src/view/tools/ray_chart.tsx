@@ -1,4 +1,4 @@
-// The fields along a ray as a chart. uPlot is loaded with the first chart.
+// A chart of the fields along a ray. uPlot is loaded with the first chart.
 import { useEffect, useRef } from "preact/hooks";
 import { nameOfHydrometeor } from "../../core/names";
 import { readable } from "../../core/probe";
@@ -10,7 +10,7 @@ import { withPart } from "../part";
 const HEIGHT_PX = 170;
 
 function valueInWords(value: number | null, units: string): string {
-  // Nothing to say until the pointer is on the chart.
+  // There is no value until the pointer is on the chart.
   return value === null ? "" : `${formatNumber(value)} ${readable(units).symbol}`;
 }
 
@@ -42,7 +42,7 @@ export function RayChart({ state, found }: { state: PageState; found: ProbeRayRe
           {
             width: place.current.clientWidth,
             height: HEIGHT_PX,
-            // With the values under the pointer.
+            // The legend shows the values under the pointer.
             legend: { live: true },
             cursor: { y: false },
             scales: { x: { time: false } },

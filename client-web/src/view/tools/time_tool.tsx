@@ -1,4 +1,4 @@
-// When: the valid time, the run it belongs to, and how the times are played.
+// The valid time, the run that contains it, and the playback of the times.
 import { momentOf } from "../../core/moment";
 import { PLAY_RATES } from "../../core/playback";
 import { formatElapsed, type LengthUnits, lengthUnits } from "../../core/units";
