@@ -3,7 +3,6 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -46,7 +45,7 @@ void Show(const v1::RenderImageProgress& progress, ProgressBar& bar) {
   if (progress.has_estimated_error()) {
     absl::StrAppendFormat(&note, ", error about %.2g", progress.estimated_error());
   }
-  bar.Note(std::move(note));
+  bar.Note(note);
 }
 
 absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel>& channel,

@@ -159,16 +159,13 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
                                                    const ReadProgress& progress) {
   const auto listener = std::make_shared<Listener>();
   listener->progress = progress;
-  // Keeps the read alive after its removal from pending_, because `read` may be a reference into
-  // it.
-  const std::shared_ptr<PendingRead> shared = read;
-  ++shared->waiters;
-  if (progress) shared->listeners.push_back(listener);
+  ++read->waiters;
+  if (progress) read->listeners.push_back(listener);
   changed_.notify_all();  // wakes the reading thread, or a paused read-ahead
-  while (!shared->result.has_value()) {
-    const std::optional<HungRead> hung = HoldsUp(*shared);
+  while (!read->result.has_value()) {
+    const std::optional<HungRead> hung = HoldsUp(*read);
     if (ending_ || hung.has_value()) {
-      --shared->waiters;
+      --read->waiters;
       lock.unlock();
       {
         const std::lock_guard calling(listener->mutex);
@@ -180,10 +177,10 @@ CachedStormStore::Fields CachedStormStore::WaitFor(Lock& lock,
     }
     steady_clock::time_point next = Now() + options_.read_deadline;
     for (const Activity& activity : reading_asked_) next = std::min(next, HangsAt(activity));
-    if (shared->activity != nullptr) next = HangsAt(*shared->activity);
+    if (read->activity != nullptr) next = HangsAt(*read->activity);
     changed_.wait_until(lock, options_.time->LookAgainAt(next + std::chrono::milliseconds(1)));
   }
-  return *shared->result;
+  return *read->result;
 }
 
 std::optional<HungRead> CachedStormStore::HoldsUp(const PendingRead& read) {
@@ -192,7 +189,7 @@ std::optional<HungRead> CachedStormStore::HoldsUp(const PendingRead& read) {
 
 std::optional<HungRead> CachedStormStore::HungOnStorageOf(const Place& place) {
   for (Activity& activity : reading_asked_) {
-    const std::optional<HungRead> hung = NoteHang(activity);
+    std::optional<HungRead> hung = NoteHang(activity);
     if (hung.has_value() &&
         AreOfOneStorage(FileOf(*place.storm, place.time), hung->file, hung->device)) {
       return hung;

@@ -72,8 +72,7 @@ function Costs({ state }: { state: PageState }) {
               testId="technique"
               text={nameOfTechnique(frame.modelled.technique)}
             />
-            {/* The reference is traced on the CPU, so it has no slices and uses no device memory.
-                */}
+            {/* The reference is traced on the CPU: it has no slices and no device memory. */}
             {frame.refinement === undefined && (
               <>
                 {frame.modelled.balls > 0 && (
