@@ -120,7 +120,7 @@ class ErrorEstimate {
 
   Group All() const;
   Ratios RatiosOf(const Group& group, std::size_t clamp) const;
-  // Returns the lowest clamp that removes little light.
+  // Returns the clamp with the narrowest interval, including the bias that clamping may cause.
   std::size_t BestClamp(const Group& all) const;
 
   // Number of groups, to which pixels are assigned in turn, for the jackknife.

@@ -5,7 +5,7 @@ namespace thunderhead::accuracy {
 
 struct FrameQuality {
   double image_scale =
-      1.0;  // of the frame buffer's width and height, (0, 1]; the frame keeps its size
+      1.0;  // of the eye buffer's width and height, (0, 1]; the frame keeps its size
   double slice_share = 1.0;  // of the scene's slices, (0, 1]
 
   // Whether rays are placed where the picture needs them (accuracy/moving_picture.h), for

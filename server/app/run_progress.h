@@ -1,6 +1,6 @@
 // Reports the progress of a run of many pictures. On a terminal it shows a bar, otherwise a line
-// per product. It can also write lines of JSON for machines, or set ecFlow's meter in a task of
-// ecFlow.
+// per product. It can also write lines of JSON for machines. In a task of ecFlow it can write a
+// line per product and also set ecFlow's meter.
 #pragma once
 
 #include <memory>

@@ -12,7 +12,7 @@ namespace thunderhead::app {
 
 struct SceneFlags {
   std::string file;  // may be empty, like the other strings
-  std::string view;  // another file, which `file` overrides
+  std::string view;  // another file, whose values override those of `file`
   std::optional<std::uint32_t> time_index;
   std::optional<std::uint32_t> slices;
   std::string size;       // WIDTHxHEIGHT

@@ -29,8 +29,8 @@ absl::Status WriteProblem(std::string_view message, int code);
 // Creates the folder and its parents. Errors are those of WriteProblem.
 absl::Status MakeFolders(const std::string& folder);
 
-// Renames the complete file at PartialPath(path) to `path`. Errors are those of WriteProblem. The
-// partial file is then removed.
+// Renames the complete file at PartialPath(path) to `path`. Errors are those of WriteProblem. After
+// an error the partial file no longer exists.
 absl::Status PublishFile(const std::string& path);
 
 }  // namespace thunderhead::base

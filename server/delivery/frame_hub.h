@@ -106,9 +106,9 @@ class FrameHub {
   // viewer is due.
   std::optional<Time> WakeWaiting(Time now);
 
-  // Returns the video pictures to encode of a frame before it is published. If stills follow a
-  // frame at rest, only viewers that take stills and have none of the scene get it as video. The
-  // others get it as JPEG.
+  // Returns the video pictures to encode of a frame before it is published. Viewers get a frame at
+  // rest as JPEG, except viewers that take stills if stills of the frame follow. Those get it as
+  // video if they have no still of the scene, and otherwise wait for the frame's still.
   std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool still_follows,
                                      std::optional<Time> at = std::nullopt);
   // Replaces the newest frame. `described` has no picture yet; `encode` makes one for each tier

@@ -98,7 +98,7 @@ class VideoStream {
   struct Asked {
     bool key = false;          // a viewer that may have a key picture needs one
     bool next = false;         // a viewer can take the picture after the newest base picture
-    bool others_wait = false;  // a viewer in the stream is not ready
+    bool others_wait = false;  // a viewer in the stream cannot take the next picture yet
   };
 
   Asked asked_;

@@ -23,7 +23,7 @@ namespace thunderhead::drawing {
 struct FieldsKey {
   std::string storm_id;
   int time_index = 0;
-  // volume::StormTime::version at the time of the request.
+  // storm_store::StormTime::version at the time of the request.
   std::uint64_t version = 0;
 
   bool operator==(const FieldsKey&) const = default;

@@ -34,8 +34,8 @@ class TruthSource {
 
 using TruthSourceFactory = std::function<std::unique_ptr<TruthSource>()>;
 
-// Returns the reference on `threads` threads. 0 means all cores except a quarter of them, but at
-// least one, for other work.
+// Returns the reference on `threads` threads. 0 means all cores except those left for other work,
+// which are a quarter of the cores and at least one.
 std::unique_ptr<TruthSource> MakeReferenceTruthSource(int threads = 0);
 
 }  // namespace thunderhead::drawing

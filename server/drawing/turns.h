@@ -49,7 +49,7 @@ class Turns {
  private:
   // Time used beyond the share of the contender that used least; zero or negative.
   using Balances = std::map<std::string, double>;
-  // A group of a class: shared views, or own views of one person.
+  // A group of a class: all shared views, or all own views.
   struct Group {
     Balances balances;
     std::vector<double> left_behind;  // negative balances of contenders that left

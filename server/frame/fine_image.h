@@ -1,4 +1,5 @@
-// A display picture with more than 8 bits a channel, for images whose sky must not show bands.
+// A display picture with more than 8 bits a channel, for resting frames whose sky must not show
+// bands.
 #pragma once
 
 #include <cstdint>

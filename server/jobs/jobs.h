@@ -71,7 +71,7 @@ struct JobsLoad {
 
 class Jobs {
  public:
-  // Called on the jobs' own thread, or on the caller's if the server stops.
+  // Called on the jobs' own thread, or on the caller's thread if the call is refused at once.
   using Done = std::function<void(const absl::StatusOr<JobView>&)>;
 
   // Reads the store and removes results that belong to no job. Begins no picture.

@@ -146,7 +146,7 @@ absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> 
       H5Pset_file_image(access.get(), image, bytes.size()) < 0) {
     return absl::ResourceExhaustedError(absl::StrCat(path, ": HDF5 has no memory to look at it"));
   }
-  // HDF5 refuses the name of a file that exists, so the name must not be a possible path.
+  // HDF5 refuses the name of a file that exists, so this name is one that no file has.
   return Look(path, H5Fopen("bytes in memory, no file", H5F_ACC_RDONLY, access.get()));
 }
 

@@ -219,7 +219,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
   if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
-  // The writer has just created an empty file. HDF5 would report it as "unknown format".
+  // An empty file has just been created by its writer. HDF5 would report it as "unknown format".
   if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
   std::ifstream header(path, std::ios::binary);
   THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));

@@ -24,7 +24,7 @@ class NetcdfWriter {
 
   // Both functions return netCDF-C's id of the new dimension or variable.
   int Dimension(const char* name, std::size_t length);
-  // Defines a variable, compressed if it has dimensions. The last dimension runs fastest.
+  // Defines a variable, compressed if it has several dimensions. The last dimension runs fastest.
   int Variable(const char* name, nc_type type, const std::vector<int>& dimensions);
 
   void Text(int variable, const char* name, const std::string& text);

@@ -224,8 +224,8 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
 
 namespace {
 
-// Returns a point of a ray. The vertical there is tilted in proportion to the distance, because the
-// Earth is round.
+// Returns a point of a ray. The vertical at the point tilts with the distance, because the Earth is
+// round.
 AirPlace PlaceOn(const Atmosphere::Line& line, const Atmosphere::Sunwards& sun, float distance_m,
                  float height_m) {
   const float above = distance_m * sun.mu + (kEarthRadius_m + line.height_m) * sun.sine;

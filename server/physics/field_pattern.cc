@@ -77,7 +77,7 @@ class FieldMap {
     std::array<Crop, 4> crops;
     for (Crop& crop : crops) crop = RandomCrop(random);
     const double layout = random->Next();
-    if (layout < 0.15) {  // cells in the corners that centre-pivot irrigation does not reach
+    if (layout < 0.15) {  // stubble covers the corners that the centre pivot leaves dry
       Plant(west, south, {kFieldCrops[0], kFieldCrops[0], kFieldCrops[0], kFieldCrops[0]}, 1.0F);
     } else if (layout < 0.55) {
       Plant(west, south, {crops[0], crops[0], crops[0], crops[0]});

@@ -35,7 +35,8 @@ void FillTexels(const std::vector<std::uint32_t>& sums, TurbulenceTile* tile) {
   }
 }
 
-// Adds to each texel its neighbours along an axis, with the weights 1, 4 and 1.
+// Returns for each texel the sum of the texel, weighted by 4, and its two neighbours along an axis,
+// weighted by 1.
 std::vector<std::uint32_t> Spread(const std::vector<std::uint32_t>& values, std::size_t side,
                                   std::size_t stride) {
   std::vector<std::uint32_t> spread(values.size());

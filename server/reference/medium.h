@@ -27,8 +27,8 @@ enum class Sides { kOpen, kPeriodic };
 // often. After a few scatterings, light is nearly the same in both. The similar optics follow the
 // scaling of delta-Eddington (Joseph, Wiscombe and Weinman 1976). For a group of asymmetry g, a
 // share g^2 of the scattered light counts as not scattered. The rest is scattered by Henyey and
-// Greenstein's function of g / (1 + g). Paths are shorter in the similar medium because sunlight
-// reaches deeper.
+// Greenstein's function of g / (1 + g). In the similar medium sunlight reaches deeper, and paths
+// are shorter.
 enum class Optics { kExact, kSimilar };
 
 // The result of delta scaling, in which a share of the scattered light counts as not scattered.

@@ -40,7 +40,7 @@ class Path {
     return radiance_;
   }
 
-  // Returns the light that arrived along `direction` and is scattered by the medium at `point_m`.
+  // Returns the light that the medium scatters at `point_m` to the opposite of `direction`.
   glm::dvec3 FollowFrom(const glm::dvec3& point_m, const glm::dvec3& direction) {
     ray_ = {point_m, direction};
     return Scatter(point_m) ? Follow(ray_) : radiance_;

@@ -215,9 +215,9 @@ Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind be
 constexpr float kMostGathered = 2.0F;
 
 // Returns the light that a metre of lit air at `distance_m` on a ray sends to the eye. It is that
-// metre's part of the airlight of AirBefore, divided by how strongly sun and sky light it.
-// AirBefore distributes the sky's light along the ray in proportion to extinction. Next to the sun,
-// haze near the eye contributes more.
+// metre's part of the airlight of AirBefore. Sun and sky share it in proportion to the light that
+// they make the air scatter. AirBefore distributes the sky's light along the ray in proportion to
+// extinction. Next to the sun, haze near the eye contributes more.
 AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                     const glm::dvec3& towards_sun) {
   namespace air = physics::glsl;

@@ -22,7 +22,8 @@ constexpr double kHighest_m = 3e4;  // air above counts as equally bright
 constexpr int kPixelsPerRay = 6;        // pixels per ray along each side
 constexpr glm::ivec2 kMinRays(48, 36);  // used unless the picture has fewer pixels
 constexpr glm::ivec2 kMaxRays(160, 120);
-constexpr int kDistances = 25;  // number of distances, also for the sky's share
+// Number of distances, each with a layer. One more layer holds the share of the whole sky.
+constexpr int kDistances = 25;
 
 // Spacing of the points for the sky's hidden share, which varies slowly.
 constexpr double kHiddenSpacing_m = 5000.0;

@@ -14,7 +14,7 @@ struct Content {
   std::vector<physics::Hydrometeor> fields;  // the drawn fields
   double occupied_share = 0.0;               // share of the domain's volume
   int balls = 0;                             // number of metaballs
-  // Root mean square error of the metaballs, relative to that of the extinction.
+  // Root mean square error of the metaballs, relative to the root mean square of the extinction.
   double fit_error = 0.0;
   int ellipsoids = 0;    // number of ellipsoids of a cumulus
   scene::Ground ground;  // the ground as drawn

@@ -138,8 +138,10 @@ glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   constexpr float kSolidAngle = 2.0F * kPi / (kElevations * kAzimuths);
   if (sun.z <= 0.0F) return glm::vec3(0.0F);
   glm::vec3 facing(0.0F);
-  float even = 0.0F;     // radiance from a sky of radiance 1
-  float falling = 0.0F;  // radiance from a sky of 1 - sine of the elevation
+  // Irradiances on a surface that faces the sun: by a sky of radiance 1, and by one of radiance
+  // 1 - sine of the elevation.
+  float even = 0.0F;
+  float falling = 0.0F;
   for (int i = 0; i < kElevations; ++i) {
     const float sine = (static_cast<float>(i) + 0.5F) / kElevations;
     const float cosine = std::sqrt(1.0F - sine * sine);

@@ -60,8 +60,8 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   std::map<std::string, Offender> offenders_;
 };
 
-// Returns `formats` such that confined readers read every file. The readers use the program's
-// formats.
+// Returns `formats` such that confined readers read every file. The readers use the formats of the
+// reader program, and not those that were added to `formats`.
 storm_files::StormFormats Confined(storm_files::StormFormats formats,
                                    const std::shared_ptr<ConfinedFiles>& files);
 

@@ -11,7 +11,7 @@ namespace thunderhead::scene {
 enum class DetailUse {
   kNone,
   kMedium,     // the medium has structure finer than the grid; a setting turns it on
-  kRoughness,  // the detail of the field with the largest share roughens the field's surfaces
+  kRoughness,  // the detail of the field with the largest share roughens the technique's surfaces
 };
 
 struct Capabilities {

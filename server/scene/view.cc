@@ -191,8 +191,8 @@ SpotterCamera LookingAt(SpotterCamera camera, const glm::dvec3& low_m, const glm
   const glm::dvec2 towards_m = glm::dvec2(low_m + high_m) / 2.0 - camera.place_m;
   const double distance_m = glm::length(towards_m);
   if (distance_m > 0.0) camera.azimuth_deg = AzimuthOf(towards_m);
-  // The camera looks down so that the top is as far above the picture's middle as the near ground
-  // is below it.
+  // The camera looks up at half the elevation of the storm's top. The top is then as far above the
+  // picture's middle as the ground at the storm's foot is below it.
   camera.elevation_deg = 0.5 * glm::degrees(std::atan2(high_m.z - low_m.z, distance_m));
   return camera;
 }

@@ -288,7 +288,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
     for (const auto& [id, ray] : rays) found.push_back({id, place(ray)});
     lock.lock();
     for (const Pointer& pointer : found) {
-      // Skips pointers that moved again or were removed meanwhile.
+      // Skips pointers that were removed meanwhile.
       if (finding_.erase(pointer.person_id) > 0) {
         board_.Point(pointer.person_id, pointer.position_m);
       }

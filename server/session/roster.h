@@ -94,8 +94,8 @@ class Roster {
          const RosterTimeouts& timeouts = {})
       : timeouts_(timeouts), rules_(rules), away_since_(now), count_(last_id) {}
 
-  // Restores the control of the previous server run, where it waits for the viewer who steered.
-  // Must be called before the first person joins.
+  // Restores the control of the previous server run. If a viewer steered, control waits for that
+  // viewer. Must be called before the first person joins.
   void RestoreControl(const KeptControl& kept, Time now);
   KeptControl ControlToKeep() const;
 

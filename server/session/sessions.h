@@ -60,7 +60,7 @@ class OwnView;
 
 // An update whose scene is not complete yet.
 struct IncompleteUpdate {
-  std::function<bool()> still_counts = {};  // false: its sender lost control
+  std::function<bool()> still_counts = {};  // false: its sender lost control; empty: it counts
   std::string serialized = {};              // the scene as far as it is known; may be empty
 };
 

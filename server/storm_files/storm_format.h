@@ -61,7 +61,8 @@ class StormFormats {
 
   void Add(std::shared_ptr<const StormFormat> format) { formats_.push_back(std::move(format)); }
 
-  // Makes another process describe every file. The files' readers then come from that process, too.
+  // Makes `elsewhere` describe every file, for example in another process. Each file is then read
+  // by the reader in its description.
   using Elsewhere = std::function<absl::StatusOr<StormFile>(const std::string& path)>;
   void LeaveTo(Elsewhere elsewhere) { elsewhere_ = std::move(elsewhere); }
 

@@ -53,9 +53,9 @@ std::vector<double> LevelMeans(const std::vector<float>& values, int levels);
 std::vector<glm::dvec2> MeanWinds(const std::vector<float>& u_m_per_s,
                                   const std::vector<float>& v_m_per_s, int levels);
 
-// Returns the mean of `winds`, weighted by height, in the lowest 6 km above the first interface.
-// The winds are those of levels between `interface_height_m` (one more). Returns 0 if the heights
-// there are missing, or if the mean is implausibly strong (kMaxSteering_m_per_s).
+// Returns the mean of `winds`, weighted by the thickness of levels, in the lowest 6 km above the
+// first interface. The winds are those of levels between `interface_height_m` (one more). Returns 0
+// if the heights there are missing, or if the mean is implausibly strong (kMaxSteering_m_per_s).
 glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
                                 const std::vector<double>& interface_height_m);
 

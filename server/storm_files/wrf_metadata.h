@@ -43,7 +43,7 @@ struct WrfMetadata {
   std::array<volume::SizeVariable, physics::kHydrometeorCount> sizes;
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
   // The variable of turbulent kinetic energy, without a name if there is none. Boundary layer
-  // schemes write it on interfaces and doubled.
+  // schemes may write it on interfaces or doubled.
   struct Energy {
     std::string name;
     bool at_interfaces = false;

@@ -2,7 +2,7 @@
 // times in use within a byte budget. The catalogue can follow changes of the paths. A separate
 // thread reads the next times ahead. The store is safe to call from any thread. NetCDF-C is not
 // thread-safe, so one reader works at a time in this process. While a storage blocks that reader,
-// other files are read in another thread.
+// other files can be read only in another process (StormFormats::LeaveTo).
 #pragma once
 
 #include <chrono>

@@ -61,8 +61,8 @@ AirDensity AirDensityMeans::Means() const {
   AirDensity air{blocks_, std::vector<float>(sums_.size(), 0.0F)};
   for (int y = 0; y < blocks_.y; ++y) {
     for (int x = 0; x < blocks_.x; ++x) {
-      // Levels above the lowest level with air take the density below them. Levels under it take
-      // its density.
+      // A level without air takes the density of the level with air below it. Levels under the
+      // lowest level with air take the density of that level.
       int lowest = grid_.cells.z;
       float below = 0.0F;
       for (int z = 0; z < grid_.cells.z; ++z) {

@@ -23,8 +23,8 @@ struct AirDensity {
   float At(const RegularGrid& grid, int x, int y, int z) const;
 };
 
-// Computes means of samples. A level without samples gets the density of the nearest level with
-// samples, for example below mountains.
+// Computes means of samples. A level without samples gets the density of the next level below that
+// has samples. If there is none, for example inside mountains, it gets that of the next above.
 class AirDensityMeans {
  public:
   explicit AirDensityMeans(const RegularGrid& grid);

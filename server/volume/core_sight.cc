@@ -24,7 +24,7 @@ constexpr double kHighestBase_m = 2000.0;
 // The optical depth of ground in the line of sight.
 constexpr double kOpaqueDepth = 100.0;
 
-// Maximum optical depth from the eye towards the core that counts as clear of cloud and rain.
+// Maximum optical depth near the eye, towards the core, that counts as clear of cloud and rain.
 constexpr double kClearOpticalDepth = 0.05;
 
 bool Falls(physics::Hydrometeor hydrometeor) {

@@ -202,7 +202,7 @@ DetailControl DetailControlOf(const HydrometeorFields& fields,
     const float condenses = rises ? Between(kCondensing_m_per_s, ascent_m_per_s[i]) : 1.0F;
     const float towers = rises ? Between(kIceBillows_m_per_s, ascent_m_per_s[i]) : 0.0F;
     const float shown = cloud + ice;
-    // The look depends on which substance causes at least half of the extinction.
+    // A cell looks fully liquid if cloud water causes at least half of the extinction.
     const float liquid = shown > 0.0F ? std::min(2.0F * cloud / shown, 1.0F) : 0.0F;
     const float stirred = Between(kIceBillowsTurbulence, measured ? amplitude[i] : around[i]);
     const float billows = std::max({liquid * condenses, towers, stirred});

@@ -19,7 +19,7 @@ constexpr char kStormSeason[] = "2013-05-20T20:00:00Z";
 constexpr float kOklahomaLatitude_deg = 35.25F;
 constexpr float kOklahomaLongitude_deg = -97.5F;
 
-// Idealised runs start in year 1, so earlier years do not count as real dates.
+// Years before this are not real dates, because idealised runs start in year 1.
 constexpr int kFirstRealYear = 100;
 
 bool IsReal(const std::string& valid_time) {

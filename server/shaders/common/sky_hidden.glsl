@@ -10,7 +10,8 @@ uniform vec3 faces_sunlight;  // irradiance of the sun on faces of the storm tha
 
 struct StormInSky {
   float hidden;  // share of the sky that the storm hides
-  // The storm's mean radiance into its shadow, times pi, for clear-sky irradiance 1 on level ground.
+  // Mean radiance of the storm to a point in its shadow, times pi. The irradiance on level ground
+  // by the sun and the clear sky is 1.
   float through;
   float reflects;  // share that the storm reflects of light from outside
   vec3 faces;  // mean of that share times the direction where it is seen

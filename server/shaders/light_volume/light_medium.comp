@@ -9,7 +9,7 @@
 
 layout(binding = kLightMediumImage) uniform writeonly image3D light_medium;
 
-uniform vec4 light_weights[PLANES];  // from extinction to the value of a texel
+uniform vec4 light_weights[PLANES];  // from the medium's texel to the stored value
 uniform vec4 transport_weights[PLANES];
 
 #if DETAILS > 0
