@@ -1,5 +1,5 @@
 // Writes dist/third-party-notices.txt: the licences of the npm packages that the page contains, according to the lock
-// file. Debian's package and the image ship it with the page. The script fails for a package without a licence text.
+// file. Debian's package and the image ship it with the page. The script fails for a package without a licence.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
@@ -13,11 +13,14 @@ for (const [folder, found] of Object.entries(lock.packages)) {
   // The first entry is the page itself. Tools that only build or test the page are marked "dev".
   if (folder === "" || found.dev) continue;
   const file = readdirSync(folder).find((name) => /^(licen[cs]e|copying)/i.test(name));
-  if (file === undefined) throw new Error(`${folder} has no licence's text; ask its authors, or use another package`);
   const about = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
-  notices.push(
-    `${"=".repeat(80)}\n${about.name} ${about.version} (${found.license ?? about.license ?? "see below"})\n`,
-    readFileSync(join(folder, file), "utf8").trim(),
-  );
+  const licence = found.license ?? about.license;
+  // Some packages only name their licence. The text of Apache-2.0 is that of this project's own licence.
+  const path = file !== undefined ? join(folder, file) : /Apache-2\.0/.test(licence) ? "../LICENSE" : undefined;
+  const text = path === undefined ? `The package has no more than this name; see ${about.homepage}` : readFileSync(path, "utf8");
+  if (path === undefined && licence === undefined) {
+    throw new Error(`${folder} names no licence; ask its authors, or use another package`);
+  }
+  notices.push(`${"=".repeat(80)}\n${about.name} ${about.version} (${licence ?? "see below"})\n`, text.trim());
 }
 writeFileSync("dist/third-party-notices.txt", `${notices.join("\n\n")}\n`);

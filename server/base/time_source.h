@@ -28,8 +28,9 @@ inline const TimeSource& SteadyTime() {
     Clock::time_point Now() const override { return Clock::now(); }
     Clock::time_point LookAgainAt(Clock::time_point deadline) const override { return deadline; }
   };
-  static const Steady steady;
-  return steady;
+  // Never destroyed, because threads may still read it while static objects are.
+  static const auto* const steady = new Steady;
+  return *steady;
 }
 
 // Returns the milliseconds that have passed since `start` by `time`.
